@@ -1,0 +1,2 @@
+//! The nisp command.
+fn main() {}
