@@ -1,0 +1,1 @@
+//! Compiler stage 4: the minimal channel set and its rules.

@@ -1,0 +1,292 @@
+//! Compiler stage 2: resolved names, checked shapes and units.
+//!
+//! - Input: the syntax tree.
+//! - Output: a [`Model`], in which every expression is scalar, every name is an index, and every unit agrees.
+
+use std::rc::Rc;
+
+use proc_macro2::Span;
+
+use crate::rational::Rational;
+use crate::unit::{Dimension, Unit};
+
+/// A name and where the user wrote it.
+#[derive(Clone, Debug)]
+pub struct Name {
+    /// The identifier's text.
+    pub text: String,
+    /// The user's token.
+    pub span: Span,
+}
+
+/// A whole `pde!` invocation, checked.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// Name of the module that is emitted.
+    pub name: Name,
+    /// Visibility of that module, as tokens.
+    pub visibility: syn::Visibility,
+    /// Doc comment lines of the module.
+    pub docs: Vec<String>,
+    /// Independent variables, in declaration order.
+    pub coordinates: Vec<Coordinate>,
+    /// Everything the network puts out, in declaration order: fields, then sources; vectors are split into components.
+    pub fields: Vec<Field>,
+    /// Scalars that are given or learned.
+    pub parameters: Vec<Parameter>,
+    /// Point groups, in order of appearance.
+    pub groups: Vec<Group>,
+    /// Scenes; a module that declares none gets one named `all` with every term.
+    pub scenes: Vec<Scene>,
+    /// False after `units: off;`.
+    pub units_checked: bool,
+    /// Lints that do not stop compilation: message and where.
+    pub warnings: Vec<(String, Span)>,
+}
+
+/// An independent variable.
+#[derive(Clone, Debug)]
+pub struct Coordinate {
+    /// Its name.
+    pub name: Name,
+    /// Declared unit.
+    pub unit: Unit,
+    /// Doc comment.
+    pub docs: Vec<String>,
+}
+
+/// Whether a network output is a state or an unknown cause.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// Part of the state, at least partly observed or pinned.
+    Field,
+    /// Never observed.
+    Source,
+}
+
+/// One scalar output of the network.
+#[derive(Clone, Debug)]
+pub struct Field {
+    /// Its name; components of a vector `u` in coordinates x, y are `u_x`, `u_y`... as the model stage names them.
+    pub name: Name,
+    /// Field or source.
+    pub role: Role,
+    /// Declared unit.
+    pub unit: Unit,
+    /// Lower bound in SI units, kept by construction.
+    pub lower: Option<f64>,
+    /// Upper bound in SI units, kept by construction.
+    pub upper: Option<f64>,
+    /// A hard Dirichlet condition: the field is `value + distance * network`.
+    pub hard: Option<Hard>,
+    /// Doc comment.
+    pub docs: Vec<String>,
+}
+
+/// A condition that a field keeps by construction.
+#[derive(Clone, Debug)]
+pub struct Hard {
+    /// Zero on the boundary, of the order of one inside, dimensionless.
+    pub distance: Expr,
+    /// The boundary value, extended inwards.
+    pub value: Expr,
+}
+
+/// A scalar that the user gives or the solver learns.
+#[derive(Clone, Debug)]
+pub struct Parameter {
+    /// Its name.
+    pub name: Name,
+    /// Declared unit: values are given in it.
+    pub unit: Unit,
+    /// Default value in SI units, if the declaration has one (`E [Pa] = 2e9`).
+    pub default: Option<f64>,
+    /// Smallest sensible value in SI units.
+    pub lower: Option<f64>,
+    /// Largest sensible value in SI units.
+    pub upper: Option<f64>,
+    /// Doc comment.
+    pub docs: Vec<String>,
+}
+
+/// A data column with one value for each point of a group.
+#[derive(Clone, Debug)]
+pub struct Column {
+    /// Its name.
+    pub name: Name,
+    /// Declared unit.
+    pub unit: Unit,
+    /// Doc comment.
+    pub docs: Vec<String>,
+}
+
+/// A set of points and what must hold there.
+#[derive(Clone, Debug)]
+pub struct Group {
+    /// Its name.
+    pub name: Name,
+    /// Per-point data, declared in the group or implied by observations; indices of [`Expr::Column`].
+    pub columns: Vec<Column>,
+    /// What must hold.
+    pub terms: Vec<Term>,
+    /// True if every point has a partner (periodic pairs): [`Expr::Partner`] may occur.
+    pub paired: bool,
+    /// Doc comment.
+    pub docs: Vec<String>,
+}
+
+/// One condition of a group.
+#[derive(Clone, Debug)]
+pub struct Term {
+    /// Its name.
+    pub name: Name,
+    /// What it asks.
+    pub kind: TermKind,
+    /// How a row's misfit counts.
+    pub loss: Loss,
+    /// The user's weight (1 if none is written).
+    pub weight: f64,
+    /// The unit shared by all rows; dimension and text of both sides.
+    pub unit: Unit,
+    /// The condition as plain text.
+    pub equation: String,
+    /// The condition as LaTeX.
+    pub latex: String,
+    /// Doc comment.
+    pub docs: Vec<String>,
+}
+
+/// What a term asks of the expressions in it; each entry of a vector is one scalar row per point.
+#[derive(Clone, Debug)]
+pub enum TermKind {
+    /// `a == b`, as `a - b`.
+    Residual(Vec<Expr>),
+    /// `observe a ~ column`, as `a - column`: like a residual, but the misfit is measurement noise.
+    Observation(Vec<Expr>),
+    /// `a >= b`, as `a - b`, wanted non-negative.
+    Inequality(Vec<Expr>),
+    /// `0 <= a _|_ b >= 0`: both non-negative and one of them zero; each with its own dimension.
+    Complementarity {
+        /// One side.
+        a: Expr,
+        /// The other side.
+        b: Expr,
+        /// Dimension of `a`.
+        a_dimension: Dimension,
+        /// Dimension of `b`.
+        b_dimension: Dimension,
+    },
+    /// `integral(e) == target`: a sum over the group with the points' quadrature weights.
+    Integral {
+        /// Integrand, one entry per row.
+        integrand: Vec<Expr>,
+        /// Target value; contains parameters and numbers only.
+        target: Vec<Expr>,
+    },
+    /// The surface `point` passes through a measured cloud.
+    Chamfer {
+        /// Deformed position, one entry per dimension of the cloud.
+        point: Vec<Expr>,
+        /// Both directions, not only cloud to surface.
+        symmetric: bool,
+    },
+}
+
+/// How the misfit of a row counts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loss {
+    /// Half the square.
+    Square,
+    /// Huber with this threshold, in units of the row's natural size.
+    Huber(f64),
+    /// Welsch with this threshold, in units of the row's natural size.
+    Welsch(f64),
+}
+
+/// A specialisation: which terms are used, what is fixed, what is learned.
+#[derive(Clone, Debug)]
+pub struct Scene {
+    /// Its name.
+    pub name: Name,
+    /// For each group, which of its terms are used.
+    pub uses: Vec<Vec<bool>>,
+    /// For each field, the expression it is fixed to (`f = 0`).
+    pub fixed_fields: Vec<Option<Expr>>,
+    /// For each parameter, the value in SI units it is fixed to.
+    pub fixed_parameters: Vec<Option<f64>>,
+    /// For each parameter, whether it is learned.
+    pub learned: Vec<bool>,
+    /// Weight overrides: for each group, for each term.
+    pub weights: Vec<Vec<f64>>,
+    /// Doc comment.
+    pub docs: Vec<String>,
+}
+
+/// A scalar expression, shared where the user shared it (`let`).
+pub type Expr = Rc<Node>;
+
+/// The node of a scalar expression.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Node {
+    /// A dimensionless literal, exact.
+    Number(Rational),
+    /// A dimensionless real that is not rational (`pi`), or a literal too long to be exact.
+    Real(f64),
+    /// A literal with a unit: its value in SI units and its dimension.
+    Quantity(f64, Dimension),
+    /// A coordinate, by index.
+    Coordinate(usize),
+    /// A field or source, by index.
+    Field(usize),
+    /// A parameter, by index.
+    Parameter(usize),
+    /// A data column of the group at hand, by index.
+    Column(usize),
+    /// A sum.
+    Add(Vec<Expr>),
+    /// A product.
+    Mul(Vec<Expr>),
+    /// A quotient.
+    Div(Expr, Expr),
+    /// A rational power with a literal exponent.
+    Pow(Expr, Rational),
+    /// A general power; base and exponent dimensionless.
+    Power(Expr, Expr),
+    /// An elementary function.
+    Call(Function, Expr),
+    /// The smaller of two.
+    Min(Expr, Expr),
+    /// The larger of two.
+    Max(Expr, Expr),
+    /// The derivative of an expression by a coordinate.
+    Derivative(Expr, usize),
+    /// The expression at the point's partner (periodic pairs).
+    Partner(Expr),
+}
+
+/// Elementary functions of one argument.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[allow(missing_docs)]
+pub enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sinh,
+    Cosh,
+    Tanh,
+    Exp,
+    Ln,
+    Sqrt,
+    Abs,
+    /// Derivative of `Abs`, zero at zero.
+    Sign,
+    /// One for positive arguments, zero otherwise: derivative of `max(x, 0)`.
+    Step,
+    /// `ln(1 + exp x)`.
+    Softplus,
+    /// `1 / (1 + exp(-x))`.
+    Sigmoid,
+}

@@ -1,0 +1,145 @@
+//! Compiler stage 5: what every scene and group needs, as straight-line programs.
+//!
+//! - Input: a [`Model`](crate::model::Model).
+//! - Output: a [`Plan`].
+
+use crate::channels::{ChannelSet, Operator};
+use crate::model::Loss;
+use crate::program::Program;
+use crate::rational::Rational;
+use crate::unit::Dimension;
+
+/// Everything code generation needs, for all scenes.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// Distinct channel sets with their rules, shared by groups.
+    pub sets: Vec<SetPlan>,
+    /// One per scene, in the model's order.
+    pub scenes: Vec<ScenePlan>,
+    /// Coordinates that must share one length scale, as a group number per coordinate: those that a collapsed
+    /// operator ties together.
+    pub scale_groups: Vec<usize>,
+}
+
+/// A channel set and its propagation rules.
+#[derive(Clone, Debug)]
+pub struct SetPlan {
+    /// The channels.
+    pub set: ChannelSet,
+    /// Which channels the result has to deliver: all of them in hidden layers, those that heads read in the last.
+    pub read: Vec<bool>,
+    /// `phi(a)`: slots Phi (0..=order) and Argument (channel 0 unused). Outputs: one per channel, None where not read.
+    pub compose: Program,
+    /// Its adjoint: slots Phi (0..=order+1), Argument, Seed. Outputs: adjoint of each argument channel (all K of them).
+    pub compose_adjoint: Program,
+    /// `phi(w.x + b)`: slots Phi (0..=order), Weight (one per coordinate). Outputs as `compose`.
+    pub affine: Program,
+    /// Its adjoint: slots Phi, Weight, Seed. Outputs: adjoint of the value channel, then of each weight *by way of the
+    /// derivative channels* (the value channel's share, adjoint of the value times x, is added by the runtime).
+    pub affine_adjoint: Program,
+    /// Product of two jets: slots Left, Right. Outputs: one per channel, None where not read.
+    pub product: Program,
+    /// Its adjoint: slots Left, Right, Seed. Outputs: K adjoints of Left, then K of Right.
+    pub product_adjoint: Program,
+}
+
+/// What one scene needs.
+#[derive(Clone, Debug)]
+pub struct ScenePlan {
+    /// Fields that have a head here, by index in the model: a fixed field or one that no used term reads has none.
+    pub heads: Vec<usize>,
+    /// The scalars that programs read, in slot order: parameters, literals with units, scales.
+    pub scalars: Vec<Scalar>,
+    /// One per model group of which any term is used.
+    pub groups: Vec<GroupPlan>,
+    /// What was left out and why, one line each, for people.
+    pub skipped: Vec<String>,
+}
+
+/// A scalar input of group programs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scalar {
+    /// A parameter, by index in the model.
+    Parameter(usize),
+    /// A literal with a unit: SI value and dimension.
+    Literal(f64, Dimension),
+    /// The natural size of a bounded field, by index in the model: the unit of its softplus.
+    FieldScale(usize),
+    /// The natural size of one side of a complementarity, to make both sides comparable: dimension, then the
+    /// group (index in [`ScenePlan::groups`]) and term (index in [`GroupPlan::terms`]) it belongs to, and its side (0, 1).
+    SideScale(Dimension, usize, usize, usize),
+}
+
+/// A network output or one of its derivatives, as group programs read it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Jet {
+    /// Index in [`ScenePlan::heads`].
+    pub head: usize,
+    /// Which operator of it.
+    pub operator: Operator,
+    /// The operator in the channels of the group's set: (channel, coefficient).
+    pub combination: Vec<(usize, Rational)>,
+    /// 0 for the point itself, 1 for its partner.
+    pub site: usize,
+}
+
+/// What one group needs in one scene.
+#[derive(Clone, Debug)]
+pub struct GroupPlan {
+    /// Index of the group in the model.
+    pub group: usize,
+    /// Index in [`Plan::sets`] of the hidden layers' rules.
+    pub hidden: usize,
+    /// Index in [`Plan::sets`] of the last layer's rules (the same set, fewer channels read).
+    pub last: usize,
+    /// What the programs read of the heads, in slot order.
+    pub jets: Vec<Jet>,
+    /// Used terms with their rows.
+    pub terms: Vec<TermPlan>,
+    /// Rows of all terms: slots Jet, Coordinate, Column, Parameter.
+    pub residual: Program,
+    /// Adjoint: slots as `residual` and Seed (one per row). Outputs: one per jet, then one per learned parameter
+    /// (in the order of [`ScenePlan::learned`]).
+    pub adjoint: Program,
+    /// Sum over a row's terms of their absolute values, for natural sizes: same slots as `residual`, where the caller
+    /// puts magnitudes into Jet. One output per row.
+    pub magnitude: Program,
+    /// Model columns read, in slot order.
+    pub columns: Vec<usize>,
+}
+
+/// Rows of one term.
+#[derive(Clone, Debug)]
+pub struct TermPlan {
+    /// Index of the term in the model's group.
+    pub term: usize,
+    /// How its rows are meant.
+    pub kind: RowKind,
+    /// Loss of each row.
+    pub loss: Loss,
+    /// First row.
+    pub first: usize,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+/// How rows are meant.
+#[derive(Clone, Debug, PartialEq)]
+pub enum RowKind {
+    /// Wanted zero at every point (inequalities and complementarities are already folded into this form).
+    Residual,
+    /// Wanted zero, up to measurement noise.
+    Observation,
+    /// Rows are integrands; their weighted sum over the group is compared with a target. The program's target rows
+    /// are one program per row over slot Parameter only.
+    Integral(Program),
+    /// Rows are coordinates of a surface point, compared with a cloud; true for both directions.
+    Chamfer(bool),
+}
+
+impl ScenePlan {
+    /// Parameters that are learned, by index in the model.
+    pub fn learned<'a>(&'a self, scene: &'a crate::model::Scene) -> impl Iterator<Item = usize> + 'a {
+        scene.learned.iter().enumerate().filter_map(|(index, &learned)| learned.then_some(index))
+    }
+}
