@@ -1,0 +1,85 @@
+//! What can go wrong while a step is computed.
+
+use thiserror::Error;
+
+/// A step that could not be computed. The solver that meets one refuses the step and restores its state bitwise.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[error("{term}{}: {what}{}", Place(point), what.remedy())]
+pub struct Fault {
+    /// Name of the residual, observation or prior where it happened, as the user wrote it.
+    pub term: String,
+    /// Number of the point within its term, where it is known.
+    pub point: Option<usize>,
+    /// What happened.
+    pub what: Kind,
+}
+
+/// Kinds of [`Fault`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
+pub enum Kind {
+    /// A residual is NaN or infinite.
+    #[error("the residual is not finite")]
+    Residual,
+    /// A derivative is NaN or infinite.
+    #[error("the gradient is not finite")]
+    Gradient,
+    /// A matrix that should be positive definite is not, even with the largest damping.
+    #[error("the normal matrix cannot be factorised")]
+    Factorisation,
+    /// A saved state does not belong to this solver, this version or this number of parameters.
+    #[error("the saved state does not fit")]
+    State,
+}
+
+impl Kind {
+    fn remedy(self) -> &'static str {
+        match self {
+            Self::Residual => {
+                "; check the equation there for a division by zero, a logarithm or a root of a negative number"
+            }
+            Self::Gradient => "; check the equation there for a root or a power at zero",
+            Self::Factorisation => {
+                "; give every trained parameter a prior or a term that depends on it"
+            }
+            Self::State => "; start afresh, or give the settings that the state was saved with",
+        }
+    }
+}
+
+impl Fault {
+    /// A non-finite residual of `term` at `point`.
+    pub fn residual(term: impl Into<String>, point: Option<usize>) -> Self {
+        Self {
+            term: term.into(),
+            point,
+            what: Kind::Residual,
+        }
+    }
+
+    /// A non-finite derivative of `term` at `point`.
+    pub fn gradient(term: impl Into<String>, point: Option<usize>) -> Self {
+        Self {
+            term: term.into(),
+            point,
+            what: Kind::Gradient,
+        }
+    }
+
+    /// A saved state that does not fit; `entry` names the part that is missing or has the wrong size.
+    pub fn state(entry: impl Into<String>) -> Self {
+        Self {
+            term: entry.into(),
+            point: None,
+            what: Kind::State,
+        }
+    }
+}
+
+struct Place<'a>(&'a Option<usize>);
+
+impl std::fmt::Display for Place<'_> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.0
+            .map_or(Ok(()), |point| write!(f, " at point {point}"))
+    }
+}
