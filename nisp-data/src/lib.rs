@@ -1,1 +1,13 @@
-//! .
+//! What goes into NISP and what comes out: tables, point clouds, domains, pictures.
+//!
+//! Nothing here knows of equations or networks. Every fault of a user's file is a [`DataError`] whose one line names
+//! the place and says what to do; no input makes this crate panic.
+
+pub mod atomic;
+pub mod error;
+pub mod picture;
+pub mod table;
+
+pub use atomic::OutDir;
+pub use error::DataError;
+pub use table::Table;

@@ -1,0 +1,65 @@
+//! Tables of measurements: CSV in, CSV out, columns found by name and unit.
+
+mod lookup;
+mod read;
+mod write;
+
+use std::path::{Path, PathBuf};
+
+use crate::DataError;
+
+/// Columns of numbers with one header each, all of the same length.
+#[derive(Debug, Clone)]
+pub struct Table {
+    path: PathBuf,
+    columns: Vec<Column>,
+    /// The line of the file that each row came from.
+    lines: Vec<usize>,
+}
+
+/// One column of a table.
+#[derive(Debug, Clone)]
+struct Column {
+    header: String,
+    values: Vec<f64>,
+    /// The first cell that is no finite number. It only matters to whoever asks for this column.
+    fault: Option<Fault>,
+}
+
+#[derive(Debug, Clone)]
+struct Fault {
+    line: usize,
+    what: String,
+}
+
+impl Table {
+    /// The file this was read from.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// How many rows.
+    pub fn rows(&self) -> usize {
+        self.columns.first().map_or(0, |column| column.values.len())
+    }
+
+    /// All headers, in file order.
+    pub fn headers(&self) -> impl Iterator<Item = &str> {
+        self.columns.iter().map(|column| column.header.as_str())
+    }
+
+    /// Checks that a column rises strictly, as a time must.
+    pub fn require_increasing(&self, name: &str) -> Result<(), DataError> {
+        let values = self.column(name)?;
+        let Some(row) = values.windows(2).position(|pair| pair[1] <= pair[0]) else { return Ok(()) };
+        let (before, after) = (values[row], values[row + 1]);
+        let what = if before == after {
+            format!("the value {after} is there twice; keep one row for each value")
+        } else {
+            format!("{after} comes after {before}; sort the rows by this column")
+        };
+        let column = self.find(name, None)?.header.clone();
+        let line = self.lines.get(row + 1).copied().unwrap_or(row + 2);
+        Err(DataError::Cell { path: self.path.clone(), line, column, what })
+    }
+}

@@ -1,0 +1,110 @@
+//! CSV to table. Accepts comment lines (`#`), a byte order mark, CRLF, and `;` or tabs as separators.
+
+use std::path::Path;
+
+use super::{Column, Fault, Table};
+use crate::DataError;
+use crate::error::read_bytes;
+
+/// Fewer rows than this carry no equation of motion.
+const MIN_ROWS: usize = 2;
+
+impl Table {
+    /// Reads a CSV file with one header line.
+    ///
+    /// A cell that is no finite number is reported when its column is asked for, so that a column of remarks does no
+    /// harm.
+    pub fn read(path: impl AsRef<Path>) -> Result<Table, DataError> {
+        let path = path.as_ref();
+        Table::parse(path, &read_bytes(path)?)
+    }
+
+    /// Reads CSV from memory; `path` is only used to name the source in errors.
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Table, DataError> {
+        let text = decode(path, bytes)?;
+        let mut reader = csv::ReaderBuilder::new()
+            .delimiter(separator(text))
+            .comment(Some(b'#'))
+            .flexible(true)
+            .trim(csv::Trim::All)
+            .from_reader(text.as_bytes());
+        let headers = reader.headers().map_err(|error| syntax(path, &error))?.clone();
+        let mut columns = check_headers(path, &headers)?;
+        let mut lines = Vec::new();
+        for record in reader.records() {
+            let record = record.map_err(|error| syntax(path, &error))?;
+            let line = record.position().map_or(0, |at| at.line() as usize);
+            if record.len() != columns.len() {
+                let what =
+                    format!("{} cells where the header has {}; fill or remove this row", record.len(), columns.len());
+                return Err(DataError::line(path, line, what));
+            }
+            for (column, cell) in columns.iter_mut().zip(&record) {
+                column.push(line, cell);
+            }
+            lines.push(line);
+        }
+        if lines.len() < MIN_ROWS {
+            let what = format!("{} row(s) of data below the header; at least {MIN_ROWS} are needed", lines.len());
+            return Err(DataError::file(path, what));
+        }
+        Ok(Table { path: path.to_path_buf(), columns, lines })
+    }
+}
+
+impl Column {
+    fn push(&mut self, line: usize, cell: &str) {
+        let value = cell.parse::<f64>().unwrap_or(f64::NAN);
+        if !value.is_finite() && self.fault.is_none() {
+            self.fault = Some(Fault { line, what: describe(cell) });
+        }
+        self.values.push(value);
+    }
+}
+
+fn describe(cell: &str) -> String {
+    let shown: String = cell.chars().take(24).collect();
+    if cell.is_empty() {
+        "the cell is empty; fill it or remove the row".into()
+    } else if cell.parse::<f64>().is_ok() {
+        format!("`{shown}` is not a finite number; remove the row")
+    } else if cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok() {
+        format!("`{shown}` is not a number; write the decimal comma as a point")
+    } else {
+        format!("`{shown}` is not a number; correct it or remove the row")
+    }
+}
+
+fn decode<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, DataError> {
+    let text = std::str::from_utf8(bytes)
+        .map_err(|error| DataError::NotUtf8 { path: path.to_path_buf(), byte: error.valid_up_to() })?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    if text.trim().is_empty() {
+        return Err(DataError::file(path, "the file is empty; a header line and rows of numbers are needed"));
+    }
+    Ok(text)
+}
+
+/// The separator of the header line: a comma unless there is none and another one is.
+fn separator(text: &str) -> u8 {
+    let header = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or("");
+    [b',', b';', b'\t'].into_iter().find(|&mark| header.as_bytes().contains(&mark)).unwrap_or(b',')
+}
+
+fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<Vec<Column>, DataError> {
+    if headers.is_empty() {
+        return Err(DataError::file(path, "only comments; a header line and rows of numbers are needed"));
+    }
+    if headers.iter().all(|header| header.parse::<f64>().is_ok()) {
+        let what = "the first line holds numbers; put a line of column names above it, for instance `t [s],q [m]`";
+        return Err(DataError::file(path, what));
+    }
+    Ok(headers.iter().map(|header| Column { header: header.to_string(), values: Vec::new(), fault: None }).collect())
+}
+
+fn syntax(path: &Path, error: &csv::Error) -> DataError {
+    match error.position() {
+        Some(at) => DataError::line(path, at.line() as usize, format!("not CSV: {error}")),
+        None => DataError::file(path, format!("not CSV: {error}")),
+    }
+}

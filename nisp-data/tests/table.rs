@@ -1,0 +1,112 @@
+//! Tables: what is accepted, what is refused, and in which words.
+
+use std::path::Path;
+
+use nisp_data::Table;
+use proptest::prelude::*;
+
+fn parse(text: &str) -> Table {
+    Table::parse(Path::new("t.csv"), text.as_bytes()).unwrap()
+}
+
+fn refusal(text: &[u8]) -> String {
+    Table::parse(Path::new("t.csv"), text).unwrap_err().to_string()
+}
+
+#[test]
+fn reads_marks_comments_and_other_line_ends() {
+    let table = parse("\u{feff}# made by hand\r\nt [s], q_m ,note\r\n0,1.5,a\r\n\r\n# pause\r\n1,-2e-3,b\r\n");
+    assert_eq!(table.column("t").unwrap(), [0.0, 1.0]);
+    assert_eq!(table.quantity("q", "m").unwrap(), [1.5, -2e-3]);
+    assert_eq!(table.headers().collect::<Vec<_>>(), ["t [s]", "q_m", "note"]);
+    let semicolons = parse("t;q\n0;1\n1;2\n");
+    assert_eq!(semicolons.column("q").unwrap(), [1.0, 2.0]);
+}
+
+#[test]
+fn finds_columns_by_name_and_unit() {
+    let table = parse("t_s,q_m,dq_m_s,a [m/s^2],N_N_per_m,psi_rad_sigma0.01\n0,1,2,3,4,5\n1,1,2,3,4,5\n");
+    assert_eq!(table.quantity("dq", "m/s").unwrap()[0], 2.0);
+    assert_eq!(table.quantity("a", "m s^-2").unwrap()[0], 3.0);
+    assert_eq!(table.quantity("N", "N/m").unwrap()[0], 4.0);
+    assert_eq!(table.column("N").unwrap()[0], 4.0);
+    assert_eq!(table.column("psi_rad_sigma0.01").unwrap()[0], 5.0);
+    assert!(!table.has("psi"));
+    assert!(table.quantity("q", "mm").is_err());
+}
+
+#[test]
+fn refuses_with_what_to_do() {
+    let table = parse("t_s,q_m_sigma0,q_m_sigma0.01\n0,1,1\n1,nan,x\n");
+    assert_eq!(
+        table.quantity("q", "m").unwrap_err().to_string(),
+        "t.csv: no column for `q` in m; choose one, for instance with --column q=q_m_sigma0 (columns: t_s, \
+         q_m_sigma0, q_m_sigma0.01)"
+    );
+    let cell = table.column("q_m_sigma0").unwrap_err().to_string();
+    assert_eq!(cell, "t.csv: line 3, column `q_m_sigma0`: `nan` is not a finite number; remove the row");
+    let word = table.column("q_m_sigma0.01").unwrap_err().to_string();
+    assert_eq!(word, "t.csv: line 3, column `q_m_sigma0.01`: `x` is not a number; correct it or remove the row");
+    let twice = parse("q [m],q_m\n0,1\n1,2\n").column("q").unwrap_err().to_string();
+    assert!(twice.contains("several columns answer to `q`: q [m], q_m; choose one"), "{twice}");
+    assert!(refusal(b"").contains("empty"));
+    assert!(refusal(b"# a\n# b\n").contains("only comments"));
+    assert!(refusal(b"t,q\n0,1\n").contains("at least 2 are needed"));
+    assert!(refusal(b"t,q\n0,1\n1\n").contains("line 3: 1 cells where the header has 2"));
+    assert!(refusal(b"0,1\n0,1\n1,2\n").contains("put a line of column names above it"));
+    assert!(refusal(b"t,q\n0,\xff\n").contains("not UTF-8 text (byte 6)"));
+    assert!(Table::read("/nowhere/t.csv").unwrap_err().to_string().contains("no such file"));
+    assert!(Table::read("/").unwrap_err().to_string().contains("is a folder"));
+}
+
+#[test]
+fn time_must_rise() {
+    assert!(parse("t,q\n0,1\n1,1\n").require_increasing("t").is_ok());
+    let fall = parse("t_s,q\n0,1\n# pause\n2,1\n1,1\n").require_increasing("t").unwrap_err().to_string();
+    assert_eq!(fall, "t.csv: line 5, column `t_s`: 1 comes after 2; sort the rows by this column");
+    let twice = parse("t,q\n0,1\n2,1\n2,1\n").require_increasing("t").unwrap_err().to_string();
+    assert!(twice.contains("is there twice"), "{twice}");
+}
+
+#[test]
+fn the_repository_data_reads() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
+    let observed = Table::read(root.join("pendulum/run_01_obs.csv")).unwrap();
+    assert_eq!(observed.rows(), 201);
+    observed.require_increasing("t").unwrap();
+    assert_eq!(observed.column("q_m_sigma0.01").unwrap()[0], -0.01031523);
+    let truth = Table::read(root.join("pendulum/run_01_truth.csv")).unwrap();
+    assert_eq!(truth.quantity("f", "N").unwrap()[0], 0.0744481331);
+}
+
+proptest! {
+    #[test]
+    fn garbage_never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
+        if let Ok(table) = Table::parse(Path::new("g"), &bytes) {
+            let headers: Vec<String> = table.headers().map(str::to_string).collect();
+            for header in headers {
+                let _ = table.require_increasing(&header);
+            }
+        }
+    }
+
+    #[test]
+    fn almost_csv_never_panics(text in "[tq0-9,;#\"\\[\\]_ .\\n\\re+-]{0,200}") {
+        if let Ok(table) = Table::parse(Path::new("g"), text.as_bytes()) {
+            let _ = (table.column("t"), table.quantity("q", "m"), table.require_increasing("q"));
+        }
+    }
+
+    #[test]
+    fn numbers_come_back_to_the_bit(values in proptest::collection::vec(any::<f64>().prop_filter("finite", |v| v.is_finite()), 2..40)) {
+        let mut table = Table::empty();
+        table.push("x", "m/s^2", &values).unwrap();
+        table.push("y", "", &values).unwrap();
+        let mut bytes = Vec::new();
+        table.write_to(&mut bytes).unwrap();
+        let back = Table::parse(Path::new("t"), &bytes).unwrap();
+        let bits = |numbers: &[f64]| numbers.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+        prop_assert_eq!(bits(back.quantity("x", "m/s^2").unwrap()), bits(&values));
+        prop_assert_eq!(bits(back.column("y").unwrap()), bits(&values));
+    }
+}
