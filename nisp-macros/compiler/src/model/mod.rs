@@ -5,7 +5,7 @@
 
 use std::rc::Rc;
 
-use proc_macro2::Span;
+use proc_macro2::{Span, TokenStream};
 
 use crate::rational::Rational;
 use crate::unit::{Dimension, Unit};
@@ -25,7 +25,7 @@ pub struct Model {
     /// Name of the module that is emitted.
     pub name: Name,
     /// Visibility of that module, as tokens.
-    pub visibility: syn::Visibility,
+    pub visibility: TokenStream,
     /// Doc comment lines of the module.
     pub docs: Vec<String>,
     /// Independent variables, in declaration order.
