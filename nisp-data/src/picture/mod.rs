@@ -1,1 +1,39 @@
-//! Pictures.
+//! Figures for papers and talks: SVG text laid out here, so that every axis has its unit, legends stay outside the data
+//! and labels never overlap.
+//!
+//! [`line_plot`] stacks source and states over one axis. It returns a [`Picture`].
+
+mod axis;
+mod canvas;
+mod legend;
+mod line_plot;
+mod quantity;
+mod style;
+mod text;
+mod ticks;
+
+use std::path::Path;
+
+pub use line_plot::{Curve, LinePanel, LinePlot, line_plot};
+pub use quantity::Quantity;
+
+use crate::DataError;
+use crate::atomic::write_atomic;
+
+/// A finished figure.
+#[derive(Debug, Clone)]
+pub struct Picture {
+    svg: String,
+}
+
+impl Picture {
+    /// The figure as SVG text.
+    pub fn svg(&self) -> &str {
+        &self.svg
+    }
+
+    /// Writes the figure as SVG, whole or not at all.
+    pub fn write_svg(&self, path: impl AsRef<Path>) -> Result<(), DataError> {
+        write_atomic(path.as_ref(), |out| out.write_all(self.svg.as_bytes()))
+    }
+}

@@ -117,7 +117,7 @@ fn is_plain(unit: &str) -> bool {
 /// One spelling for `m/s^2`, `m s^-2`, `m_s2` and `m_per_s2`: the symbols in order, with their powers' sizes.
 fn normal(unit: &str) -> Vec<String> {
     unit.replace(['^', '-', '(', ')'], "")
-        .split(|mark: char| matches!(mark, '/' | '*' | '_' | '·' | ' '))
+        .split(['/', '*', '_', '·', ' '])
         .filter(|part| !matches!(*part, "" | "1" | "per"))
         .map(str::to_string)
         .collect()
