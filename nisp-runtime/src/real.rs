@@ -1,8 +1,12 @@
 //! The two element types, `f32` and `f64`.
 
-/// A floating-point element type of the engine.
+use crate::simd::Dispatch;
+
+/// A floating-point element type of the engine: `f32` or `f64`, no other can exist.
+#[expect(private_bounds, reason = "seals the trait and ties the vector types to it")]
 pub trait Real:
-    Copy
+    Dispatch
+    + Copy
     + Send
     + Sync
     + 'static

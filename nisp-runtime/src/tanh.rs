@@ -1,0 +1,1 @@
+//! tanh and its derivatives, vectorised.
