@@ -1,0 +1,63 @@
+//! Sums over long vectors, in a fixed order.
+//!
+//! Eight partial sums let the compiler use vector registers of any width; because their order is part of the program
+//! and nothing is fused, every machine gives the same bits.
+
+use crate::real::Real;
+
+const LANES: usize = 8;
+
+/// `a . b` in double precision.
+pub(crate) fn dot<E: Real>(a: &[E], b: &[E]) -> f64 {
+    let mut lanes = [0.0; LANES];
+    let (a_blocks, a_rest) = a.as_chunks::<LANES>();
+    let (b_blocks, b_rest) = b.as_chunks::<LANES>();
+    for (x, y) in a_blocks.iter().zip(b_blocks) {
+        for lane in 0..LANES {
+            lanes[lane] += x[lane].to_f64() * y[lane].to_f64();
+        }
+    }
+    let rest: f64 = a_rest
+        .iter()
+        .zip(b_rest)
+        .map(|(x, y)| x.to_f64() * y.to_f64())
+        .sum();
+    sum_lanes(&lanes) + rest
+}
+
+/// Sum of eight lanes, pairwise by halves.
+#[inline(always)]
+pub(crate) fn sum_lanes(lanes: &[f64; LANES]) -> f64 {
+    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6]))
+        + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
+}
+
+/// Euclidean norm.
+pub(crate) fn norm<E: Real>(a: &[E]) -> f64 {
+    dot(a, a).sqrt()
+}
+
+/// `y += factor * x`
+pub(crate) fn add_scaled<E: Real>(y: &mut [E], factor: f64, x: &[E]) {
+    let factor = E::from_f64(factor);
+    for (y, x) in y.iter_mut().zip(x) {
+        *y += factor * *x;
+    }
+}
+
+/// `out = origin + factor * direction`
+pub(crate) fn along<E: Real>(out: &mut [E], origin: &[E], factor: f64, direction: &[E]) {
+    let factor = E::from_f64(factor);
+    for ((out, x), d) in out.iter_mut().zip(origin).zip(direction) {
+        *out = *x + factor * *d;
+    }
+}
+
+/// True where every element is finite.
+pub(crate) fn all_finite<E: Real>(a: &[E]) -> bool {
+    // A sum of zeros or NaNs instead of a branch per element.
+    a.iter()
+        .map(|x| *x * E::ZERO)
+        .fold(E::ZERO, |sum, x| sum + x)
+        == E::ZERO
+}

@@ -1,0 +1,37 @@
+//! Plain loops compiled for the widest vectors of the machine.
+//!
+//! Nothing here is fused or reassociated, so all paths give the same bits; only their speed differs.
+
+/// Defines a function that runs `$body`, an `#[inline(always)]` function with the same arguments, compiled for the
+/// instruction set found at run time.
+macro_rules! widest {
+    (fn $name:ident $(<$e:ident: $bound:ident>)? ($($arg:ident: $type:ty),* $(,)?) = $body:ident) => {
+        fn $name $(<$e: $bound>)? ($($arg: $type),*) {
+            #[cfg(target_arch = "x86_64")]
+            {
+                #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
+                fn avx512 $(<$e: $bound>)? ($($arg: $type),*) {
+                    $body($($arg),*)
+                }
+                #[target_feature(enable = "avx2")]
+                fn avx2 $(<$e: $bound>)? ($($arg: $type),*) {
+                    $body($($arg),*)
+                }
+                if is_x86_feature_detected!("avx512f")
+                    && is_x86_feature_detected!("avx512dq")
+                    && is_x86_feature_detected!("avx512vl")
+                {
+                    // SAFETY: the machine has the features.
+                    return unsafe { avx512($($arg),*) };
+                }
+                if is_x86_feature_detected!("avx2") {
+                    // SAFETY: the machine has the feature.
+                    return unsafe { avx2($($arg),*) };
+                }
+            }
+            $body($($arg),*)
+        }
+    };
+}
+
+pub(crate) use widest;
