@@ -4,6 +4,7 @@
 //! the place and says what to do; no input makes this crate panic.
 
 pub mod atomic;
+pub mod domain;
 pub mod error;
 pub mod picture;
 pub mod table;

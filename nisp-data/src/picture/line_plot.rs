@@ -127,7 +127,7 @@ fn scaled(panel: &LinePanel, height: f64) -> ScaledPanel {
     let (low, high) = with_band(panel, curves);
     let shown = panel.y.shown(low.abs().max(high.abs()));
     let pad = 0.06 * (high - low);
-    let scale = Scale::linear((low - pad) / shown.factor, (high + pad) / shown.factor, 4.0);
+    let scale = Scale::linear((low - pad) / shown.factor, (high + pad) / shown.factor, height / 42.0);
     ScaledPanel { factor: shown.factor, label: shown.label, scale }
 }
 
