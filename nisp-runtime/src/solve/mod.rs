@@ -5,11 +5,13 @@
 //! factorisation at the minimum.
 
 pub mod adam;
+pub mod broyden;
 pub mod fault;
 pub mod lbfgs;
 mod line_search;
 pub mod method;
 pub mod objective;
 pub mod state;
+mod symmetric;
 mod vector;
 mod wide;
