@@ -1,0 +1,176 @@
+//! `parameters: m [kg], l [m] = 0.5, g: vector [m/s^2];`
+
+use proc_macro2::Delimiter;
+
+use super::parse_number;
+use super::recover::{self, at_statement};
+use super::stream::{Context, Stream};
+use super::tree::{Declaration, Kind, Shape};
+use super::{parse_expression, parse_unit};
+use crate::error::{Checked, Place, catalogue};
+use crate::unit::Unit;
+
+/// What a word at the start of a statement declares.
+pub(super) fn kind_of(word: &str) -> Option<Kind> {
+    Some(match word {
+        "coordinates" => Kind::Coordinate,
+        "fields" => Kind::Field,
+        "sources" => Kind::Source,
+        "parameters" => Kind::Parameter,
+        "constants" => Kind::Constant,
+        "columns" => Kind::Column,
+        _ => return None,
+    })
+}
+
+/// Reads a whole declaration statement, word and all. Broken entries are reported and left out.
+pub(super) fn parse(
+    stream: &mut Stream<'_>,
+    context: &mut Context<'_>,
+    kind: Kind,
+    docs: &[String],
+) -> Vec<Declaration> {
+    let word = stream.peek_word().unwrap_or_default();
+    stream.skip();
+    let mut declarations = Vec::new();
+    if stream.take(":").is_none() {
+        context.errors.push(stream.place(), catalogue::expected_operator(":", &word, &stream.found()));
+        if stream.peek_word().is_none() {
+            recover::skip_declaration(stream, context);
+            return declarations;
+        }
+    }
+    while !stream.at_end() && stream.take(";").is_none() {
+        match entry(stream, context, kind, docs) {
+            Ok(declaration) => {
+                declarations.push(declaration);
+                if !separator(stream, context) {
+                    break;
+                }
+            }
+            Err(_) => skip_entry(stream, context),
+        }
+    }
+    declarations
+}
+
+/// Takes a comma, or looks at a semicolon; a missing one is reported. False if the statement is over without one.
+fn separator(stream: &mut Stream<'_>, context: &mut Context<'_>) -> bool {
+    if stream.take(",").is_some() || stream.at(";") {
+        return true;
+    }
+    if stream.at_end() || at_statement(stream) {
+        context.errors.push(stream.previous(), catalogue::missing_semicolon());
+        return false;
+    }
+    context.errors.push(stream.place(), catalogue::expected_separator(&stream.found()));
+    if stream.peek_word().is_none() {
+        skip_entry(stream, context);
+    }
+    true
+}
+
+/// Skips to the next entry, and remembers the words on the way, which are not unknown names later.
+fn skip_entry(stream: &mut Stream<'_>, context: &mut Context<'_>) {
+    while !stream.at_end() && !stream.at(";") && stream.take(",").is_none() {
+        if let Some(word) = stream.peek_word() {
+            context.broken.insert(word);
+        }
+        stream.skip();
+    }
+}
+
+fn entry(
+    stream: &mut Stream<'_>,
+    context: &mut Context<'_>,
+    kind: Kind,
+    outer_docs: &[String],
+) -> Checked<Declaration> {
+    let mut docs = recover::docs(stream, context)?;
+    if docs.is_empty() {
+        docs = outer_docs.to_vec();
+    }
+    let name = recover::name(stream, context, noun(kind))?;
+    // From here on the name is known: whatever is wrong behind it, using it is no further mistake.
+    context.broken.insert(name.text.clone());
+    let shape = if stream.take(":").is_some() { shape(stream, context, kind)? } else { Shape::Scalar };
+    let unit = match parse_unit::parse_optional(stream, context) {
+        None => Some(Unit::one()),
+        Some(unit) => unit.ok(),
+    };
+    let broken_name = name.text.clone();
+    let mut declaration = Declaration { kind, name, shape, unit, lower: None, upper: None, value: None, docs };
+    attributes(stream, context, &mut declaration)?;
+    context.broken.remove(&broken_name);
+    Ok(declaration)
+}
+
+fn noun(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Coordinate => "a coordinate",
+        Kind::Field => "a field",
+        Kind::Source => "a source",
+        Kind::Parameter => "a parameter",
+        Kind::Constant => "a constant",
+        Kind::Column => "a column",
+    }
+}
+
+fn shape(stream: &mut Stream<'_>, context: &mut Context<'_>, kind: Kind) -> Checked<Shape> {
+    let (place, found) = (stream.place(), stream.found());
+    if stream.take_word("time") && kind == Kind::Coordinate {
+        return Ok(Shape::Time);
+    }
+    if kind == Kind::Coordinate || kind == Kind::Constant || !stream.take_word("vector") {
+        return Err(context.errors.report(place, catalogue::expected_shape(kind == Kind::Coordinate, &found)));
+    }
+    let Some((mut inside, place)) = stream.take_group(Delimiter::Parenthesis) else { return Ok(Shape::Vector) };
+    let literal = inside.take_literal().filter(|_| inside.at_end());
+    let number = literal.map(|literal| parse_number::parse(&literal, context)).transpose()?;
+    let count = number.and_then(|number| number.exact).filter(|value| value.is_integer()).map(|value| *value.numer());
+    match count.and_then(|count| usize::try_from(count).ok()).filter(|count| (1..=9).contains(count)) {
+        Some(count) => Ok(Shape::Numbered(count)),
+        None => Err(context.errors.report(place, catalogue::bad_vector_length())),
+    }
+}
+
+/// `>= a`, `<= b`, `in a .. b`, `= c`, in any order.
+fn attributes(stream: &mut Stream<'_>, context: &mut Context<'_>, declaration: &mut Declaration) -> Checked<()> {
+    loop {
+        let start = stream.place();
+        if stream.take("=").is_some() {
+            declaration.value = Some(parse_expression::parse(stream, context)?);
+            allow(context, declaration, start.to(stream.previous()), "=")?;
+        } else if stream.take(">=").is_some() {
+            declaration.lower = Some(parse_expression::parse(stream, context)?);
+            allow(context, declaration, start.to(stream.previous()), ">=")?;
+        } else if stream.take("<=").is_some() {
+            declaration.upper = Some(parse_expression::parse(stream, context)?);
+            allow(context, declaration, start.to(stream.previous()), "<=")?;
+        } else if stream.take_word("in") {
+            declaration.lower = Some(parse_expression::parse(stream, context)?);
+            if stream.take("..=").or_else(|| stream.take("..")).is_none() {
+                return Err(context.errors.report(stream.place(), catalogue::expected_range(&stream.found())));
+            }
+            declaration.upper = Some(parse_expression::parse(stream, context)?);
+            allow(context, declaration, start.to(stream.previous()), "in")?;
+        } else {
+            return Ok(());
+        }
+    }
+}
+
+/// Only parameters and constants have values; coordinates, constants and columns have no bounds.
+fn allow(context: &mut Context<'_>, declaration: &Declaration, place: Place, sign: &str) -> Checked<()> {
+    let valued = matches!(declaration.kind, Kind::Parameter | Kind::Constant);
+    let bounded = matches!(declaration.kind, Kind::Field | Kind::Source | Kind::Parameter);
+    let allowed = if sign == "=" { valued } else { bounded };
+    if allowed {
+        return Ok(());
+    }
+    let message = match sign {
+        "=" => catalogue::takes_no_value(noun(declaration.kind)),
+        _ => catalogue::takes_no_bounds(noun(declaration.kind)),
+    };
+    Err(context.errors.report(place, message))
+}

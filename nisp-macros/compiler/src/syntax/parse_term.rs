@@ -1,0 +1,171 @@
+//! Terms: what must hold at the points of a group.
+
+use proc_macro2::Delimiter;
+
+use super::recover::{self, end_statement};
+use super::stream::{Context, Stream};
+use super::tree::{Comparison, Condition, Expr, ExprKind, GroupItem, Name, Relation, Term, TermBody};
+use super::{parse_expression, parse_number, parse_unit};
+use crate::error::{Checked, Place, catalogue};
+
+/// `NAME: BODY SUFFIXES;`
+pub(super) fn named(stream: &mut Stream<'_>, context: &mut Context<'_>, docs: Vec<String>) -> Checked<GroupItem> {
+    let name = recover::name(stream, context, "a term")?;
+    recover::operator(stream, context, ":", &name.text)?;
+    let start = stream.place();
+    let finished = body(stream, context).and_then(|body| finish(stream, context, name.clone(), body, start, docs));
+    Ok(finished.unwrap_or_else(|_| {
+        recover::skip_statement(stream);
+        GroupItem::Broken(name)
+    }))
+}
+
+/// `observe NAME, NAME SUFFIXES;` or `observe NAME: EXPR ~ COLUMN [unit] SUFFIXES;`
+pub(super) fn observe(
+    stream: &mut Stream<'_>,
+    context: &mut Context<'_>,
+    docs: Vec<String>,
+) -> Checked<Vec<GroupItem>> {
+    stream.skip();
+    let name = recover::name(stream, context, "what is observed")?;
+    if stream.take(":").is_some() {
+        let start = stream.place();
+        let finished = long_observation(stream, context)
+            .and_then(|body| finish(stream, context, name.clone(), body, start, docs));
+        return Ok(vec![finished.unwrap_or_else(|_| {
+            recover::skip_statement(stream);
+            GroupItem::Broken(name)
+        })]);
+    }
+    let mut names = vec![name];
+    while stream.take(",").is_some() {
+        names.push(recover::name(stream, context, "what is observed")?);
+    }
+    let (loss, weight) = suffixes(stream, context)?;
+    if stream.at("~") || stream.at("==") {
+        return Err(context.errors.report(stream.place(), catalogue::unnamed_observation()));
+    }
+    end_statement(stream, context)?;
+    let terms = names.into_iter().map(|name| {
+        let place = name.span.into();
+        let value = Expr { kind: ExprKind::Name(name.text.clone()), place };
+        let body = TermBody::Observe { value, column: None, unit: None };
+        GroupItem::Term(Box::new(Term { name, body, loss: loss.clone(), weight, docs: docs.clone(), place }))
+    });
+    Ok(terms.collect())
+}
+
+fn long_observation(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<TermBody> {
+    let value = parse_expression::parse(stream, context)?;
+    if stream.take("~").is_none() {
+        return Err(context.errors.report(stream.place(), catalogue::expected_tilde(&stream.found())));
+    }
+    let column = recover::name(stream, context, "a column")?;
+    let unit = parse_unit::parse_optional(stream, context).transpose()?;
+    Ok(TermBody::Observe { value, column: Some(column), unit })
+}
+
+fn finish(
+    stream: &mut Stream<'_>,
+    context: &mut Context<'_>,
+    name: Name,
+    body: TermBody,
+    start: Place,
+    docs: Vec<String>,
+) -> Checked<GroupItem> {
+    let place = start.to(stream.previous());
+    let (loss, weight) = suffixes(stream, context)?;
+    end_statement(stream, context)?;
+    Ok(GroupItem::Term(Box::new(Term { name, body, loss, weight, docs, place })))
+}
+
+/// `with huber(3)`, `weight 2`.
+fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<(Option<(Name, f64)>, Option<f64>)> {
+    let (mut loss, mut weight) = (None, None);
+    loop {
+        if stream.take_word("weight") {
+            weight = Some(positive(stream, context)?);
+        } else if stream.take_word("with") {
+            let name = recover::name(stream, context, "a loss")?;
+            if !["huber", "welsch"].contains(&name.text.as_str()) {
+                return Err(context.errors.report(name.span, catalogue::unknown_loss(&name.text)));
+            }
+            let Some((mut inside, place)) = stream.take_group(Delimiter::Parenthesis) else {
+                let message = catalogue::expected_operator("(threshold)", &name.text, &stream.found());
+                return Err(context.errors.report(stream.place(), message));
+            };
+            let threshold = positive(&mut inside, context)?;
+            if threshold == 0.0 || !inside.at_end() {
+                return Err(context.errors.report(place, catalogue::expected_positive("the threshold")));
+            }
+            loss = Some((name, threshold));
+        } else {
+            return Ok((loss, weight));
+        }
+    }
+}
+
+/// A literal that is not negative.
+pub(super) fn positive(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<f64> {
+    let place = stream.place();
+    match stream.take_literal() {
+        Some(literal) => Ok(parse_number::parse(&literal, context)?.value),
+        None => Err(context.errors.report(place, catalogue::expected_positive("a weight"))),
+    }
+}
+
+fn body(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<TermBody> {
+    let symmetric = stream.at_word("symmetric") && stream.after_next().at_word("chamfer");
+    let chamfer = if symmetric { stream.after_next() } else { *stream };
+    if chamfer.at_word("chamfer") && starts_expression(&chamfer.after_next()) {
+        *stream = chamfer.after_next();
+        let point = parse_expression::parse(stream, context)?;
+        return Ok(TermBody::Chamfer { point, symmetric });
+    }
+    let mut conditions = vec![condition(stream, context)?];
+    while stream.take(",").is_some() {
+        conditions.push(condition(stream, context)?);
+    }
+    Ok(TermBody::Conditions(conditions))
+}
+
+fn starts_expression(stream: &Stream<'_>) -> bool {
+    stream.at_group(Delimiter::Bracket) || stream.at_group(Delimiter::Parenthesis) || stream.peek_word().is_some()
+}
+
+/// `a == b`, `a >= b`, or `0 <= a _|_ b >= 0`.
+fn condition(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Condition> {
+    let first = comparison(stream, context)?;
+    if stream.take_word("complements") || take_perpendicular(stream) {
+        return Ok(Condition::Complementarity(first, comparison(stream, context)?));
+    }
+    if let Some((_, place)) = take_relation(stream) {
+        return Err(context.errors.report(place, catalogue::chained_relation()));
+    }
+    Ok(Condition::Relation(first))
+}
+
+/// `_|_` arrives as a word, an operator and a word.
+fn take_perpendicular(stream: &mut Stream<'_>) -> bool {
+    let mut ahead = *stream;
+    let found = ahead.take_word("_") && ahead.take("|").is_some() && ahead.take_word("_");
+    if found {
+        *stream = ahead;
+    }
+    found
+}
+
+fn comparison(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Comparison> {
+    let left = parse_expression::parse(stream, context)?;
+    let Some((relation, relation_place)) = take_relation(stream) else {
+        return Err(context.errors.report(stream.place(), catalogue::expected_relation(&stream.found())));
+    };
+    let right = parse_expression::parse(stream, context)?;
+    Ok(Comparison { left, relation, relation_place, right })
+}
+
+fn take_relation(stream: &mut Stream<'_>) -> Option<(Relation, Place)> {
+    [("==", Relation::Equal), (">=", Relation::AtLeast), ("<=", Relation::AtMost)]
+        .into_iter()
+        .find_map(|(text, relation)| Some((relation, stream.take(text)?)))
+}

@@ -1,0 +1,125 @@
+//! The units that can be written, as data.
+
+use super::{BASES, Dimension};
+use crate::rational::ratio;
+
+/// A unit symbol's meaning: `coefficient * 10^exponent` of the SI unit of a dimension.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Symbol {
+    pub(crate) dimension: Dimension,
+    /// Kept apart from the power of ten, so that `mg` and `uPa` come out correctly rounded.
+    pub(crate) coefficient: f64,
+    pub(crate) exponent: i32,
+}
+
+struct Row {
+    symbol: &'static str,
+    coefficient: f64,
+    exponent: i32,
+    prefixes: bool,
+    /// Exponents of m, kg, s, A, K, mol, cd.
+    bases: [i8; BASES],
+}
+
+const fn row(symbol: &'static str, coefficient: f64, exponent: i32, prefixes: bool, bases: [i8; BASES]) -> Row {
+    Row { symbol, coefficient, exponent, prefixes, bases }
+}
+
+#[rustfmt::skip]
+const UNITS: &[Row] = &[
+    //                                         m  kg  s  A  K mol cd
+    row("m",   1.0, 0, true,                  [1, 0, 0, 0, 0, 0, 0]),
+    row("g",   1.0, -3, true,                 [0, 1, 0, 0, 0, 0, 0]),
+    row("s",   1.0, 0, true,                  [0, 0, 1, 0, 0, 0, 0]),
+    row("A",   1.0, 0, true,                  [0, 0, 0, 1, 0, 0, 0]),
+    row("K",   1.0, 0, true,                  [0, 0, 0, 0, 1, 0, 0]),
+    row("mol", 1.0, 0, true,                  [0, 0, 0, 0, 0, 1, 0]),
+    row("cd",  1.0, 0, true,                  [0, 0, 0, 0, 0, 0, 1]),
+    row("N",   1.0, 0, true,                  [1, 1, -2, 0, 0, 0, 0]),
+    row("Pa",  1.0, 0, true,                  [-1, 1, -2, 0, 0, 0, 0]),
+    row("J",   1.0, 0, true,                  [2, 1, -2, 0, 0, 0, 0]),
+    row("W",   1.0, 0, true,                  [2, 1, -3, 0, 0, 0, 0]),
+    row("V",   1.0, 0, true,                  [2, 1, -3, -1, 0, 0, 0]),
+    row("C",   1.0, 0, true,                  [0, 0, 1, 1, 0, 0, 0]),
+    row("F",   1.0, 0, true,                  [-2, -1, 4, 2, 0, 0, 0]),
+    row("Ohm", 1.0, 0, true,                  [2, 1, -3, -2, 0, 0, 0]),
+    row("ohm", 1.0, 0, true,                  [2, 1, -3, -2, 0, 0, 0]),
+    row("Ω",   1.0, 0, true,                  [2, 1, -3, -2, 0, 0, 0]),
+    row("S",   1.0, 0, true,                  [-2, -1, 3, 2, 0, 0, 0]),
+    row("H",   1.0, 0, true,                  [2, 1, -2, -2, 0, 0, 0]),
+    row("T",   1.0, 0, true,                  [0, 1, -2, -1, 0, 0, 0]),
+    row("Wb",  1.0, 0, true,                  [2, 1, -2, -1, 0, 0, 0]),
+    row("Hz",  1.0, 0, true,                  [0, 0, -1, 0, 0, 0, 0]),
+    row("lm",  1.0, 0, true,                  [0, 0, 0, 0, 0, 0, 1]),
+    row("lx",  1.0, 0, true,                  [-2, 0, 0, 0, 0, 0, 1]),
+    row("rad", 1.0, 0, true,                  [0, 0, 0, 0, 0, 0, 0]),
+    row("sr",  1.0, 0, true,                  [0, 0, 0, 0, 0, 0, 0]),
+    row("deg", std::f64::consts::PI / 180.0, 0, false, [0, 0, 0, 0, 0, 0, 0]),
+    row("%",   1.0, -2, false,                [0, 0, 0, 0, 0, 0, 0]),
+    row("min", 60.0, 0, false,                [0, 0, 1, 0, 0, 0, 0]),
+    row("h",   3600.0, 0, false,              [0, 0, 1, 0, 0, 0, 0]),
+    row("day", 86400.0, 0, false,             [0, 0, 1, 0, 0, 0, 0]),
+    row("L",   1.0, -3, true,                 [3, 0, 0, 0, 0, 0, 0]),
+    row("l",   1.0, -3, true,                 [3, 0, 0, 0, 0, 0, 0]),
+    row("t",   1.0, 3, true,                  [0, 1, 0, 0, 0, 0, 0]),
+    row("bar", 1.0, 5, true,                  [-1, 1, -2, 0, 0, 0, 0]),
+    row("atm", 101_325.0, 0, false,           [-1, 1, -2, 0, 0, 0, 0]),
+    row("eV",  1.602_176_634, -19, true,      [2, 1, -2, 0, 0, 0, 0]),
+];
+
+const PREFIXES: &[(&str, i32)] = &[
+    ("da", 1),
+    ("T", 12),
+    ("G", 9),
+    ("M", 6),
+    ("k", 3),
+    ("h", 2),
+    ("d", -1),
+    ("c", -2),
+    ("m", -3),
+    ("u", -6),
+    ("µ", -6),
+    ("μ", -6),
+    ("n", -9),
+    ("p", -12),
+    ("f", -15),
+];
+
+/// What a unit symbol means: the symbol as it stands first (`min`, `Pa`), then prefix and symbol (`mm`).
+pub(crate) fn look_up(text: &str) -> Option<Symbol> {
+    if let Some(row) = UNITS.iter().find(|row| row.symbol == text) {
+        return Some(scaled(row, 0));
+    }
+    PREFIXES.iter().find_map(|(prefix, exponent)| {
+        let rest = text.strip_prefix(prefix)?;
+        let row = UNITS.iter().find(|row| row.prefixes && row.symbol == rest)?;
+        Some(scaled(row, *exponent))
+    })
+}
+
+/// All symbols without prefixes, for suggestions.
+pub(crate) fn known_symbols() -> impl Iterator<Item = &'static str> {
+    UNITS.iter().map(|row| row.symbol)
+}
+
+fn scaled(row: &Row, exponent: i32) -> Symbol {
+    Symbol {
+        dimension: Dimension(row.bases.map(|base| ratio(i128::from(base), 1))),
+        coefficient: row.coefficient,
+        exponent: row.exponent + exponent,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_whole_symbol_wins_over_a_prefix() {
+        assert_eq!(look_up("min").unwrap().coefficient, 60.0);
+        assert_eq!(look_up("kg").unwrap().exponent, 0);
+        assert_eq!(look_up("Pa").unwrap().exponent, 0);
+        assert_eq!(look_up("mT").unwrap().exponent, -3);
+        assert_eq!(look_up("kdeg"), None);
+    }
+}
