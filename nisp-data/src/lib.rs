@@ -4,11 +4,13 @@
 //! the place and says what to do; no input makes this crate panic.
 
 pub mod atomic;
+pub mod cloud;
 pub mod domain;
 pub mod error;
 pub mod picture;
 pub mod table;
 
 pub use atomic::OutDir;
+pub use cloud::Cloud;
 pub use error::DataError;
 pub use table::Table;

@@ -26,6 +26,15 @@ impl Table {
         self.find(name, None).is_ok()
     }
 
+    /// As [`Table::column`], but cells that are no finite numbers pass, as NaN or infinity.
+    pub(crate) fn raw(&self, name: &str) -> Result<&[f64], DataError> {
+        let column = self.find(name, None)?;
+        match &column.fault {
+            Some(fault) if !fault.numeric => self.checked(column),
+            _ => Ok(&column.values),
+        }
+    }
+
     fn checked<'a>(&self, column: &'a Column) -> Result<&'a [f64], DataError> {
         match &column.fault {
             None => Ok(&column.values),

@@ -30,6 +30,8 @@ struct Column {
 struct Fault {
     line: usize,
     what: String,
+    /// Whether the cell was NaN or infinite, which a cloud may hold, rather than a word.
+    numeric: bool,
 }
 
 impl Table {

@@ -54,9 +54,13 @@ impl Table {
 
 impl Column {
     fn push(&mut self, line: usize, cell: &str) {
-        let value = cell.parse::<f64>().unwrap_or(f64::NAN);
-        if !value.is_finite() && self.fault.is_none() {
-            self.fault = Some(Fault { line, what: describe(cell) });
+        let parsed = cell.parse::<f64>();
+        let numeric = parsed.is_ok();
+        let value = parsed.unwrap_or(f64::NAN);
+        // A word is worse than a NaN, and is what must be told.
+        let worse = self.fault.as_ref().is_none_or(|fault| fault.numeric && !numeric);
+        if !value.is_finite() && worse {
+            self.fault = Some(Fault { line, what: describe(cell), numeric });
         }
         self.values.push(value);
     }

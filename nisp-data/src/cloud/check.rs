@@ -1,0 +1,138 @@
+//! Is this cloud of this domain, and in metres? A cloud in millimetres would otherwise fit nothing, quietly.
+
+use std::fmt::Write;
+use std::str::FromStr;
+
+use super::Cloud;
+use crate::DataError;
+
+/// Share of points at either end of an axis that may be outliers.
+const OUTLIERS: f64 = 0.02;
+/// Extents (cloud over domain) that pass: parts may be missing, and a surface may bulge.
+const PLAUSIBLE: std::ops::Range<f64> = 0.02..20.0;
+/// How well a unit must explain the ratio to be suggested.
+const EXPLAINED: std::ops::Range<f64> = 0.1..4.0;
+
+/// A unit of length.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum LengthUnit {
+    /// Metres.
+    Metre,
+    /// Centimetres.
+    Centimetre,
+    /// Millimetres.
+    Millimetre,
+    /// Micrometres.
+    Micrometre,
+    /// Inches.
+    Inch,
+}
+
+impl LengthUnit {
+    const ALL: [LengthUnit; 5] =
+        [LengthUnit::Millimetre, LengthUnit::Centimetre, LengthUnit::Micrometre, LengthUnit::Inch, LengthUnit::Metre];
+
+    /// Metres in one.
+    pub fn metres(self) -> f64 {
+        match self {
+            LengthUnit::Metre => 1.0,
+            LengthUnit::Centimetre => 1e-2,
+            LengthUnit::Millimetre => 1e-3,
+            LengthUnit::Micrometre => 1e-6,
+            LengthUnit::Inch => 0.0254,
+        }
+    }
+
+    fn names(self) -> (&'static str, &'static str) {
+        match self {
+            LengthUnit::Metre => ("m", "metres"),
+            LengthUnit::Centimetre => ("cm", "centimetres"),
+            LengthUnit::Millimetre => ("mm", "millimetres"),
+            LengthUnit::Micrometre => ("um", "micrometres"),
+            LengthUnit::Inch => ("in", "inches"),
+        }
+    }
+}
+
+impl FromStr for LengthUnit {
+    type Err = DataError;
+
+    fn from_str(text: &str) -> Result<LengthUnit, DataError> {
+        let found = LengthUnit::ALL.into_iter().find(|unit| unit.names().0 == text || unit.names().1 == text);
+        found.ok_or_else(|| DataError::invalid(format!("`{text}` is no unit of length; write m, cm, mm, um or in")))
+    }
+}
+
+impl Cloud {
+    /// Turns coordinates given in `unit` into metres.
+    pub fn convert_from(&mut self, unit: LengthUnit) {
+        self.points.iter_mut().flatten().for_each(|value| *value *= unit.metres());
+    }
+
+    /// Lower and upper corner, without the outermost points (which may be outliers).
+    pub fn robust_bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let mut corners = ([0.0; 3], [0.0; 3]);
+        for axis in 0..3 {
+            let mut values: Vec<f64> = self.points.iter().map(|point| point[axis]).collect();
+            values.sort_by(f64::total_cmp);
+            let cut = (OUTLIERS * values.len() as f64) as usize;
+            corners.0[axis] = values.get(cut).copied().unwrap_or(0.0);
+            corners.1[axis] = values.iter().rev().nth(cut).copied().unwrap_or(0.0);
+        }
+        corners
+    }
+
+    /// Compares the cloud with the box around the domain that it should lie on, over the axes they share.
+    ///
+    /// Says which unit the cloud is probably in, or that it lies elsewhere.
+    pub fn require_near(&self, low: &[f64], high: &[f64]) -> Result<(), DataError> {
+        let (from, to) = self.robust_bounds();
+        let axes = low.len().min(3);
+        let size = |low: &[f64], high: &[f64]| low.iter().zip(high).take(axes).map(|(a, b)| b - a).fold(0.0, f64::max);
+        let (cloud, domain) = (size(&from, &to), size(low, high));
+        let ratio = cloud / domain;
+        let unit = LengthUnit::ALL.into_iter().find(|unit| EXPLAINED.contains(&(ratio * unit.metres())));
+        if !PLAUSIBLE.contains(&ratio) {
+            let spans = format!("the cloud spans {} m; the domain {} m", extents(&from, &to), extents(low, high));
+            return Err(DataError::invalid(match unit {
+                Some(unit) if ratio > 1.0 => {
+                    let (short, long) = unit.names();
+                    format!("{spans}: is the cloud in {long}? give --unit {short}")
+                }
+                _ => format!("{spans}: is it a cloud of another object?"),
+            }));
+        }
+        let apart = |axis: usize| from[axis] > high[axis] + domain || to[axis] < low[axis] - domain;
+        if (0..axes).any(apart) {
+            let what = format!(
+                "the cloud lies around {} m, the domain around {} m: is it in another frame?",
+                middles(&from, &to),
+                middles(low, high)
+            );
+            return Err(DataError::invalid(what));
+        }
+        Ok(())
+    }
+}
+
+fn extents(low: &[f64], high: &[f64]) -> String {
+    join(low.iter().zip(high).map(|(a, b)| b - a), " x ")
+}
+
+fn middles(low: &[f64], high: &[f64]) -> String {
+    format!("({})", join(low.iter().zip(high).map(|(a, b)| 0.5 * (a + b)), ", "))
+}
+
+/// Numbers to two digits.
+fn join(values: impl Iterator<Item = f64>, between: &str) -> String {
+    let mut out = String::new();
+    for value in values {
+        if !out.is_empty() {
+            out.push_str(between);
+        }
+        let digits = if value == 0.0 { 0.0 } else { 1.0 - value.abs().log10().floor() };
+        let grid = 10f64.powi(digits.clamp(-300.0, 300.0) as i32);
+        let _ = write!(out, "{}", (value * grid).round() / grid);
+    }
+    out
+}

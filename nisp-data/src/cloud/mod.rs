@@ -1,0 +1,105 @@
+//! Point clouds and surfaces from files: PLY, PCD, CSV, XYZ, NPY, NPZ; STL for surfaces.
+
+mod check;
+mod npy;
+mod pcd;
+mod ply;
+mod stl;
+mod text;
+
+use std::path::Path;
+
+pub use check::LengthUnit;
+pub use stl::Surface;
+
+use crate::DataError;
+use crate::error::read_bytes;
+
+/// Points in space, with a note of what had to be left out.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Cloud {
+    /// The finite points, in file order.
+    pub points: Vec<[f64; 3]>,
+    /// What the user should know: dropped points, and the like. One line each.
+    pub warnings: Vec<String>,
+}
+
+/// File formats, as told by their first bytes or, where those say nothing, by the file's ending.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Format {
+    Ply,
+    Pcd,
+    Npy,
+    Npz,
+    Text,
+}
+
+impl Cloud {
+    /// Reads a cloud. The format is recognised by content; the ending only matters between the text formats.
+    pub fn read(path: impl AsRef<Path>) -> Result<Cloud, DataError> {
+        let path = path.as_ref();
+        Cloud::parse(path, &read_bytes(path)?)
+    }
+
+    /// Reads a cloud from memory; `path` names the source in errors.
+    pub fn parse(path: &Path, bytes: &[u8]) -> Result<Cloud, DataError> {
+        if bytes.is_empty() {
+            return Err(DataError::file(path, "the file is empty; a point cloud is needed"));
+        }
+        let points = match recognise(path, bytes)? {
+            Format::Ply => ply::parse(path, bytes)?,
+            Format::Pcd => pcd::parse(path, bytes)?,
+            Format::Npy => npy::parse(path, bytes)?,
+            Format::Npz => npy::parse_archive(path, bytes)?,
+            Format::Text => text::parse(path, bytes)?,
+        };
+        Cloud::finite(path, points)
+    }
+
+    /// Drops points that are not finite, and counts them. A cloud of none is an error.
+    fn finite(path: &Path, points: Vec<[f64; 3]>) -> Result<Cloud, DataError> {
+        let all = points.len();
+        let kept: Vec<[f64; 3]> = points.into_iter().filter(|point| point.iter().all(|x| x.is_finite())).collect();
+        if kept.is_empty() {
+            let what = match all {
+                0 => "the cloud has no points; record it again".to_string(),
+                _ => format!("none of the {all} points is finite; record the cloud again"),
+            };
+            return Err(DataError::file(path, what));
+        }
+        let dropped = all - kept.len();
+        let mut warnings = Vec::new();
+        if dropped > 0 {
+            warnings.push(format!("{}: {dropped} of {all} points were not finite and left out", path.display()));
+        }
+        Ok(Cloud { points: kept, warnings })
+    }
+}
+
+fn recognise(path: &Path, bytes: &[u8]) -> Result<Format, DataError> {
+    let ending = path.extension().map(|ending| ending.to_string_lossy().to_lowercase()).unwrap_or_default();
+    let known = match bytes {
+        _ if bytes.starts_with(b"ply") => Some(Format::Ply),
+        _ if bytes.starts_with(b"\x93NUMPY") => Some(Format::Npy),
+        _ if bytes.starts_with(b"PK") => Some(Format::Npz),
+        _ if bytes.starts_with(b"# .PCD") || bytes.starts_with(b"VERSION") => Some(Format::Pcd),
+        _ => None,
+    };
+    match (known, ending.as_str()) {
+        (Some(format), _) => Ok(format),
+        (None, "csv" | "xyz" | "txt" | "asc" | "pts" | "") => Ok(Format::Text),
+        (None, "pcd") => Ok(Format::Pcd),
+        (None, "ply" | "npy" | "npz") => Err(DataError::file(
+            path,
+            format!("does not begin as a {ending} file does; is it damaged or of another kind?"),
+        )),
+        (None, "stl" | "obj") => Err(DataError::file(
+            path,
+            "is a surface, not a point cloud; sample it, or give a PLY, PCD, CSV, XYZ, NPY or NPZ file",
+        )),
+        (None, _) => {
+            let what = format!("unknown kind of file `.{ending}`; give a PLY, PCD, CSV, XYZ, NPY or NPZ file");
+            Err(DataError::file(path, what))
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Clouds: every format gives the same points, and no bytes make a reader panic.
+
+use std::io::Write;
+use std::path::Path;
+
+use nisp_data::Cloud;
+use nisp_data::cloud::{LengthUnit, Surface};
+use proptest::prelude::*;
+
+const POINTS: [[f64; 3]; 3] = [[0.5, -1.25, 2.0], [0.0, 4.0, -8.0], [1.0, 2.0, 3.0]];
+
+fn read(name: &str, bytes: &[u8]) -> Cloud {
+    Cloud::parse(Path::new(name), bytes).unwrap()
+}
+
+fn refusal(name: &str, bytes: &[u8]) -> String {
+    let message = Cloud::parse(Path::new(name), bytes).unwrap_err().to_string();
+    assert!(!message.contains('\n'), "{message}");
+    message
+}
+
+fn flat() -> impl Iterator<Item = f64> {
+    POINTS.into_iter().flatten()
+}
+
+fn ply(format: &str, body: &[u8]) -> Vec<u8> {
+    let mut out = format!(
+        "ply\nformat {format} 1.0\ncomment from a camera\nelement vertex 3\nproperty float x\nproperty uchar red\n\
+         property double y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+    )
+    .into_bytes();
+    out.extend(body);
+    out
+}
+
+#[test]
+fn ply_of_all_kinds() {
+    let mut ascii = Vec::new();
+    let (mut little, mut big) = (Vec::new(), Vec::new());
+    for [x, y, z] in POINTS {
+        writeln!(ascii, "{x} 7 {y} {z}").unwrap();
+        little.extend(
+            (x as f32).to_le_bytes().into_iter().chain([7]).chain(y.to_le_bytes()).chain((z as f32).to_le_bytes()),
+        );
+        big.extend(
+            (x as f32).to_be_bytes().into_iter().chain([7]).chain(y.to_be_bytes()).chain((z as f32).to_be_bytes()),
+        );
+    }
+    writeln!(ascii, "3 0 1 2").unwrap();
+    little.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
+    big.extend([3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2]);
+    for (format, body) in [("ascii", ascii), ("binary_little_endian", little), ("binary_big_endian", big)] {
+        assert_eq!(read("a.ply", &ply(format, &body)).points, POINTS, "{format}");
+    }
+    assert!(refusal("a.ply", &ply("binary_little_endian", &[1, 2, 3])).contains("not a readable PLY"));
+    assert!(
+        refusal(
+            "a.ply",
+            b"ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n1 2\n"
+        )
+        .contains("no property `z`")
+    );
+}
+
+#[test]
+fn pcd_ascii_and_binary() {
+    let head = |data: &str| {
+        format!(
+            "# .PCD v0.7\nVERSION 0.7\nFIELDS rgb x y z\nSIZE 4 4 8 4\nTYPE U F F F\nCOUNT 1 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA {data}\n"
+        )
+    };
+    let mut ascii = head("ascii").into_bytes();
+    let mut binary = head("binary").into_bytes();
+    for [x, y, z] in POINTS {
+        writeln!(ascii, "255 {x} {y} {z}").unwrap();
+        binary.extend(
+            [1, 2, 3, 4]
+                .into_iter()
+                .chain((x as f32).to_le_bytes())
+                .chain(y.to_le_bytes())
+                .chain((z as f32).to_le_bytes()),
+        );
+    }
+    assert_eq!(read("a.pcd", &ascii).points, POINTS);
+    assert_eq!(read("a.pcd", &binary).points, POINTS);
+    assert!(refusal("a.pcd", &binary[..binary.len() - 4]).contains("ends after 2 of 3 points"));
+    assert!(refusal("a.pcd", head("binary_compressed").as_bytes()).contains("save it as binary or ascii"));
+}
+
+#[test]
+fn text_with_and_without_header() {
+    assert_eq!(read("a.xyz", b"# frame 1\n0.5 -1.25 2 99\n0\t4\t-8 1\n\n1 2 3 1\n").points, POINTS);
+    assert_eq!(read("a.csv", b"z_m,x_m,y_m\n2,0.5,-1.25\n-8,0,4\n3,1,2\n").points, POINTS);
+    let holes = read("a.csv", b"x,y,z\n1,2,nan\n1,2,3\ninf,0,0\n");
+    assert_eq!(holes.points, [[1.0, 2.0, 3.0]]);
+    assert_eq!(holes.warnings, ["a.csv: 2 of 3 points were not finite and left out"]);
+    assert!(refusal("a.csv", b"x,y\n1,2\n3,4\n").contains("no column for `z`"));
+    assert!(refusal("a.xyz", b"1 2 3\n1 2\n").contains("line 2: no number for z"));
+    assert!(refusal("a.xyz", b"nan nan nan\n").contains("none of the 1 points is finite"));
+    assert!(refusal("a.xyz", b"# nothing\n").contains("no points"));
+    assert!(refusal("a.xyz", b"").contains("empty"));
+    assert!(refusal("a.docx", b"hello").contains("unknown kind of file `.docx`"));
+}
+
+#[test]
+fn numpy_arrays_in_both_orders() {
+    use npyz::WriterBuilder;
+    let write = |order: npyz::Order, values: Vec<f32>| {
+        let mut bytes = Vec::new();
+        let options = npyz::WriteOptions::<f32>::new().default_dtype().shape(&[3, 3]).order(order);
+        let mut writer = options.writer(&mut bytes).begin_nd().unwrap();
+        writer.extend(values).unwrap();
+        writer.finish().unwrap();
+        bytes
+    };
+    let rows: Vec<f32> = flat().map(|value| value as f32).collect();
+    let columns = (0..9).map(|i| rows[(i % 3) * 3 + i / 3]).collect();
+    assert_eq!(read("a.npy", &write(npyz::Order::C, rows.clone())).points, POINTS);
+    assert_eq!(read("a.npy", &write(npyz::Order::Fortran, columns)).points, POINTS);
+    assert!(refusal("a.npy", &write(npyz::Order::C, rows)[..140]).contains("not a readable NumPy file"));
+
+    let mut archive = npyz::npz::NpzWriter::new(std::io::Cursor::new(Vec::new()));
+    let mut options =
+        archive.array("cloud", Default::default()).unwrap().default_dtype().shape(&[3, 3]).begin_nd().unwrap();
+    options.extend(flat()).unwrap();
+    options.finish().unwrap();
+    let zipped = archive.zip_writer().finish().unwrap().into_inner();
+    assert_eq!(read("a.npz", &zipped).points, POINTS);
+}
+
+#[test]
+fn stl_ascii_and_binary() {
+    let ascii = b"solid a\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 2 0 0\nvertex 0 2 0\nendloop\nendfacet\nendsolid a\n";
+    let surface = Surface::parse(Path::new("a.stl"), ascii).unwrap();
+    assert_eq!((surface.triangles.len(), surface.area()), (1, 2.0));
+    let mut binary = vec![0; 80];
+    binary.extend(1u32.to_le_bytes());
+    for value in [0f32, 0.0, 1.0, 0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 0.0, 2.0, 0.0] {
+        binary.extend(value.to_le_bytes());
+    }
+    binary.extend([0, 0]);
+    assert_eq!(Surface::parse(Path::new("a.stl"), &binary).unwrap().area(), 2.0);
+    assert!(Surface::parse(Path::new("a.stl"), &binary[..100]).is_err());
+}
+
+#[test]
+fn millimetres_are_noticed() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/membrane/flower_1_cloud_2.ply");
+    let mut cloud = Cloud::read(root).unwrap();
+    assert_eq!(cloud.points.len(), 2601);
+    let (low, high) = ([-0.06, -0.04], [0.06, 0.04]);
+    cloud.require_near(&low, &high).unwrap();
+    cloud.points.iter_mut().flatten().for_each(|value| *value *= 1e3);
+    let message = cloud.require_near(&low, &high).unwrap_err().to_string();
+    assert!(message.contains("the domain 0.12 x 0.08 m: is the cloud in millimetres? give --unit mm"), "{message}");
+    cloud.convert_from("mm".parse::<LengthUnit>().unwrap());
+    cloud.require_near(&low, &high).unwrap();
+    cloud.points.iter_mut().for_each(|point| point[0] += 3.0);
+    assert!(cloud.require_near(&low, &high).unwrap_err().to_string().contains("another frame"));
+    assert!("furlong".parse::<LengthUnit>().is_err());
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    #[test]
+    fn garbage_never_panics(
+        start in proptest::sample::select(vec![
+            &b""[..], b"ply\nformat ascii 1.0\nelement vertex 2\n", b"ply\nformat binary_little_endian 1.0\n",
+            b"# .PCD v0.7\nFIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nPOINTS 2\nDATA binary\n", b"VERSION 0.7\n",
+            b"\x93NUMPY\x01\x00", b"PK\x03\x04", b"solid ",
+        ]),
+        rest in proptest::collection::vec(any::<u8>(), 0..300),
+        name in prop_oneof![Just("a.ply"), Just("a.pcd"), Just("a.npy"), Just("a.npz"), Just("a.csv"), Just("a.xyz")],
+    ) {
+        let bytes = [start, &rest].concat();
+        let _ = Cloud::parse(Path::new(name), &bytes);
+        let _ = Surface::parse(Path::new("a.stl"), &bytes);
+    }
+
+    #[test]
+    fn damaged_files_never_panic(at in 0usize..400, byte: u8, cut in 0usize..400) {
+        let whole = ply("ascii", b"0.5 7 -1.25 2\n0 7 4 -8\n1 7 2 3\n3 0 1 2\n");
+        let mut bytes = whole[..cut.min(whole.len())].to_vec();
+        if let Some(place) = bytes.get_mut(at) {
+            *place = byte;
+        }
+        let _ = Cloud::parse(Path::new("a.ply"), &bytes);
+    }
+}
