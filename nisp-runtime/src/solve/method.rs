@@ -39,7 +39,8 @@ pub(crate) const FAULTS_IN_A_ROW: u64 = 5;
 pub struct Step {
     /// Loss at the iterate after the step, with the terms that the method adds (weight prior).
     pub loss: f64,
-    /// Euclidean norm of the gradient at the iterate after the step.
+    /// Euclidean norm of the last gradient: at the iterate after the step, or before it for methods that have no need
+    /// of the gradient there yet.
     pub gradient_norm: f64,
     /// Estimate of how far the loss is above its minimum, from the method's quadratic model before the step (half
     /// the squared Newton decrement); methods without a model of curvature give none.

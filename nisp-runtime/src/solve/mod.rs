@@ -6,11 +6,23 @@
 
 pub mod adam;
 pub mod broyden;
+pub mod curvature;
+mod damping;
+mod dense;
+pub mod driver;
+pub mod empirical_bayes;
+pub mod evidence;
 pub mod fault;
+pub mod gauss_newton;
+mod judge;
 pub mod lbfgs;
 mod line_search;
+pub mod marquardt;
 pub mod method;
+mod normal;
 pub mod objective;
+pub mod posterior;
+pub mod prior;
 pub mod state;
 mod symmetric;
 mod vector;

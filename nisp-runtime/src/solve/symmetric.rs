@@ -110,8 +110,13 @@ impl Symmetric {
             let mut tiles = chunk.tiles.iter_mut();
             for group in chunk.groups.clone() {
                 let Some(tile) = tiles.nth(group) else { return };
-                for row in 0..TILE.min(self.len - group * TILE) {
-                    tile[row][row] = factor;
+                for (i, row) in tile.iter_mut().enumerate() {
+                    // The padding stays zero.
+                    row[i] = if group * TILE + i < self.len {
+                        factor
+                    } else {
+                        0.0
+                    };
                 }
             }
         }

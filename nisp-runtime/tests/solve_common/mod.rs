@@ -1,6 +1,8 @@
 //! Functions with known minima, shared by the tests of the solvers.
 #![allow(dead_code, reason = "each test binary uses its own part")]
 
+pub(crate) mod rows;
+
 use nisp_runtime::solve::fault::Fault;
 use nisp_runtime::solve::objective::Objective;
 

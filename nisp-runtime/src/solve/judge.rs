@@ -1,0 +1,139 @@
+//! Judges from the steps of a run whether it has converged, or will not.
+
+use super::driver::{Limits, Warning, WarningKind};
+use super::method::{Step, Verdict};
+
+/// What to do after a step.
+pub(crate) enum Judgement {
+    GoOn,
+    Converged,
+    GiveUp(Warning),
+}
+
+/// Steps that must agree before a run counts as converged.
+const AGREEING: u64 = 3;
+/// Steps that the decrease of the loss is measured over.
+const WINDOW: usize = 10;
+/// The same for methods without a model of curvature, whose steps are many and small.
+const LONG_WINDOW: usize = 200;
+
+/// What has been seen so far.
+pub(crate) struct Judge {
+    limits: Limits,
+    precision: &'static str,
+    epsilon: f64,
+    /// Losses of the last steps, in a ring.
+    losses: Vec<f64>,
+    seen: usize,
+    first_gradient: Option<f64>,
+    agreeing: u64,
+    best: f64,
+    since_best: u64,
+    /// Refused or exhausted steps in a row.
+    stuck: u64,
+}
+
+impl Judge {
+    pub(crate) fn new(limits: Limits, precision: &'static str, epsilon: f64) -> Self {
+        Self {
+            limits,
+            precision,
+            epsilon,
+            losses: Vec::new(),
+            seen: 0,
+            first_gradient: None,
+            agreeing: 0,
+            best: f64::INFINITY,
+            since_best: 0,
+            stuck: 0,
+        }
+    }
+
+    pub(crate) fn judge(&mut self, step: &Step) -> Judgement {
+        match step.verdict {
+            Verdict::Changed => self.forget(),
+            Verdict::Exhausted => return self.exhausted(step),
+            Verdict::Faulty(_) | Verdict::Refused => self.stuck += 1,
+            Verdict::Moved => return self.moved(step),
+        }
+        if self.stuck > self.limits.patience {
+            self.give_up()
+        } else {
+            Judgement::GoOn
+        }
+    }
+
+    /// The function has changed: what was seen is of no use.
+    fn forget(&mut self) {
+        (self.seen, self.agreeing, self.since_best, self.stuck) = (0, 0, 0, 0);
+        self.best = f64::INFINITY;
+        self.first_gradient = None;
+    }
+
+    /// The method sees no way on: that is convergence where rounding is all that is left.
+    fn exhausted(&mut self, step: &Step) -> Judgement {
+        self.stuck += 1;
+        let rounding = 1e3 * self.epsilon;
+        let left = step.decrement.unwrap_or(0.0);
+        if left <= self.limits.tolerance.max(rounding) * step.loss {
+            Judgement::Converged
+        } else if self.stuck < 3 {
+            Judgement::GoOn
+        } else {
+            self.give_up()
+        }
+    }
+
+    fn moved(&mut self, step: &Step) -> Judgement {
+        self.stuck = 0;
+        let tolerance = self.limits.tolerance;
+        let window = if step.decrement.is_some() {
+            WINDOW
+        } else {
+            LONG_WINDOW
+        };
+        self.losses.resize(window, f64::INFINITY);
+        let earlier = std::mem::replace(&mut self.losses[self.seen % window], step.loss);
+        self.seen += 1;
+        let first_gradient = *self.first_gradient.get_or_insert(step.gradient_norm);
+        let flat = self.seen > window && earlier - step.loss <= tolerance * step.loss;
+        let close = match step.decrement {
+            Some(decrement) => decrement <= tolerance * step.loss,
+            // Without curvature, a gradient that has all but vanished must do.
+            None => step.gradient_norm <= tolerance.sqrt() * first_gradient,
+        };
+        self.agreeing = if flat && close { self.agreeing + 1 } else { 0 };
+        if step.loss == 0.0 || self.agreeing >= AGREEING {
+            return Judgement::Converged;
+        }
+        if step.loss < self.best * (1.0 - tolerance) {
+            (self.best, self.since_best) = (step.loss, 0);
+        } else {
+            self.since_best += 1;
+        }
+        let patience = self
+            .limits
+            .patience
+            .saturating_mul(if step.decrement.is_some() { 1 } else { 10 });
+        if self.since_best > patience {
+            self.give_up()
+        } else {
+            Judgement::GoOn
+        }
+    }
+
+    fn give_up(&self) -> Judgement {
+        let (kind, message) = if self.precision == "f32" {
+            let message = "the loss no longer falls: the accuracy of f32 is reached; go on in f64";
+            (WarningKind::SinglePrecision, message)
+        } else {
+            let message = "the loss no longer falls, but the gradient is not small; try another optimizer or seed, \
+                a wider network, or weights of the terms closer to each other";
+            (WarningKind::Stagnation, message)
+        };
+        Judgement::GiveUp(Warning {
+            kind,
+            message: message.into(),
+        })
+    }
+}
