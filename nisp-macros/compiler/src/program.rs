@@ -69,3 +69,75 @@ pub enum Slot {
     /// Weights of an affine unit, one per coordinate.
     Weight,
 }
+
+impl Op {
+    /// The values it reads.
+    pub fn operands(&self) -> Vec<Value> {
+        match *self {
+            Self::Input(..) | Self::Constant(_) => Vec::new(),
+            Self::Neg(a) | Self::Call(_, a) => vec![a],
+            Self::Add(a, b) | Self::Sub(a, b) | Self::Mul(a, b) | Self::Div(a, b) => vec![a, b],
+            Self::Min(a, b) | Self::Max(a, b) => vec![a, b],
+            Self::MulAdd(a, b, c) | Self::MulSub(a, b, c) | Self::NegMulAdd(a, b, c) => vec![a, b, c],
+        }
+    }
+}
+
+impl Program {
+    /// The outputs in double precision; a structural zero is zero.
+    pub fn evaluate(&self, input: impl Fn(Slot, usize) -> f64) -> Vec<f64> {
+        let mut values: Vec<f64> = Vec::with_capacity(self.ops.len());
+        for op in &self.ops {
+            let value = match *op {
+                Op::Input(slot, index) => input(slot, index),
+                Op::Constant(value) => value,
+                Op::Add(a, b) => values[a] + values[b],
+                Op::Sub(a, b) => values[a] - values[b],
+                Op::Mul(a, b) => values[a] * values[b],
+                Op::Div(a, b) => values[a] / values[b],
+                Op::Neg(a) => -values[a],
+                Op::MulAdd(a, b, c) => values[a].mul_add(values[b], values[c]),
+                Op::MulSub(a, b, c) => values[a].mul_add(values[b], -values[c]),
+                Op::NegMulAdd(a, b, c) => (-values[a]).mul_add(values[b], values[c]),
+                Op::Min(a, b) => values[a].min(values[b]),
+                Op::Max(a, b) => values[a].max(values[b]),
+                Op::Call(function, a) => crate::symbolic::function::value(function, values[a]),
+            };
+            values.push(value);
+        }
+        self.outputs.iter().map(|output| output.map_or(0.0, |value| values[value])).collect()
+    }
+
+    /// For each operation, whether it depends on scalars ([`Slot::Parameter`]) and literals only: such operations
+    /// have one value for all points.
+    pub fn uniform(&self) -> Vec<bool> {
+        let mut uniform: Vec<bool> = Vec::with_capacity(self.ops.len());
+        for op in &self.ops {
+            let value = match op {
+                Op::Input(slot, _) => *slot == Slot::Parameter,
+                other => other.operands().iter().all(|&operand| uniform[operand]),
+            };
+            uniform.push(value);
+        }
+        uniform
+    }
+
+    /// Number of operations per point: neither inputs and literals nor what is the same for all points.
+    pub fn operations(&self) -> usize {
+        self.arithmetic().count()
+    }
+
+    /// Floating-point operations per point: a fused multiply-add counts two, an elementary function one.
+    pub fn flops(&self) -> usize {
+        let cost = |op: &Op| match op {
+            Op::MulAdd(..) | Op::MulSub(..) | Op::NegMulAdd(..) => 2,
+            _ => 1,
+        };
+        self.arithmetic().map(cost).sum()
+    }
+
+    fn arithmetic(&self) -> impl Iterator<Item = &Op> {
+        let varying = self.ops.iter().zip(self.uniform()).filter(|(_, uniform)| !uniform);
+        varying.map(|(op, _)| op).filter(|op| !matches!(op, Op::Input(..) | Op::Constant(_)))
+    }
+}

@@ -3,11 +3,58 @@
 //! - Input: a [`Model`](crate::model::Model).
 //! - Output: a [`Plan`].
 
+mod collapse;
+mod group;
+mod rows;
+mod scene;
+mod schedule;
+mod sets;
+mod skipped;
+
+pub use self::sets::rule_programs;
+
 use crate::channels::{ChannelSet, Operator};
 use crate::model::Loss;
+use crate::model::Model;
 use crate::program::Program;
 use crate::rational::Rational;
 use crate::unit::Dimension;
+
+/// The highest order of a derivative that a plan supports.
+pub const MAX_ORDER: u32 = 6;
+
+/// Why a model has no plan.
+#[derive(Clone, Debug)]
+pub struct PlanError {
+    /// The user's token, where one is to blame.
+    pub span: Option<proc_macro2::Span>,
+    /// What is wrong.
+    pub message: String,
+}
+
+/// Plans every scene of a model.
+///
+/// # Errors
+/// One error per scene and group that cannot be planned: a derivative of too high an order, an expression that
+/// grows past bounds, a coefficient that outgrows exact arithmetic.
+pub fn build(model: &Model) -> Result<Plan, Vec<PlanError>> {
+    let mut sets = sets::Sets::default();
+    let mut errors = Vec::new();
+    let mut scenes = Vec::new();
+    for scene in &model.scenes {
+        match scene::build(model, scene, &mut sets) {
+            Ok(scene) => scenes.push(scene),
+            Err(mut more) => errors.append(&mut more),
+        }
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let sets = sets.finish();
+    let operators = sets.iter().flat_map(|set| &set.set.basis);
+    let scale_groups = collapse::scale_groups(operators, &collapse::dimension_classes(model));
+    Ok(Plan { sets, scenes, scale_groups })
+}
 
 /// Everything code generation needs, for all scenes.
 #[derive(Clone, Debug)]
@@ -130,8 +177,9 @@ pub enum RowKind {
     Residual,
     /// Wanted zero, up to measurement noise.
     Observation,
-    /// Rows are integrands; their weighted sum over the group is compared with a target. The program's target rows
-    /// are one program per row over slot Parameter only.
+    /// Rows are integrands; their weighted sum over the group is compared with a target: a program over slot Parameter
+    /// only, whose outputs are one target per row, then for each row the derivative of its target by each learned
+    /// parameter (row by row, in the order of [`ScenePlan::learned`]).
     Integral(Program),
     /// Rows are coordinates of a surface point, compared with a cloud; true for both directions.
     Chamfer(bool),

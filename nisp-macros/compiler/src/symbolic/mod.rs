@@ -1,1 +1,16 @@
-//! .
+//! Compiler stage 3: scalar expressions as a hash-consed graph.
+//!
+//! - Input: scalar expressions of the model.
+//! - Output: expressions in jets of the network's outputs, derivatives carried out, common parts shared.
+
+pub mod algebra;
+pub mod differentiate;
+pub mod exact;
+pub mod factor;
+pub mod function;
+pub mod graph;
+pub mod horner;
+pub mod lower;
+pub mod magnitude;
+pub mod polynomial;
+pub mod rewrite;

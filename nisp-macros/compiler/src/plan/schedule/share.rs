@@ -1,0 +1,202 @@
+//! Common parts of lists: pairs of factors or of terms that occur more than once are computed once.
+
+use std::collections::BTreeMap;
+
+use num_traits::{One, Signed, Zero};
+
+use super::flat::{Flat, Item};
+use crate::rational::Rational;
+use crate::symbolic::exact;
+
+/// Pairs looked at in all rounds together; past this, what is left stays unshared.
+const WORK_LIMIT: usize = 20_000_000;
+
+/// A pair of terms up to a common factor: items, and the ratio of the second coefficient to the first.
+type TermPair = (usize, usize, Rational);
+
+/// Rewrites lists so that common parts become items of their own.
+pub(super) fn share(flat: &mut Flat, roots: &[Option<usize>]) {
+    let mut work = 0;
+    share_terms(flat, roots, &mut work);
+    group_coefficients(flat, roots);
+    share_factors(flat, roots, &mut work);
+}
+
+/// Items that the roots need, in ascending order.
+fn live(flat: &Flat, roots: &[Option<usize>]) -> Vec<usize> {
+    let mut found = vec![false; flat.items.len()];
+    let mut open: Vec<usize> = roots.iter().flatten().copied().collect();
+    while let Some(item) = open.pop() {
+        if !std::mem::replace(&mut found[item], true) {
+            open.extend(flat.items[item].operands());
+        }
+    }
+    (0..found.len()).filter(|&item| found[item]).collect()
+}
+
+/// Items whose value is needed as such: not only as an addend that a fused multiply-add absorbs.
+pub(super) fn valued(flat: &Flat, roots: &[Option<usize>]) -> Vec<bool> {
+    let mut valued = vec![false; flat.items.len()];
+    for item in live(flat, roots) {
+        match &flat.items[item] {
+            Item::Sum(_, terms) => {
+                for (term, _) in terms.iter().filter(|(_, coefficient)| !coefficient.abs().is_one()) {
+                    valued[*term] = true;
+                }
+            }
+            other => other.operands().into_iter().for_each(|operand| valued[operand] = true),
+        }
+    }
+    roots.iter().flatten().for_each(|&root| valued[root] = true);
+    valued
+}
+
+/// The most frequent entry that occurs at least twice; the smallest of equals.
+fn most_frequent<T: Ord + Clone>(mut entries: Vec<T>) -> Option<T> {
+    entries.sort_unstable();
+    let runs = entries.chunk_by(|a, b| a == b).filter(|run| run.len() > 1);
+    // `max_by_key` keeps the last of equals, so go backwards.
+    runs.rev().max_by_key(|run| run.len()).map(|run| run[0].clone())
+}
+
+fn share_factors(flat: &mut Flat, roots: &[Option<usize>], work: &mut usize) {
+    let mut valued = valued(flat, roots);
+    let live = live(flat, roots);
+    let mut products: Vec<usize> =
+        live.into_iter().filter(|&item| matches!(flat.items[item], Item::Product(_))).collect();
+    loop {
+        let mut pairs = Vec::new();
+        for &product in &products {
+            if let Item::Product(factors) = &flat.items[product]
+                && (factors.len() > 2 || valued[product])
+            {
+                factor_pairs(factors, &mut pairs);
+            }
+        }
+        *work += pairs.len();
+        if *work > WORK_LIMIT {
+            return;
+        }
+        let Some((a, b)) = most_frequent(pairs) else { return };
+        let pair = flat.intern(Item::Product(vec![a, b]));
+        valued.resize(flat.items.len(), true);
+        valued[pair] = true;
+        for &product in &products {
+            if let Item::Product(factors) = &mut flat.items[product]
+                && (factors.len() > 2 || valued[product])
+                && product != pair
+            {
+                replace_factors(factors, a, b, pair);
+            }
+        }
+        if !products.contains(&pair) {
+            products.push(pair);
+        }
+    }
+}
+
+/// Pairs of factors in a sorted list, each as often as it fits in without overlap.
+fn factor_pairs(factors: &[usize], pairs: &mut Vec<(usize, usize)>) {
+    let powers: Vec<(usize, usize)> = factors.chunk_by(|a, b| a == b).map(|run| (run[0], run.len())).collect();
+    for (i, &(a, m)) in powers.iter().enumerate() {
+        pairs.extend((0..m / 2).map(|_| (a, a)));
+        for &(b, n) in &powers[i + 1..] {
+            pairs.extend((0..m.min(n)).map(|_| (a, b)));
+        }
+    }
+}
+
+fn replace_factors(factors: &mut Vec<usize>, a: usize, b: usize, pair: usize) {
+    while factors.len() > 1 {
+        let Some(first) = factors.iter().position(|&f| f == a) else { break };
+        let Some(second) = (0..factors.len()).find(|&i| i != first && factors[i] == b) else { break };
+        factors.remove(first.max(second));
+        factors.remove(first.min(second));
+        factors.push(pair);
+    }
+    factors.sort_unstable();
+}
+
+fn share_terms(flat: &mut Flat, roots: &[Option<usize>], work: &mut usize) {
+    let live = live(flat, roots);
+    let mut sums: Vec<usize> = live.into_iter().filter(|&item| matches!(flat.items[item], Item::Sum(..))).collect();
+    loop {
+        let mut pairs: Vec<TermPair> = Vec::new();
+        for &sum in &sums {
+            if let Item::Sum(_, terms) = &flat.items[sum] {
+                term_pairs(terms, &mut pairs);
+            }
+        }
+        *work += 4 * pairs.len();
+        if *work > WORK_LIMIT {
+            return;
+        }
+        let Some((a, b, factor)) = most_frequent(pairs) else { return };
+        let pair = flat.intern(Item::Sum(Rational::zero(), vec![(a, Rational::one()), (b, factor)]));
+        for &sum in &sums {
+            if let Item::Sum(constant, terms) = &mut flat.items[sum]
+                && (terms.len() > 2 || !constant.is_zero() || sum != pair)
+            {
+                replace_terms(terms, a, b, factor, pair);
+            }
+        }
+        if !sums.contains(&pair) {
+            sums.push(pair);
+        }
+    }
+}
+
+fn term_pairs(terms: &[(usize, Rational)], pairs: &mut Vec<TermPair>) {
+    for (i, &(a, first)) in terms.iter().enumerate() {
+        for &(b, second) in &terms[i + 1..] {
+            if let Ok(factor) = exact::invert(first).and_then(|inverse| exact::mul(second, inverse)) {
+                pairs.push((a, b, factor));
+            }
+        }
+    }
+}
+
+fn replace_terms(terms: &mut Vec<(usize, Rational)>, a: usize, b: usize, factor: Rational, pair: usize) {
+    let Some(first) = terms.iter().position(|&(item, _)| item == a) else { return };
+    let Some(second) = terms.iter().position(|&(item, _)| item == b) else { return };
+    let coefficient = terms[first].1;
+    if exact::mul(coefficient, factor) != Ok(terms[second].1) {
+        return;
+    }
+    terms.remove(first.max(second));
+    terms.remove(first.min(second));
+    terms.push((pair, coefficient));
+    terms.sort_unstable();
+}
+
+/// Terms of one sum with the same coefficient, other than one, are added before they are multiplied.
+fn group_coefficients(flat: &mut Flat, roots: &[Option<usize>]) {
+    for sum in live(flat, roots) {
+        let Item::Sum(constant, terms) = flat.items[sum].clone() else { continue };
+        let mut classes: BTreeMap<Rational, Vec<(usize, Rational)>> = BTreeMap::new();
+        for &(item, coefficient) in &terms {
+            classes.entry(coefficient.abs()).or_default().push((item, coefficient.signum()));
+        }
+        let negative = terms.iter().all(|(_, coefficient)| coefficient.is_negative());
+        let scaled = classes.keys().all(|size| !size.is_one());
+        if classes.len() == 1 && constant.is_zero() && (negative || scaled) && terms.len() > 1 {
+            let size = terms[0].1;
+            let inner = terms.iter().map(|&(item, c)| (item, c / size)).collect();
+            let inner = flat.intern(Item::Sum(Rational::zero(), inner));
+            flat.items[sum] = Item::Sum(constant, vec![(inner, size)]);
+            continue;
+        }
+        let mut grouped = Vec::new();
+        for (size, class) in classes {
+            if size.is_one() || class.len() == 1 {
+                grouped.extend(class.into_iter().map(|(item, sign)| (item, sign * size)));
+            } else {
+                let sign = class[0].1;
+                let inner = class.into_iter().map(|(item, s)| (item, s * sign)).collect();
+                grouped.push((flat.intern(Item::Sum(Rational::zero(), inner)), sign * size));
+            }
+        }
+        grouped.sort_unstable();
+        flat.items[sum] = Item::Sum(constant, grouped);
+    }
+}

@@ -1,0 +1,65 @@
+//! Common factors of a sum's terms are pulled out: `a b c + a d e` becomes `a (b c + d e)`.
+
+use std::collections::BTreeMap;
+
+use num_traits::{One, Signed, Zero};
+
+use super::graph::{Graph, Id, Node};
+use super::rewrite::rewrite;
+use crate::rational::Rational;
+
+/// A base with the sign of its exponent: `1/d` and `d` are different factors.
+type Key = (Id, bool);
+
+/// Pulls common factors out of every sum below `roots`.
+pub fn factor(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
+    rewrite(graph, roots, factor_sum)
+}
+
+fn factor_sum(graph: &mut Graph, id: Id) -> Id {
+    let Node::Sum(constant, terms) = graph.node(id).clone() else { return id };
+    let Some((base, positive)) = most_frequent(graph, &terms) else { return id };
+    let matching = |e: &Rational| e.is_integer() && e.is_positive() == positive;
+    let exponent = |graph: &Graph, term: Id| exponent_of(graph, term, base).filter(matching);
+    let (with, without): (Vec<_>, Vec<_>) = terms.into_iter().partition(|&(t, _)| exponent(graph, t).is_some());
+    let exponents = with.iter().filter_map(|&(term, _)| exponent(graph, term));
+    let common = exponents.min_by_key(Signed::abs).unwrap_or_else(Rational::one);
+    let mut inner = Vec::new();
+    for (term, coefficient) in with {
+        let rest = graph.product(&[(term, Rational::one()), (base, -common)]);
+        inner.push((coefficient, rest));
+    }
+    let inner = graph.linear(&inner);
+    let inner = factor_sum(graph, inner);
+    let pulled = graph.product(&[(base, common), (inner, Rational::one())]);
+    if without.is_empty() && constant.is_zero() {
+        return pulled;
+    }
+    let constant = graph.number(constant);
+    let rest: Vec<_> = without.into_iter().map(|(t, c)| (c, t)).chain([(Rational::one(), constant)]).collect();
+    let rest = graph.linear(&rest);
+    let rest = factor_sum(graph, rest);
+    graph.add(&[pulled, rest])
+}
+
+fn exponent_of(graph: &Graph, term: Id, base: Id) -> Option<Rational> {
+    match graph.node(term) {
+        Node::Product(factors) => factors.iter().find(|(b, _)| *b == base).map(|&(_, e)| e),
+        _ => (term == base).then(Rational::one),
+    }
+}
+
+/// The factor that most terms share, if at least two do; the first of equals. A term by itself counts as a factor
+/// only of products: `a + a b` stays as it is unless another product has `a`.
+fn most_frequent(graph: &Graph, terms: &[(Id, Rational)]) -> Option<Key> {
+    let mut counts: BTreeMap<Key, usize> = BTreeMap::new();
+    for (term, _) in terms {
+        if let Node::Product(factors) = graph.node(*term) {
+            for (base, exponent) in factors.iter().filter(|(_, e)| e.is_integer()) {
+                *counts.entry((*base, exponent.is_positive())).or_insert(0) += 1;
+            }
+        }
+    }
+    let shared = counts.into_iter().filter(|&(_, count)| count > 1);
+    shared.max_by_key(|&((base, _), count)| (count, usize::MAX - base)).map(|(key, _)| key)
+}
