@@ -1,1 +1,19 @@
-//! Recover unknown sources from noisy measurements and a governing equation checked when the program compiles.
+//! Recover unknown sources from noisy measurements and a governing equation that is checked when the program compiles.
+//!
+//! Write the equation in [`pde!`]; bind points and data to one of its scenes; solve; read the source back.
+
+pub use nisp_macros::pde;
+pub use nisp_runtime::kernel::{Scene, SceneRef, scene};
+pub use nisp_runtime::problem::{BindError, Points, Problem};
+pub use nisp_runtime::{network, real, schema, simd, solve};
+
+/// What emitted code refers to; not for direct use.
+#[doc(hidden)]
+pub mod __private {
+    pub use nisp_runtime::functions;
+    pub use nisp_runtime::kernel::{Compiled, GroupKernel, Residuals, Rules, scene};
+    pub use nisp_runtime::real::Real;
+    pub use nisp_runtime::residual::{Lane, Sink};
+    pub use nisp_runtime::schema;
+    pub use nisp_runtime::simd::Simd;
+}

@@ -3,9 +3,17 @@
 //! Data flows one way: points, channels through the network, residuals, loss, step, report.
 
 pub mod aligned;
+pub mod engine;
+pub mod functions;
 pub mod gemm;
+pub mod kernel;
+pub mod layer;
+pub mod network;
 pub mod peak;
+pub mod problem;
 pub mod real;
+pub mod residual;
+pub mod schema;
 pub mod simd;
 pub mod solve;
 pub mod tanh;

@@ -22,3 +22,38 @@ pub mod rational;
 pub mod symbolic;
 pub mod syntax;
 pub mod unit;
+
+mod outputs;
+
+use proc_macro2::TokenStream;
+
+/// Compiles a `pde!` invocation to the module that replaces it, or to every error found in it.
+pub fn compile(tokens: TokenStream) -> TokenStream {
+    let mut errors = error::Errors::new();
+    let module = syntax::parse(tokens, &mut errors);
+    let checked = module.and_then(|module| model::check(&module, &mut errors));
+    let Some(mut model) = checked else { return errors.into_compile_errors() };
+    if !errors.is_empty() {
+        let mut tokens = errors.into_compile_errors();
+        tokens.extend(code::skeleton(&model));
+        return tokens;
+    }
+    match plan_with_outputs(&mut model) {
+        Ok(plan) => code::emit(&model, &plan),
+        Err(faults) => {
+            for fault in faults {
+                errors.push(fault.span.unwrap_or(model.name.span), fault.message);
+            }
+            let mut tokens = errors.into_compile_errors();
+            tokens.extend(code::skeleton(&model));
+            tokens
+        }
+    }
+}
+
+/// Plans a model twice: once to see which fields have a head, once with the group that reads them out.
+fn plan_with_outputs(model: &mut model::Model) -> Result<plan::Plan, Vec<plan::PlanError>> {
+    let first = plan::build(model)?;
+    outputs::append(model, &first);
+    plan::build(model)
+}

@@ -1,0 +1,77 @@
+//! Residual programs of a group in a scene.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use super::lower::{Dialect, Frame, lower};
+use super::residuals_type;
+use crate::model::{Model, Scene};
+use crate::plan::{GroupPlan, RowKind};
+use crate::program::{Program, Slot};
+
+/// The type that holds the programs, and its implementation of `Residuals`.
+pub(super) fn emit(model: &Model, scene: &Scene, group: &GroupPlan) -> TokenStream {
+    let declared = &model.groups[group.group];
+    let name = residuals_type(scene, declared);
+    let equations = group.terms.iter().map(|term| {
+        let term = &declared.terms[term.term];
+        let line = format!(" - `{}`: `{}`", term.name.text, term.equation);
+        quote!(#[doc = #line])
+    });
+    let title = format!(" Group `{}` of scene `{}`:", declared.name.text, scene.name.text);
+    let residual = points(&group.residual);
+    let adjoint = points(&group.adjoint);
+    let magnitude = points(&group.magnitude);
+    let target = target(group);
+    quote! {
+        #[doc = #title]
+        #(#equations)*
+        pub struct #name;
+        impl Residuals for #name {
+            #[inline(always)]
+            fn residual<V: Simd>(at: &Lane<'_, V>, out: &mut Sink<'_, V::Elem>) { #residual }
+            #[inline(always)]
+            fn adjoint<V: Simd>(at: &Lane<'_, V>, out: &mut Sink<'_, V::Elem>) { #adjoint }
+            #[inline(always)]
+            fn magnitude<V: Simd>(at: &Lane<'_, V>, out: &mut Sink<'_, V::Elem>) { #magnitude }
+            fn target(scalars: &[f64], rows: &mut [f64]) { #target }
+        }
+    }
+}
+
+/// A program over the points of a lane.
+fn points(program: &Program) -> TokenStream {
+    let read = |slot: Slot, index: usize| match slot {
+        Slot::Jet => quote!(at.jet(#index)),
+        Slot::Coordinate => quote!(at.coordinate(#index)),
+        Slot::Parameter => quote!(at.scalar(#index)),
+        Slot::Column => quote!(at.column(#index)),
+        _ => quote!(at.seed(#index)),
+    };
+    let frame = Frame {
+        read: &read,
+        parameters: quote!(at: &Lane<'_, V>),
+        arguments: quote!(at),
+        dialect: Dialect::Vector,
+    };
+    let (statements, outputs) = lower(program, &frame);
+    let indices = 0..outputs.len();
+    quote!(#statements #(out.put::<V>(#indices, #outputs);)*)
+}
+
+/// Targets of integral terms: written at the rows that they belong to.
+fn target(group: &GroupPlan) -> TokenStream {
+    let read = |_: Slot, index: usize| quote!(scalars[#index]);
+    let terms = group.terms.iter().filter_map(|term| match &term.kind {
+        RowKind::Integral(program) => Some((term, program)),
+        _ => None,
+    });
+    let blocks = terms.map(|(term, program)| {
+        let frame =
+            Frame { read: &read, parameters: quote!(), arguments: quote!(), dialect: Dialect::Scalar };
+        let (statements, outputs) = lower(program, &frame);
+        let indices = term.first..term.first + outputs.len();
+        quote!({ #statements #(rows[#indices] = #outputs;)* })
+    });
+    quote!(#(#blocks)*)
+}

@@ -1,0 +1,209 @@
+//! The schema of a scene: static data that the engine and `explain` read.
+
+use proc_macro2::TokenStream;
+use quote::quote;
+
+use crate::channels::{ChannelSet, Operator};
+use crate::model::{self, Model, Role};
+use crate::plan::{GroupPlan, Jet, Plan, RowKind, Scalar, ScenePlan, TermPlan};
+use crate::rational::Rational;
+use crate::symbolic::exact::to_f64;
+use crate::unit::{Dimension, Unit};
+
+/// The expression of a scene's schema.
+pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene) -> TokenStream {
+    let module = &model.name.text;
+    let name = &declared.name.text;
+    let docs = text(&declared.docs);
+    let coordinates = model.coordinates.iter().zip(&plan.scale_groups).map(|(coordinate, group)| {
+        let (name, unit) = (&coordinate.name.text, unit(&coordinate.unit));
+        quote!(schema::Coordinate { name: #name, unit: #unit, scale_group: #group })
+    });
+    let heads = scene.heads.iter().map(|&at| head(&model.fields[at]));
+    let scalars = scene.scalars.iter().map(|s| scalar(model, scene, declared, s));
+    let mut groups: Vec<TokenStream> = scene.groups.iter().map(|g| group(model, plan, scene, declared, g)).collect();
+    let outputs = groups.pop();
+    let skipped = &scene.skipped;
+    quote! {
+        schema::Scene {
+            module: #module,
+            name: #name,
+            docs: #docs,
+            coordinates: &[#(#coordinates),*],
+            heads: &[#(#heads),*],
+            scalars: &[#(#scalars),*],
+            groups: &[#(#groups),*],
+            outputs: #outputs,
+            skipped: &[#(#skipped),*],
+        }
+    }
+}
+
+/// Channels as people write them: `1`, `x`, `xx`, `xxx + xyy`.
+pub(super) fn channel_names(set: &ChannelSet, model: &Model) -> Vec<String> {
+    set.basis.iter().map(|operator| operator_name(operator, model)).collect()
+}
+
+fn operator_name(operator: &Operator, model: &Model) -> String {
+    let mut name = String::new();
+    for (at, (index, &coefficient)) in operator.terms().enumerate() {
+        let letters: String = index
+            .iter()
+            .zip(&model.coordinates)
+            .flat_map(|(&n, coordinate)| std::iter::repeat_n(coordinate.name.text.as_str(), n as usize))
+            .collect();
+        let letters = if letters.is_empty() { String::from("1") } else { letters };
+        if at > 0 {
+            name.push_str(" + ");
+        }
+        if coefficient != Rational::from_integer(1) {
+            name.push_str(&format!("{coefficient} "));
+        }
+        name.push_str(&letters);
+    }
+    name
+}
+
+fn head(field: &model::Field) -> TokenStream {
+    let (name, unit, docs) = (&field.name.text, unit(&field.unit), text(&field.docs));
+    let source = field.role == Role::Source;
+    let (lower, upper) = (optional(field.lower), optional(field.upper));
+    let transformed = field.lower.is_some() || field.upper.is_some() || field.hard.is_some();
+    quote! {
+        schema::Head {
+            name: #name, unit: #unit, source: #source, lower: #lower, upper: #upper,
+            transformed: #transformed, docs: #docs,
+        }
+    }
+}
+
+fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &Scalar) -> TokenStream {
+    match scalar {
+        Scalar::Parameter(at) => {
+            let parameter = &model.parameters[*at];
+            let (name, unit) = (&parameter.name.text, unit(&parameter.unit));
+            let default = optional(declared.fixed_parameters[*at].or(parameter.default));
+            let origin = if declared.learned[*at] {
+                let (lower, upper) = (optional(parameter.lower), optional(parameter.upper));
+                quote!(schema::Origin::Learned { start: #default, lower: #lower, upper: #upper })
+            } else {
+                quote!(schema::Origin::Given(#default))
+            };
+            quote!(schema::Scalar { name: #name, unit: #unit, origin: #origin })
+        }
+        Scalar::Literal(value, dimension) => {
+            let unit = si(dimension);
+            quote!(schema::Scalar { name: "", unit: #unit, origin: schema::Origin::Literal(#value) })
+        }
+        Scalar::FieldScale(field) => {
+            let unit = si(&model.fields[*field].unit.dimension);
+            let head = scene.heads.iter().position(|head| head == field).unwrap_or(0);
+            quote!(schema::Scalar { name: "", unit: #unit, origin: schema::Origin::HeadScale(#head) })
+        }
+        Scalar::SideScale(dimension, group, term, side) => {
+            let unit = si(dimension);
+            quote! {
+                schema::Scalar {
+                    name: "",
+                    unit: #unit,
+                    origin: schema::Origin::SideScale { group: #group, term: #term, side: #side },
+                }
+            }
+        }
+    }
+}
+
+fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene, group: &GroupPlan) -> TokenStream {
+    let source = &model.groups[group.group];
+    let (name, docs, paired) = (&source.name.text, text(&source.docs), source.paired);
+    let set = &plan.sets[group.hidden].set;
+    let channels = channel_names(set, model);
+    let order = set.order() as usize;
+    let dense = binomial(order + model.coordinates.len(), order);
+    let jets = group.jets.iter().map(|j| jet(model, scene, j));
+    let columns = group.columns.iter().map(|&at| {
+        let (name, unit) = (&source.columns[at].name.text, unit(&source.columns[at].unit));
+        quote!(schema::Column { name: #name, unit: #unit })
+    });
+    let terms = group.terms.iter().map(|t| term(declared, group, source, t));
+    let rows: usize = group.terms.iter().map(|t| t.rows).sum();
+    let flops = [group.residual.flops(), group.adjoint.flops()];
+    quote! {
+        schema::Group {
+            name: #name, docs: #docs, channels: &[#(#channels),*], order: #order, dense: #dense,
+            jets: &[#(#jets),*], columns: &[#(#columns),*], terms: &[#(#terms),*],
+            rows: #rows, paired: #paired, flops: [#(#flops),*],
+        }
+    }
+}
+
+fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {
+    let head = jet.head;
+    let field = &model.fields[scene.heads[head]].name.text;
+    let operator = operator_name(&jet.operator, model);
+    let name = if operator == "1" { field.clone() } else { format!("{field}_{}", operator.replace(" + ", &format!(" + {field}_"))) };
+    let degree = degree(&jet.operator, model.coordinates.len());
+    let site = jet.site;
+    let combination = jet.combination.iter().map(|(channel, coefficient)| {
+        let coefficient = to_f64(*coefficient);
+        quote!((#channel, #coefficient))
+    });
+    quote! {
+        schema::Jet {
+            head: #head, name: #name, degree: &[#(#degree),*], combination: &[#(#combination),*], site: #site,
+        }
+    }
+}
+
+/// Degree of an operator per coordinate. All terms of a collapsed operator have the same degree within a scale group,
+/// so that any of them stands for all.
+fn degree(operator: &Operator, coordinates: usize) -> Vec<u8> {
+    operator.terms().next().map_or_else(|| vec![0; coordinates], |(index, _)| index.iter().map(|&n| n as u8).collect())
+}
+
+fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan: &TermPlan) -> TokenStream {
+    let term = &source.terms[plan.term];
+    let (name, equation, latex, unit) = (&term.name.text, &term.equation, &term.latex, unit(&term.unit));
+    let kind = match plan.kind {
+        RowKind::Residual => quote!(schema::TermKind::Residual),
+        RowKind::Observation => quote!(schema::TermKind::Observation),
+        RowKind::Integral(_) => quote!(schema::TermKind::Integral),
+        RowKind::Chamfer(symmetric) => quote!(schema::TermKind::Chamfer { symmetric: #symmetric }),
+    };
+    let loss = match plan.loss {
+        model::Loss::Square => quote!(schema::Loss::Square),
+        model::Loss::Huber(at) => quote!(schema::Loss::Huber(#at)),
+        model::Loss::Welsch(at) => quote!(schema::Loss::Welsch(#at)),
+    };
+    let weight = declared.weights[group.group][plan.term];
+    let (first, rows) = (plan.first, plan.rows);
+    quote! {
+        schema::Term {
+            name: #name, equation: #equation, latex: #latex, unit: #unit, kind: #kind, loss: #loss,
+            weight: #weight, first: #first, rows: #rows,
+        }
+    }
+}
+
+/// A unit as the schema holds it.
+pub(super) fn unit(unit: &Unit) -> TokenStream {
+    let exponents = unit.dimension.0.iter().map(|&e| to_f64(e));
+    let (factor, text) = (unit.factor, &unit.text);
+    quote!(schema::Unit { exponents: [#(#exponents),*], factor: #factor, text: #text })
+}
+
+fn si(dimension: &Dimension) -> TokenStream {
+    unit(&Unit::si(dimension.clone()))
+}
+
+fn optional(value: Option<f64>) -> TokenStream {
+    value.map_or_else(|| quote!(None), |value| quote!(Some(#value)))
+}
+
+fn text(docs: &[String]) -> String {
+    docs.iter().map(|line| line.trim()).collect::<Vec<_>>().join("\n")
+}
+
+fn binomial(n: usize, k: usize) -> usize {
+    (1..=k).fold(1, |product, i| product * (n - k + i) / i)
+}

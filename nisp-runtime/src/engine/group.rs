@@ -1,0 +1,189 @@
+//! A point group bound to its points and data.
+
+use crate::kernel::GroupKernel;
+use crate::real::Real;
+use crate::schema;
+
+/// A group, its points and how its rows count. All quantities are in the engine's own units.
+pub struct BoundGroup<E: Real> {
+    pub(crate) kernel: Box<dyn GroupKernel<E>>,
+    pub(crate) schema: &'static schema::Group,
+    /// Number of points.
+    pub(crate) points: usize,
+    /// Network coordinates, `[point][coordinate]`.
+    pub(crate) network: Vec<E>,
+    /// Coordinates in the engine's units, `[coordinate][point]`.
+    pub(crate) coordinates: Vec<E>,
+    /// Data, `[column][point]`.
+    pub(crate) columns: Vec<E>,
+    /// How each term's rows count.
+    pub(crate) terms: Vec<BoundTerm<E>>,
+    /// Head channels to evaluate, sorted by channel.
+    pub(crate) outputs: Vec<Output>,
+    /// How jets are made of head channels.
+    pub(crate) jets: Vec<JetMap<E>>,
+    /// Points of a tile.
+    pub(crate) tile: usize,
+}
+
+/// A channel of a head.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Output {
+    pub(crate) channel: usize,
+    pub(crate) head: usize,
+}
+
+/// A jet in the engine's units: `offset + sum(factor * output)`.
+#[derive(Clone, Debug)]
+pub(crate) struct JetMap<E> {
+    pub(crate) offset: E,
+    pub(crate) parts: Vec<(usize, E)>,
+}
+
+/// How the rows of a term count.
+#[derive(Clone, Debug)]
+pub(crate) struct BoundTerm<E> {
+    pub(crate) schema: &'static schema::Term,
+    /// Rows are divided by this.
+    pub(crate) size: f64,
+    /// Rows are multiplied by this after the division.
+    pub(crate) factor: f64,
+    /// A weight for each point, or nothing for one.
+    pub(crate) point_weights: Option<Vec<E>>,
+    /// What rows are compared with, `[row][point]`, or nothing for zero.
+    pub(crate) targets: Option<Vec<E>>,
+}
+
+/// Affine maps from network outputs to the engine's units, and the coordinates' scales.
+#[derive(Clone, Debug)]
+pub struct Scaling {
+    /// For each coordinate, the middle of its domain in the engine's units.
+    pub centre: Vec<f64>,
+    /// For each coordinate, half the extent of its domain in the engine's units (shared within a scale group).
+    pub half: Vec<f64>,
+    /// For each head, what a network output of zero stands for.
+    pub offset: Vec<f64>,
+    /// For each head, what a change of one in the network's output stands for.
+    pub scale: Vec<f64>,
+}
+
+impl<E: Real> BoundGroup<E> {
+    /// Binds a group to its points (engine units, `[point][coordinate]`) and columns (`[column][point]`).
+    pub(crate) fn new(
+        kernel: Box<dyn GroupKernel<E>>,
+        schema: &'static schema::Group,
+        scaling: &Scaling,
+        coordinates: &[f64],
+        columns: &[Vec<f64>],
+    ) -> Self {
+        let inputs = scaling.half.len();
+        let points = coordinates.len() / inputs;
+        let network = coordinates
+            .iter()
+            .enumerate()
+            .map(|(at, x)| E::from_f64((x - scaling.centre[at % inputs]) / scaling.half[at % inputs]))
+            .collect();
+        let transposed =
+            (0..inputs).flat_map(|i| (0..points).map(move |p| E::from_f64(coordinates[p * inputs + i]))).collect();
+        let outputs = outputs_read(schema);
+        let jets = schema.jets.iter().map(|jet| JetMap::new(jet, &outputs, scaling)).collect();
+        let terms = schema
+            .terms
+            .iter()
+            .map(|schema| BoundTerm { schema, size: 1.0, factor: 1.0, point_weights: None, targets: None })
+            .collect();
+        Self {
+            kernel,
+            schema,
+            points,
+            network,
+            coordinates: transposed,
+            columns: columns.iter().flatten().map(|&x| E::from_f64(x)).collect(),
+            terms,
+            outputs,
+            jets,
+            tile: 1,
+        }
+    }
+}
+
+/// The head channels that a group's jets are made of, sorted by channel.
+fn outputs_read(group: &schema::Group) -> Vec<Output> {
+    let mut outputs: Vec<Output> = group
+        .jets
+        .iter()
+        .flat_map(|jet| jet.combination.iter().map(|&(channel, _)| Output { channel, head: jet.head }))
+        .collect();
+    outputs.sort_unstable();
+    outputs.dedup();
+    outputs
+}
+
+impl<E: Real> JetMap<E> {
+    fn new(jet: &schema::Jet, outputs: &[Output], scaling: &Scaling) -> Self {
+        let shrink: f64 = jet.degree.iter().zip(&scaling.half).map(|(&n, half)| half.powi(i32::from(n))).product();
+        let scale = scaling.scale[jet.head] / shrink;
+        let is_value = jet.degree.iter().all(|&n| n == 0);
+        let parts = jet
+            .combination
+            .iter()
+            .filter_map(|&(channel, coefficient)| {
+                let at = outputs.binary_search(&Output { channel, head: jet.head }).ok()?;
+                Some((at, E::from_f64(coefficient * scale)))
+            })
+            .collect();
+        Self { offset: E::from_f64(if is_value { scaling.offset[jet.head] } else { 0.0 }), parts }
+    }
+}
+
+impl<E: Real> BoundTerm<E> {
+    /// Value and derivative of a row, as counted, for a misfit `r` at a point of weight `m`: half the square of the
+    /// value is the row's share of the loss, robust or not.
+    #[inline(always)]
+    pub(crate) fn row(&self, r: E, m: E) -> (E, E) {
+        let scale = E::from_f64(self.factor / self.size) * m;
+        match self.schema.loss {
+            schema::Loss::Square => (scale * r, scale),
+            loss => {
+                let (value, slope) = robust(loss, r.to_f64() * m.to_f64() / self.size);
+                (E::from_f64(self.factor * value), E::from_f64(slope) * scale)
+            }
+        }
+    }
+}
+
+/// `sign(u) sqrt(2 rho(u))` and its derivative, so that half its square is the robust loss `rho`.
+fn robust(loss: schema::Loss, u: f64) -> (f64, f64) {
+    match loss {
+        schema::Loss::Huber(delta) if u.abs() > delta => {
+            let value = (2.0 * delta * (u.abs() - delta / 2.0)).sqrt();
+            (value.copysign(u), delta / value)
+        }
+        schema::Loss::Welsch(delta) => {
+            let x = (u / delta).powi(2) / 2.0;
+            let value = delta * (-2.0 * (-x).exp_m1()).sqrt();
+            if value == 0.0 { (u, 1.0) } else { (value.copysign(u), u.abs() * (-x).exp() / value) }
+        }
+        _ => (u, 1.0),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn robust_rows_square_to_their_loss() {
+        for u in [-7.0, -1.0, -1e-3, 0.0, 1e-9, 0.4, 2.0, 30.0_f64] {
+            let huber = if u.abs() <= 1.5 { u * u / 2.0 } else { 1.5 * (u.abs() - 0.75) };
+            let welsch = 4.0 * (1.0 - (-(u / 2.0).powi(2) / 2.0).exp());
+            for (loss, rho) in [(schema::Loss::Huber(1.5), huber), (schema::Loss::Welsch(2.0), welsch)] {
+                let (value, slope) = robust(loss, u);
+                assert!((value * value / 2.0 - rho).abs() <= 1e-12 * rho.max(1e-6), "{loss:?} {u}");
+                let h = 1e-6;
+                let difference = (robust(loss, u + h).0 - robust(loss, u - h).0) / (2.0 * h);
+                assert!((slope - difference).abs() < 1e-5, "{loss:?} {u}: {slope} against {difference}");
+            }
+        }
+    }
+}

@@ -1,0 +1,278 @@
+//! Rows, Jacobian rows and products with them: what second-order methods ask of the engine.
+//!
+//! Rows are ordered by group, term, row of the term, point. A Jacobian row is one adjoint pass of its tile, whose
+//! weight gradients are formed point by point instead of being summed.
+
+use rayon::prelude::*;
+
+use super::tile::{Network, Tile};
+use super::{Engine, Integral, TileRange, covers, weigh, with_buffers};
+use crate::schema::TermKind;
+use crate::solve::fault::Fault;
+
+/// Lets tiles write their own rows of a shared matrix.
+#[derive(Clone, Copy)]
+struct RowsOut {
+    values: *mut f64,
+    len: usize,
+    columns: usize,
+}
+
+// SAFETY: every row belongs to one point of one group, and every point to one tile; no two threads share a row.
+unsafe impl Send for RowsOut {}
+// SAFETY: as above.
+unsafe impl Sync for RowsOut {}
+
+impl RowsOut {
+    fn new(values: &mut [f64], columns: usize) -> Self {
+        Self { values: values.as_mut_ptr(), len: values.len(), columns }
+    }
+
+    /// # Safety
+    /// No other thread may touch this row at the same time.
+    #[expect(clippy::mut_from_ref, reason = "rows are disjoint, see the type")]
+    unsafe fn row(&self, row: usize) -> &mut [f64] {
+        assert!((row + 1) * self.columns <= self.len, "row outside the matrix");
+        // SAFETY: in bounds by the assertion; disjoint by the caller's promise.
+        unsafe { std::slice::from_raw_parts_mut(self.values.add(row * self.columns), self.columns) }
+    }
+}
+
+impl Engine<f64> {
+    /// Number of rows of all terms.
+    pub(crate) fn row_count(&self) -> usize {
+        self.row_starts().last().map_or(0, |&(_, _, end)| end)
+    }
+
+    /// For every term, in order of groups: group, first row, and the row after the last.
+    pub(crate) fn row_starts(&self) -> Vec<(usize, usize, usize)> {
+        let mut next = 0;
+        let mut starts = Vec::new();
+        for (at, group) in self.groups.iter().enumerate() {
+            for term in &group.terms {
+                let points = if term.schema.kind == TermKind::Integral { 1 } else { group.points };
+                let first = next;
+                next += term.schema.rows * points;
+                starts.push((at, first, next));
+            }
+        }
+        starts
+    }
+
+    /// First row of every group's row, by group and row within a point.
+    fn starts_by_group(&self) -> Vec<Vec<usize>> {
+        let mut next = 0;
+        self.groups
+            .iter()
+            .map(|group| {
+                let mut starts = vec![0; group.schema.rows];
+                for term in &group.terms {
+                    let points = if term.schema.kind == TermKind::Integral { 1 } else { group.points };
+                    for row in term.schema.first..term.schema.first + term.schema.rows {
+                        starts[row] = next;
+                        next += points;
+                    }
+                }
+                starts
+            })
+            .collect()
+    }
+
+    /// Overwrites `r` with all rows, and gives half the sum of their squares.
+    pub(crate) fn weighted_rows(&mut self, theta: &[f64], r: &mut [f64]) -> Result<f64, Fault> {
+        self.rows_and_jacobian(theta, r, None)
+    }
+
+    /// Overwrites `r` with all rows and `j` with their derivatives (row-major).
+    pub(crate) fn jacobian_rows(&mut self, theta: &[f64], r: &mut [f64], j: &mut [f64]) -> Result<f64, Fault> {
+        self.rows_and_jacobian(theta, r, Some(j))
+    }
+
+    fn rows_and_jacobian(&mut self, theta: &[f64], r: &mut [f64], j: Option<&mut [f64]>) -> Result<f64, Fault> {
+        self.set(theta);
+        self.integrate()?;
+        let starts = self.starts_by_group();
+        let rows = RowsOut::new(r, 1);
+        let jacobian = j.map(|j| RowsOut::new(j, self.layout.len));
+        let slopes: Vec<f64> = self.learned_slopes(theta);
+        let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
+        let (groups, buffers) = (&self.groups, &self.buffers);
+        self.chunks.par_iter_mut().for_each(|chunk| {
+            chunk.fault = None;
+            with_buffers(buffers, |buffers| {
+                let mut gradients = Vec::new();
+                let mut shares = vec![0.0; chunk.shares.len()];
+                for &TileRange { group, first, count } in &chunk.tiles {
+                    let tile = Tile { group: &groups[group], first, count };
+                    network.forward(&tile, buffers);
+                    let terms = tile.group.terms.len();
+                    if let Some((term, point)) = weigh(&network, &tile, buffers, &mut shares[..terms]) {
+                        let before: usize = groups[..group].iter().map(|g| g.terms.len()).sum();
+                        chunk.fault.get_or_insert((before + term, point));
+                    }
+                    let job = TileJob { network: &network, tile, starts: &starts[group], theta, slopes: &slopes };
+                    job.write_rows(buffers, rows);
+                    if let Some(jacobian) = jacobian {
+                        job.write_jacobian(buffers, &mut gradients, jacobian);
+                    }
+                }
+            });
+        });
+        if let Some((term, point)) = self.chunks.iter().find_map(|chunk| chunk.fault) {
+            return Err(Fault::residual(self.term_name(term), Some(point)));
+        }
+        for integral in self.integrals.clone() {
+            // SAFETY: the parallel section is over; this thread is alone.
+            unsafe {
+                self.integral_row(&integral, rows.row(starts[integral.group][integral.row]));
+                if let Some(jacobian) = jacobian {
+                    self.integral_jacobian(&integral, theta, jacobian.row(starts[integral.group][integral.row]));
+                }
+            }
+        }
+        let loss = r.iter().map(|x| x * x).sum::<f64>() / 2.0;
+        if loss.is_finite() { Ok(loss) } else { Err(Fault::residual("loss", None)) }
+    }
+
+    fn learned_slopes(&self, theta: &[f64]) -> Vec<f64> {
+        let learned = &theta[self.layout.learned.clone()];
+        self.learned.iter().zip(learned).map(|(learned, &theta)| learned.map.at(theta).1).collect()
+    }
+
+    fn integral_row(&self, integral: &Integral, out: &mut [f64]) {
+        let term = &self.groups[integral.group].terms[integral.term];
+        out[0] = integral.seed * term.size / term.factor;
+    }
+
+    /// The derivative of an integral term's row, by one summed adjoint over its group and, for what the target depends
+    /// on, by differences.
+    fn integral_jacobian(&self, integral: &Integral, theta: &[f64], out: &mut [f64]) {
+        let group = &self.groups[integral.group];
+        let term = &group.terms[integral.term];
+        let scale = term.factor / term.size;
+        let mut gradient = vec![0.0; self.layout.padded_len];
+        let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
+        with_buffers(&self.buffers, |buffers| {
+            for first in (0..group.points).step_by(group.tile) {
+                let tile = Tile { group, first, count: group.tile.min(group.points - first) };
+                network.forward(&tile, buffers);
+                let stride = tile.stride();
+                buffers.seeds[..group.schema.rows * stride].fill(0.0);
+                for p in 0..tile.count {
+                    let weight = term.point_weights.as_ref().map_or(1.0, |w| w[first + p]);
+                    buffers.seeds[integral.row * stride + p] = scale * weight;
+                }
+                network.adjoint(&tile, buffers, &mut gradient, false);
+            }
+        });
+        for (i, (slope, by_target)) in
+            self.learned_slopes(theta).iter().zip(self.target_slopes(integral)).enumerate()
+        {
+            let at = self.layout.learned_at + i;
+            gradient[at] = (gradient[at] - scale * by_target) * slope;
+        }
+        self.layout.pad_adjoint(theta, &gradient, out);
+    }
+
+    /// `out = J^T u` at `theta`.
+    pub(crate) fn transposed_product(&mut self, theta: &[f64], u: &[f64], out: &mut [f64]) -> Result<(), Fault> {
+        self.set(theta);
+        self.integrate()?;
+        let starts = self.starts_by_group();
+        let slopes = self.learned_slopes(theta);
+        let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
+        let (groups, buffers) = (&self.groups, &self.buffers);
+        self.chunks.par_iter_mut().for_each(|chunk| {
+            chunk.gradient.fill(0.0);
+            with_buffers(buffers, |buffers| {
+                for &TileRange { group, first, count } in &chunk.tiles {
+                    let tile = Tile { group: &groups[group], first, count };
+                    network.forward(&tile, buffers);
+                    let terms = tile.group.terms.len();
+                    weigh(&network, &tile, buffers, &mut chunk.shares[..terms]);
+                    let job = TileJob { network: &network, tile, starts: &starts[group], theta, slopes: &slopes };
+                    job.seed(buffers, u);
+                    network.adjoint(&tile, buffers, &mut chunk.gradient, false);
+                }
+            });
+        });
+        self.reduce();
+        let total = &mut self.chunks[0].gradient;
+        for (i, slope) in slopes.iter().enumerate() {
+            total[self.layout.learned_at + i] *= slope;
+        }
+        self.layout.pad_adjoint(theta, total, out);
+        let mut row = vec![0.0; self.layout.len];
+        for integral in &self.integrals {
+            self.integral_jacobian(integral, theta, &mut row);
+            let weight = u[starts[integral.group][integral.row]];
+            out.iter_mut().zip(&row).for_each(|(out, row)| *out += weight * row);
+        }
+        match out.iter().all(|x| x.is_finite()) {
+            true => Ok(()),
+            false => Err(Fault::gradient("gradient", None)),
+        }
+    }
+}
+
+/// One tile's part of the rows.
+struct TileJob<'a> {
+    network: &'a Network<'a, f64>,
+    tile: Tile<'a, f64>,
+    /// First row of each row of the group.
+    starts: &'a [usize],
+    theta: &'a [f64],
+    slopes: &'a [f64],
+}
+
+impl TileJob<'_> {
+    /// Rows of the group that are evaluated point by point.
+    fn pointwise(&self) -> impl Iterator<Item = usize> {
+        let terms = &self.tile.group.terms;
+        (0..self.tile.group.schema.rows)
+            .filter(|&row| terms.iter().any(|t| covers(t, row) && t.schema.kind != TermKind::Integral))
+    }
+
+    fn write_rows(&self, buffers: &super::Buffers<f64>, out: RowsOut) {
+        for row in self.pointwise() {
+            for p in 0..self.tile.count {
+                // SAFETY: this tile owns the rows of its points.
+                let to = unsafe { out.row(self.starts[row] + self.tile.first + p) };
+                to[0] = buffers.rows[row * self.tile.stride() + p];
+            }
+        }
+    }
+
+    fn write_jacobian(&self, buffers: &mut super::Buffers<f64>, gradients: &mut Vec<f64>, out: RowsOut) {
+        let stride = self.tile.stride();
+        let layout = self.network.layout;
+        for row in self.pointwise() {
+            buffers.seeds[..self.tile.group.schema.rows * stride].fill(0.0);
+            let (from, to) = (row * stride, row * stride + self.tile.count);
+            buffers.seeds[from..to].copy_from_slice(&buffers.row_slopes[from..to]);
+            gradients.clear();
+            gradients.resize(self.tile.count * layout.padded_len, 0.0);
+            self.network.adjoint(&self.tile, buffers, gradients, true);
+            for (p, gradient) in gradients.chunks_exact_mut(layout.padded_len).enumerate() {
+                for (i, slope) in self.slopes.iter().enumerate() {
+                    gradient[layout.learned_at + i] *= slope;
+                }
+                // SAFETY: this tile owns the rows of its points.
+                let row = unsafe { out.row(self.starts[row] + self.tile.first + p) };
+                layout.pad_adjoint(self.theta, gradient, row);
+            }
+        }
+    }
+
+    /// Seeds of a product `J^T u`.
+    fn seed(&self, buffers: &mut super::Buffers<f64>, u: &[f64]) {
+        let stride = self.tile.stride();
+        buffers.seeds[..self.tile.group.schema.rows * stride].fill(0.0);
+        for row in self.pointwise() {
+            for p in 0..self.tile.count {
+                let at = row * stride + p;
+                buffers.seeds[at] = buffers.row_slopes[at] * u[self.starts[row] + self.tile.first + p];
+            }
+        }
+    }
+}

@@ -1,0 +1,500 @@
+//! The engine: values, gradients and Jacobian rows of all groups, tile by tile, on all threads.
+//!
+//! Work is cut into a fixed number of chunks, whatever the number of threads; each chunk sums its own gradient and the
+//! chunks are added in a fixed tree. Results are therefore bitwise the same for any number of threads.
+
+mod group;
+mod heads;
+mod jacobian;
+mod objective;
+mod predict;
+mod tile;
+
+use std::sync::Mutex;
+
+use rayon::prelude::*;
+
+pub use group::{BoundGroup, Scaling};
+pub(crate) use group::BoundTerm;
+use tile::{Buffers, Extent, Network, Tile};
+
+use crate::aligned::AlignedVec;
+use crate::network::{Layout, Weights};
+use crate::real::Real;
+use crate::residual::Points;
+use crate::schema::TermKind;
+use crate::simd::Isa;
+use crate::solve::fault::Fault;
+use crate::solve::objective::Block;
+
+/// Most chunks that a step is cut into; more threads than this find no work.
+const CHUNKS: usize = 16;
+
+/// Bytes that the rows of a tile may take together: within the second-level cache of one core.
+const TILE_BYTES: usize = 640 << 10;
+
+/// A scene bound to points and data, ready to be evaluated at any parameters.
+pub struct Engine<E: Real> {
+    isa: Isa,
+    pub(crate) layout: Layout,
+    pub(crate) groups: Vec<BoundGroup<E>>,
+    weights: Weights<E>,
+    /// Scalars that programs read, in the engine's units; learned ones are refreshed from the parameters.
+    pub(crate) scalars: Vec<E>,
+    pub(crate) learned: Vec<Learned>,
+    chunks: Vec<Chunk<E>>,
+    buffers: Vec<Mutex<Buffers<E>>>,
+    /// Half the sum of squares of each term at the last evaluation, in the order of groups and terms.
+    pub(crate) shares: Vec<f64>,
+    /// Weighted sums of integral terms and their misfits.
+    integrals: Vec<Integral>,
+    blocks: Vec<Block>,
+}
+
+/// A learned scalar: its slot, and the map from its parameter to its value in the engine's units.
+#[derive(Clone, Debug)]
+pub(crate) struct Learned {
+    pub(crate) slot: usize,
+    pub(crate) map: LearnedMap,
+}
+
+/// How a learned scalar follows from its parameter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum LearnedMap {
+    /// `start * exp(theta)`: positive quantities.
+    Positive(f64),
+    /// `start + scale * theta`
+    Linear(f64, f64),
+    /// `lower + (upper - lower) / (1 + exp(-(theta + shift)))`
+    Between(f64, f64, f64),
+}
+
+impl LearnedMap {
+    /// Value and derivative.
+    pub(crate) fn at(self, theta: f64) -> (f64, f64) {
+        match self {
+            Self::Positive(start) => (start * theta.exp(), start * theta.exp()),
+            Self::Linear(start, scale) => (start + scale * theta, scale),
+            Self::Between(lower, upper, shift) => {
+                let s = 1.0 / (1.0 + (-(theta + shift)).exp());
+                (lower + (upper - lower) * s, (upper - lower) * s * (1.0 - s))
+            }
+        }
+    }
+}
+
+/// A share of a step: consecutive tiles, their gradient and their part of every term.
+struct Chunk<E: Real> {
+    tiles: Vec<TileRange>,
+    gradient: AlignedVec<E>,
+    shares: Vec<f64>,
+    fault: Option<(usize, usize)>,
+}
+
+#[derive(Clone, Copy)]
+struct TileRange {
+    group: usize,
+    first: usize,
+    count: usize,
+}
+
+/// State of an integral term's row between the forward pass and the adjoint.
+#[derive(Clone, Debug)]
+struct Integral {
+    group: usize,
+    row: usize,
+    term: usize,
+    /// Adjoint of the integral.
+    seed: f64,
+}
+
+impl<E: Real> Engine<E> {
+    /// An engine for `groups`, whose kernels, points and data are bound. `scalars` are in the engine's units.
+    pub(crate) fn new(
+        layout: Layout,
+        mut groups: Vec<BoundGroup<E>>,
+        scalars: Vec<E>,
+        learned: Vec<Learned>,
+    ) -> Self {
+        let isa = Isa::detect();
+        for group in &mut groups {
+            group.tile = tile_points::<E>(&layout, group.kernel.channels(), group.points);
+        }
+        let terms = groups.iter().map(|g| g.terms.len()).sum();
+        let chunks = cut(&groups)
+            .into_iter()
+            .map(|tiles| Chunk {
+                tiles,
+                gradient: AlignedVec::zeros(layout.padded_len),
+                shares: vec![0.0; terms],
+                fault: None,
+            })
+            .collect();
+        let extent = Extent::of(groups.iter());
+        let workers = rayon::current_num_threads() + 1;
+        let buffers = (0..workers).map(|_| Mutex::new(Buffers::new(&layout, extent))).collect();
+        let integrals = integrals(&groups);
+        let mut engine = Self {
+            isa,
+            weights: Weights::new(isa, &layout),
+            layout,
+            groups,
+            scalars,
+            learned,
+            chunks,
+            buffers,
+            shares: vec![0.0; terms],
+            integrals,
+            blocks: Vec::new(),
+        };
+        engine.blocks = engine.make_blocks();
+        engine
+    }
+
+    /// Number of parameters.
+    pub fn parameters(&self) -> usize {
+        self.layout.len
+    }
+
+    /// The instruction set in use.
+    pub fn isa(&self) -> Isa {
+        self.isa
+    }
+
+    /// The network's layout.
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Takes over parameters: weights are materialised and packed once, for all tiles.
+    pub(crate) fn set(&mut self, theta: &[E]) {
+        self.weights.set(self.isa, &self.layout, theta);
+        for (learned, &theta) in self.learned.iter().zip(&theta[self.layout.learned.clone()]) {
+            self.scalars[learned.slot] = E::from_f64(learned.map.at(theta.to_f64()).0);
+        }
+    }
+
+    /// The loss at `theta`.
+    ///
+    /// # Errors
+    /// A term that is not finite.
+    pub fn loss(&mut self, theta: &[E]) -> Result<f64, Fault> {
+        self.set(theta);
+        self.integrate()?;
+        self.run(false);
+        self.collect()
+    }
+
+    /// The loss at `theta`, and its gradient.
+    ///
+    /// # Errors
+    /// A term or a derivative that is not finite.
+    pub fn loss_and_gradient(&mut self, theta: &[E], gradient: &mut [E]) -> Result<f64, Fault> {
+        self.set(theta);
+        self.integrate()?;
+        self.run(true);
+        let loss = self.collect()?;
+        self.reduce();
+        let by_target = self.seeded_target_slopes();
+        let total = &mut self.chunks[0].gradient;
+        for (i, by_target) in by_target.into_iter().enumerate() {
+            total[self.layout.learned_at + i] -= E::from_f64(by_target);
+        }
+        for (i, learned) in self.learned.iter().enumerate() {
+            let slope = learned.map.at(theta[self.layout.learned.start + i].to_f64()).1;
+            total[self.layout.learned_at + i] *= E::from_f64(slope);
+        }
+        self.layout.pad_adjoint(theta, total, gradient);
+        match gradient.iter().all(|g| g.is_finite()) {
+            true => Ok(loss),
+            false => Err(Fault::gradient("gradient", None)),
+        }
+    }
+
+    /// Runs all chunks, forward only or with the adjoint.
+    fn run(&mut self, adjoint: bool) {
+        let network =
+            Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
+        let (groups, buffers, integrals) = (&self.groups, &self.buffers, &self.integrals);
+        let first_term: &[usize] = &first_terms(groups);
+        self.chunks.par_iter_mut().for_each(|chunk| {
+            with_buffers(buffers, |buffers| {
+                if adjoint {
+                    chunk.gradient.fill(E::ZERO);
+                }
+                chunk.shares.fill(0.0);
+                chunk.fault = None;
+                for range in &chunk.tiles {
+                    let group = &groups[range.group];
+                    let tile = Tile { group, first: range.first, count: range.count };
+                    network.forward(&tile, buffers);
+                    let shares = &mut chunk.shares[first_term[range.group]..][..group.terms.len()];
+                    let fault = weigh(&network, &tile, buffers, shares);
+                    if let (Some((term, point)), None) = (fault, chunk.fault) {
+                        chunk.fault = Some((first_term[range.group] + term, point));
+                    }
+                    if adjoint {
+                        seed_integrals(integrals, range.group, &tile, buffers);
+                        network.adjoint(&tile, buffers, &mut chunk.gradient, false);
+                    }
+                }
+            });
+        });
+    }
+
+    /// Adds up the chunks' shares of the loss.
+    fn collect(&mut self) -> Result<f64, Fault> {
+        for (term, share) in self.shares.iter_mut().enumerate() {
+            *share = self.chunks.iter().map(|chunk| chunk.shares[term]).sum();
+        }
+        if let Some((term, point)) = self.chunks.iter().find_map(|chunk| chunk.fault) {
+            return Err(Fault::residual(self.term_name(term), Some(point)));
+        }
+        let firsts = first_terms(&self.groups);
+        let mut integrals = 0.0;
+        for integral in &self.integrals {
+            let term = &self.groups[integral.group].terms[integral.term];
+            let misfit = integral.seed * term.size / term.factor;
+            self.shares[firsts[integral.group] + integral.term] += misfit * misfit / 2.0;
+            integrals += misfit * misfit / 2.0;
+        }
+        let loss: f64 = self.chunks.iter().flat_map(|chunk| &chunk.shares).sum::<f64>() + integrals;
+        if loss.is_finite() { Ok(loss) } else { Err(Fault::residual("loss", None)) }
+    }
+
+    /// Adds the chunks' gradients in a fixed tree into the first.
+    fn reduce(&mut self) {
+        let mut distance = 1;
+        while distance < self.chunks.len() {
+            self.chunks.par_chunks_mut(2 * distance).for_each(|pair| {
+                if pair.len() > distance {
+                    let (left, right) = pair.split_at_mut(distance);
+                    left[0].gradient.iter_mut().zip(right[0].gradient.iter()).for_each(|(a, &b)| *a += b);
+                }
+            });
+            distance *= 2;
+        }
+    }
+
+    /// What the targets of integral terms contribute to the gradient by the learned scalars, with a minus sign.
+    fn seeded_target_slopes(&self) -> Vec<f64> {
+        let mut total = vec![0.0; self.learned.len()];
+        for integral in &self.integrals {
+            let slopes = self.target_slopes(integral);
+            total.iter_mut().zip(slopes).for_each(|(total, slope)| *total += integral.seed * slope);
+        }
+        total
+    }
+
+    /// Derivatives of an integral's target by the learned scalars.
+    fn target_slopes(&self, integral: &Integral) -> Vec<f64> {
+        let kernel = &self.groups[integral.group].kernel;
+        let mut targets = vec![0.0; self.groups[integral.group].schema.rows];
+        let mut target = |scalars: &[f64]| {
+            kernel.target(scalars, &mut targets);
+            targets[integral.row]
+        };
+        let mut scalars: Vec<f64> = self.scalars.iter().map(|x| x.to_f64()).collect();
+        let mut slopes = Vec::with_capacity(self.learned.len());
+        for learned in &self.learned {
+            let value = scalars[learned.slot];
+            let step = 6e-6 * value.abs().max(f64::MIN_POSITIVE);
+            scalars[learned.slot] = value + step;
+            let above = target(&scalars);
+            scalars[learned.slot] = value - step;
+            let below = target(&scalars);
+            scalars[learned.slot] = value;
+            slopes.push((above - below) / (2.0 * step));
+        }
+        slopes
+    }
+
+    /// `group.term`, for messages.
+    pub(crate) fn term_name(&self, term: usize) -> String {
+        let mut first = 0;
+        for group in &self.groups {
+            if let Some(bound) = group.terms.get(term - first) {
+                return format!("{}.{}", group.schema.name, bound.schema.name);
+            }
+            first += group.terms.len();
+        }
+        String::from("loss")
+    }
+
+    /// Sums integral terms over their groups, ahead of the pass that needs their misfits.
+    fn integrate(&mut self) -> Result<(), Fault> {
+        for at in 0..self.integrals.len() {
+            let Integral { group, row, term, .. } = self.integrals[at];
+            let sum = self.integral(group, row);
+            let bound = &self.groups[group];
+            let scalars: Vec<f64> = self.scalars.iter().map(|x| x.to_f64()).collect();
+            let mut targets = vec![0.0; bound.schema.rows];
+            bound.kernel.target(&scalars, &mut targets);
+            let misfit = (sum - targets[row]) * bound.terms[term].factor / bound.terms[term].size;
+            if !misfit.is_finite() {
+                return Err(Fault::residual(bound.terms[term].schema.name, None));
+            }
+            self.integrals[at].seed = misfit * bound.terms[term].factor / bound.terms[term].size;
+        }
+        Ok(())
+    }
+
+    /// The weighted sum of one row over its group.
+    pub(crate) fn integral(&self, group: usize, row: usize) -> f64 {
+        let bound = &self.groups[group];
+        let weights = bound.terms.iter().find(|t| covers(t, row)).and_then(|t| t.point_weights.as_deref());
+        let mut sum = 0.0;
+        self.each_tile(group, |tile, buffers| {
+            let rows = &buffers.rows[row * tile.stride()..][..tile.count];
+            for (p, r) in rows.iter().enumerate() {
+                let weight = weights.map_or(1.0, |w| w[tile.first + p].to_f64());
+                sum += weight * r.to_f64();
+            }
+        });
+        sum
+    }
+}
+
+fn covers<E>(term: &BoundTerm<E>, row: usize) -> bool {
+    (term.schema.first..term.schema.first + term.schema.rows).contains(&row)
+}
+
+/// Lends a worker's buffers.
+fn with_buffers<E: Real, T>(buffers: &[Mutex<Buffers<E>>], work: impl FnOnce(&mut Buffers<E>) -> T) -> T {
+    let worker = rayon::current_thread_index().map_or(buffers.len() - 1, |at| at % buffers.len());
+    // A panic in another worker leaves scratch behind, nothing that could be torn.
+    let mut own = buffers[worker].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+    work(&mut own)
+}
+
+/// First term of each group, counted over all groups.
+fn first_terms<E: Real>(groups: &[BoundGroup<E>]) -> Vec<usize> {
+    groups
+        .iter()
+        .scan(0, |next, group| {
+            let first = *next;
+            *next += group.terms.len();
+            Some(first)
+        })
+        .collect()
+}
+
+/// Rows of a tile, their shares of the loss, and the seeds of the adjoint. Gives the first row that is not finite.
+fn weigh<E: Real>(
+    network: &Network<'_, E>,
+    tile: &Tile<'_, E>,
+    buffers: &mut Buffers<E>,
+    shares: &mut [f64],
+) -> Option<(usize, usize)> {
+    let stride = tile.stride();
+    let Buffers { jets, points, columns, rows, seeds, row_slopes, .. } = buffers;
+    let inputs = Points {
+        count: tile.count,
+        stride,
+        jets,
+        coordinates: points,
+        columns,
+        scalars: network.scalars,
+        seeds: &[],
+    };
+    tile.group.kernel.residual(network.isa, inputs, rows);
+    let mut fault = None;
+    for ((index, term), share) in tile.group.terms.iter().enumerate().zip(shares) {
+        if term.schema.kind == TermKind::Integral {
+            continue;
+        }
+        for row in term.schema.first..term.schema.first + term.schema.rows {
+            let values = &mut rows[row * stride..][..stride];
+            let (seeds, slopes) = (&mut seeds[row * stride..][..stride], &mut row_slopes[row * stride..][..stride]);
+            let sum = term.weigh(row, tile.first, tile.count, values, seeds, slopes);
+            *share += sum;
+            if !sum.is_finite() && fault.is_none() {
+                let point = values[..tile.count].iter().position(|x| !x.is_finite()).unwrap_or(0);
+                fault = Some((index, tile.first + point));
+            }
+        }
+    }
+    fault
+}
+
+impl<E: Real> BoundTerm<E> {
+    /// Replaces the raw rows of a tile by what counts, and gives half the sum of their squares.
+    fn weigh(&self, row: usize, first: usize, count: usize, values: &mut [E], seeds: &mut [E], slopes: &mut [E]) -> f64 {
+        let local = row - self.schema.first;
+        let mut sum = 0.0;
+        for p in 0..count {
+            let weight = self.point_weights.as_ref().map_or(E::ONE, |w| w[first + p]);
+            let target = self.targets.as_ref().map_or(E::ZERO, |t| t[local * (t.len() / self.schema.rows) + first + p]);
+            let (value, slope) = self.row(values[p] - target, weight);
+            values[p] = value;
+            slopes[p] = slope;
+            seeds[p] = value * slope;
+            let value = value.to_f64();
+            sum += value * value;
+        }
+        seeds[count..].fill(E::ZERO);
+        sum / 2.0
+    }
+}
+
+/// Seeds of integral rows: the integral's adjoint times each point's weight.
+fn seed_integrals<E: Real>(integrals: &[Integral], group: usize, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
+    let stride = tile.stride();
+    for integral in integrals.iter().filter(|i| i.group == group) {
+        let weights = tile.group.terms[integral.term].point_weights.as_deref();
+        let seeds = &mut buffers.seeds[integral.row * stride..][..stride];
+        for (p, seed) in seeds[..tile.count].iter_mut().enumerate() {
+            *seed = E::from_f64(integral.seed) * weights.map_or(E::ONE, |w| w[tile.first + p]);
+        }
+        seeds[tile.count..].fill(E::ZERO);
+    }
+}
+
+/// Rows of integral terms, in order.
+fn integrals<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Integral> {
+    let mut integrals = Vec::new();
+    for (group, bound) in groups.iter().enumerate() {
+        for (term, t) in bound.terms.iter().enumerate().filter(|(_, t)| t.schema.kind == TermKind::Integral) {
+            let rows = t.schema.first..t.schema.first + t.schema.rows;
+            integrals.extend(rows.map(|row| Integral { group, row, term, seed: 0.0 }));
+        }
+    }
+    integrals
+}
+
+/// Points of a tile: as many as keep its rows in cache, and enough tiles to share out.
+fn tile_points<E: Real>(layout: &Layout, channels: usize, points: usize) -> usize {
+    let buffers = layout.affine.len() + layout.hidden.len() + 6;
+    let bytes = channels * tile::row_distance(layout.width) * size_of::<E>() * buffers;
+    let fit = (TILE_BYTES / bytes).clamp(4, 64);
+    let share = points.div_ceil(CHUNKS).next_multiple_of(4);
+    fit.min(share).max(4).min(points.max(1))
+}
+
+/// Cuts all tiles of all groups into chunks of about equal work.
+fn cut<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
+    let tiles: Vec<(TileRange, usize)> = groups
+        .iter()
+        .enumerate()
+        .flat_map(|(at, group)| {
+            (0..group.points).step_by(group.tile).map(move |first| {
+                let count = group.tile.min(group.points - first);
+                (TileRange { group: at, first, count }, count * group.kernel.channels())
+            })
+        })
+        .collect();
+    let total: usize = tiles.iter().map(|(_, cost)| cost).sum();
+    let mut chunks: Vec<Vec<TileRange>> = vec![Vec::new(); CHUNKS.min(tiles.len()).max(1)];
+    let mut done = 0;
+    let count = chunks.len();
+    for (tile, cost) in tiles {
+        let at = (done * count / total.max(1)).min(count - 1);
+        chunks[at].push(tile);
+        done += cost;
+    }
+    chunks.retain(|chunk| !chunk.is_empty());
+    if chunks.is_empty() {
+        chunks.push(Vec::new());
+    }
+    chunks
+}

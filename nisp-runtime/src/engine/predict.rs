@@ -1,0 +1,62 @@
+//! Forward passes without gradient: network outputs at points, magnitudes of rows.
+
+use super::tile::{Buffers, Network, Tile};
+use super::{Engine, with_buffers};
+use crate::real::Real;
+use crate::residual::Points;
+
+impl<E: Real> Engine<E> {
+    /// Runs `work` on every tile of a group, in order, with the raw rows of its residuals.
+    pub(super) fn each_tile(&self, group: usize, mut work: impl FnMut(&Tile<'_, E>, &Buffers<E>)) {
+        let bound = &self.groups[group];
+        let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
+        with_buffers(&self.buffers, |buffers| {
+            for first in (0..bound.points).step_by(bound.tile) {
+                let tile = Tile { group: bound, first, count: bound.tile.min(bound.points - first) };
+                network.forward(&tile, buffers);
+                let Buffers { jets, points, columns, rows, .. } = buffers;
+                let inputs = Points {
+                    count: tile.count,
+                    stride: tile.stride(),
+                    jets,
+                    coordinates: points,
+                    columns,
+                    scalars: &self.scalars,
+                    seeds: &[],
+                };
+                bound.kernel.residual(self.isa, inputs, rows);
+                work(&tile, buffers);
+            }
+        });
+    }
+
+    /// Raw rows of a group at `theta`, `[row][point]`, in the engine's units.
+    pub(crate) fn rows(&mut self, group: usize, theta: &[E]) -> Vec<f64> {
+        self.set(theta);
+        let bound = &self.groups[group];
+        let mut all = vec![0.0; bound.schema.rows * bound.points];
+        self.each_tile(group, |tile, buffers| {
+            for row in 0..tile.group.schema.rows {
+                for p in 0..tile.count {
+                    all[row * tile.group.points + tile.first + p] = buffers.rows[row * tile.stride() + p].to_f64();
+                }
+            }
+        });
+        all
+    }
+
+    /// Jets of a group at `theta`, `[jet][point]`, in the engine's units.
+    pub(crate) fn jets(&mut self, group: usize, theta: &[E]) -> Vec<f64> {
+        self.set(theta);
+        let bound = &self.groups[group];
+        let mut all = vec![0.0; bound.jets.len() * bound.points];
+        self.each_tile(group, |tile, buffers| {
+            for jet in 0..tile.group.jets.len() {
+                for p in 0..tile.count {
+                    all[jet * tile.group.points + tile.first + p] = buffers.jets[jet * tile.stride() + p].to_f64();
+                }
+            }
+        });
+        all
+    }
+}

@@ -1,0 +1,431 @@
+//! One tile of points through the network and back.
+//!
+//! A tile is so small that its channels stay in the second-level cache from the coordinates to the gradient.
+
+use super::group::BoundGroup;
+use super::heads::{Heads, HeadsRowsAdjoint, HeadsWeightsAdjoint};
+use crate::aligned::AlignedVec;
+use crate::layer::{Affine, AffineAdjoint, Gate, GateAdjoint, Layer, LayerAdjoint, Shape};
+use crate::network::{Layout, Weights, add_outer};
+use crate::real::Real;
+use crate::residual::Points;
+use crate::simd::{Isa, dispatch};
+
+/// Points of a tile are padded to a multiple of this, so that every vector length divides it.
+pub(crate) const POINT_LANES: usize = 16;
+
+/// Scratch of one worker, large enough for a tile of any group.
+pub(crate) struct Buffers<E: Real> {
+    coordinates: AlignedVec<E>,
+    /// `tanh` of the first layer and the gates, and its slope.
+    values: Vec<AlignedVec<E>>,
+    slopes: Vec<AlignedVec<E>>,
+    /// Channels of the first layer, of `c - d`, and of `d`.
+    lifted: Vec<AlignedVec<E>>,
+    arguments: Vec<AlignedVec<E>>,
+    hidden_slopes: Vec<AlignedVec<E>>,
+    output: AlignedVec<E>,
+    seed: AlignedVec<E>,
+    bar: AlignedVec<E>,
+    next_bar: AlignedVec<E>,
+    difference_bar: AlignedVec<E>,
+    floor_bar: AlignedVec<E>,
+    pub(crate) outputs: AlignedVec<E>,
+    pub(crate) jets: AlignedVec<E>,
+    pub(crate) points: AlignedVec<E>,
+    pub(crate) columns: AlignedVec<E>,
+    pub(crate) rows: AlignedVec<E>,
+    pub(crate) seeds: AlignedVec<E>,
+    pub(crate) bars: AlignedVec<E>,
+    output_bars: AlignedVec<E>,
+    pub(crate) row_slopes: AlignedVec<E>,
+}
+
+/// Largest sizes that a set of groups asks of [`Buffers`].
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Extent {
+    points: usize,
+    rows: usize,
+    outputs: usize,
+    jets: usize,
+    columns: usize,
+    residuals: usize,
+}
+
+impl Extent {
+    pub(crate) fn of<'a, E: Real>(groups: impl Iterator<Item = &'a BoundGroup<E>>) -> Self {
+        groups.fold(Self::default(), |extent, group| Self {
+            points: extent.points.max(group.tile),
+            rows: extent.rows.max(group.tile * group.kernel.channels()),
+            outputs: extent.outputs.max(group.outputs.len()),
+            jets: extent.jets.max(group.jets.len()),
+            columns: extent.columns.max(group.schema.columns.len()),
+            residuals: extent.residuals.max(group.schema.rows),
+        })
+    }
+}
+
+/// Distance between rows: whole cache lines, and no power of two, where rows would share few cache sets.
+pub(crate) fn row_distance(width: usize) -> usize {
+    if width % 64 == 0 { width + 16 } else { width }
+}
+
+impl<E: Real> Buffers<E> {
+    pub(crate) fn new(layout: &Layout, extent: Extent) -> Self {
+        let ld = row_distance(layout.width);
+        let stride = extent.points.next_multiple_of(POINT_LANES);
+        let rows = || AlignedVec::zeros(extent.rows * ld);
+        let values = || AlignedVec::zeros(extent.points * ld);
+        let quantities = |count: usize| AlignedVec::zeros(count * stride);
+        Self {
+            coordinates: AlignedVec::zeros(extent.points * layout.inputs),
+            values: layout.affine.iter().map(|_| values()).collect(),
+            slopes: layout.affine.iter().map(|_| values()).collect(),
+            lifted: layout.affine.iter().map(|_| rows()).collect(),
+            arguments: layout.hidden.iter().map(|_| rows()).collect(),
+            hidden_slopes: layout.hidden.iter().map(|_| values()).collect(),
+            output: rows(),
+            seed: rows(),
+            bar: rows(),
+            next_bar: rows(),
+            difference_bar: rows(),
+            floor_bar: rows(),
+            outputs: quantities(extent.outputs),
+            jets: quantities(extent.jets),
+            points: quantities(layout.inputs),
+            columns: quantities(extent.columns),
+            rows: quantities(extent.residuals),
+            seeds: quantities(extent.residuals),
+            bars: quantities(extent.jets + layout.learned.len()),
+            output_bars: quantities(extent.outputs),
+            row_slopes: quantities(extent.residuals),
+        }
+    }
+}
+
+/// The network as a tile sees it.
+#[derive(Clone, Copy)]
+pub(crate) struct Network<'a, E: Real> {
+    pub(crate) isa: Isa,
+    pub(crate) layout: &'a Layout,
+    pub(crate) weights: &'a Weights<E>,
+    pub(crate) scalars: &'a [E],
+}
+
+/// A tile: `count` points of a group from `first` on.
+#[derive(Clone, Copy)]
+pub(crate) struct Tile<'a, E: Real> {
+    pub(crate) group: &'a BoundGroup<E>,
+    pub(crate) first: usize,
+    pub(crate) count: usize,
+}
+
+impl<E: Real> Tile<'_, E> {
+    fn shape(&self, layout: &Layout) -> Shape {
+        Shape { points: self.count, width: layout.width, ld: row_distance(layout.width) }
+    }
+
+    /// Distance between per-point quantities.
+    pub(crate) fn stride(&self) -> usize {
+        self.count.next_multiple_of(POINT_LANES)
+    }
+}
+
+impl<E: Real> Network<'_, E> {
+    /// From the points of a tile to the jets that its group reads.
+    pub(crate) fn forward(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
+        self.load(tile, buffers);
+        let shape = tile.shape(self.layout);
+        let group = tile.group;
+        let kernel = &*group.kernel;
+        for (j, matrix) in self.layout.affine.iter().enumerate() {
+            let layer = Affine {
+                shape,
+                weights: self.weights.matrix(matrix),
+                bias: self.weights.bias(matrix),
+                coordinates: &buffers.coordinates,
+                value: &mut buffers.values[j],
+                slope: &mut buffers.slopes[j],
+                output: &mut buffers.lifted[j],
+            };
+            kernel.affine(self.isa, layer);
+        }
+        let rows = shape.points * kernel.channels();
+        let (first, gates) = split_gates(&mut buffers.lifted, rows * shape.ld);
+        let layers = self.layout.architecture.layers;
+        match gates {
+            Some(gate) => {
+                let layer =
+                    Layer { shape, argument: first, bias: &[], slope: &mut [], output: &mut buffers.output };
+                kernel.gate(self.isa, layer, gate, layers == 1);
+            }
+            None => buffers.output[..first.len()].copy_from_slice(first),
+        }
+        for (l, matrix) in self.layout.hidden.iter().enumerate() {
+            let argument = &mut buffers.arguments[l];
+            self.weights.hidden[l].forward(self.isa, rows, shape.ld, &buffers.output, argument);
+            let layer = Layer {
+                shape,
+                argument,
+                bias: self.weights.bias(matrix),
+                slope: &mut buffers.hidden_slopes[l],
+                output: &mut buffers.output,
+            };
+            kernel.layer(self.isa, layer, gates, l + 2 == layers);
+        }
+        self.heads(tile, shape, buffers);
+    }
+
+    /// Copies a tile's points and data; lanes past the last point repeat it, so that programs stay finite there.
+    fn load(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
+        let group = tile.group;
+        let inputs = self.layout.inputs;
+        buffers.coordinates[..tile.count * inputs]
+            .copy_from_slice(&group.network[tile.first * inputs..][..tile.count * inputs]);
+        for (from, to) in [(&group.coordinates, &mut buffers.points), (&group.columns, &mut buffers.columns)] {
+            for (from, to) in from.chunks_exact(group.points).zip(to.chunks_exact_mut(tile.stride())) {
+                let values = &from[tile.first..][..tile.count];
+                to[..tile.count].copy_from_slice(values);
+                to[tile.count..].fill(values[tile.count - 1]);
+            }
+        }
+    }
+
+    /// From the last layer's channels to jets.
+    fn heads(&self, tile: &Tile<'_, E>, shape: Shape, buffers: &mut Buffers<E>) {
+        let group = tile.group;
+        let stride = tile.stride();
+        let heads = Heads {
+            shape,
+            channels: group.kernel.channels(),
+            outputs: &group.outputs,
+            weights: self.weights.matrix(&self.layout.head),
+            rows: &buffers.output,
+            out: &mut buffers.outputs,
+            stride,
+        };
+        dispatch(self.isa, heads);
+        for (output, out) in group.outputs.iter().zip(buffers.outputs.chunks_exact_mut(stride)) {
+            if output.channel == 0 {
+                let bias = self.weights.bias(&self.layout.head)[output.head];
+                out[..tile.count].iter_mut().for_each(|x| *x += bias);
+            }
+            let last = out[tile.count - 1];
+            out[tile.count..].fill(last);
+        }
+        for (map, jet) in group.jets.iter().zip(buffers.jets.chunks_exact_mut(stride)) {
+            jet.fill(map.offset);
+            for &(output, factor) in &map.parts {
+                for (jet, &out) in jet.iter_mut().zip(&buffers.outputs[output * stride..][..stride]) {
+                    *jet += factor * out;
+                }
+            }
+        }
+    }
+
+    /// From the adjoints of a tile's rows (`buffers.seeds`) to the padded gradient, added to `gradient`: summed over
+    /// the points, or one gradient per point, `padded_len` apart.
+    pub(crate) fn adjoint(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>, gradient: &mut [E], per_point: bool) {
+        let group = tile.group;
+        let kernel = &*group.kernel;
+        let shape = tile.shape(self.layout);
+        let channels = kernel.channels();
+        let parts = Parts { count: tile.count, per_point, distance: self.layout.padded_len };
+        self.programs_adjoint(tile, buffers, gradient, parts);
+        let rows = shape.points * channels;
+        let gated = self.layout.affine.len() > 1;
+        if self.layout.hidden.is_empty() && !gated {
+            // The affine layer's adjoint reads all channels; the heads wrote only those that are read.
+            buffers.seed[..rows * shape.ld].fill(E::ZERO);
+        }
+        let heads = HeadsRowsAdjoint {
+            shape,
+            channels,
+            outputs: &group.outputs,
+            weights: self.weights.matrix(&self.layout.head),
+            seeds: &buffers.output_bars,
+            stride: tile.stride(),
+            rows_bar: &mut buffers.seed,
+        };
+        dispatch(self.isa, heads);
+        if gated {
+            buffers.difference_bar[..rows * shape.ld].fill(E::ZERO);
+            buffers.floor_bar[..rows * shape.ld].fill(E::ZERO);
+        }
+        for l in (0..self.layout.hidden.len()).rev() {
+            let last = l + 1 == self.layout.hidden.len();
+            let gate = gated.then(|| GateAdjoint {
+                gate: Gate { difference: &buffers.lifted[1], floor: &buffers.lifted[2] },
+                difference_bar: &mut buffers.difference_bar,
+                floor_bar: &mut buffers.floor_bar,
+            });
+            let layer = LayerAdjoint {
+                shape,
+                argument: &buffers.arguments[l],
+                slope: &buffers.hidden_slopes[l],
+                seed: &buffers.seed,
+                argument_bar: &mut buffers.bar,
+                output: &mut buffers.output,
+            };
+            kernel.layer_adjoint(self.isa, layer, gate, last);
+            self.output_used(tile, shape, buffers, gradient, parts, l + 1);
+            self.weights.hidden[l].backward(self.isa, rows, shape.ld, &buffers.bar, &mut buffers.seed);
+            std::mem::swap(&mut buffers.bar, &mut buffers.next_bar);
+        }
+        self.affine_adjoint(tile, shape, buffers, gradient, parts);
+    }
+
+    /// Adjoint of the group's programs and of the map from head channels to jets.
+    fn programs_adjoint(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>, gradient: &mut [E], parts: Parts) {
+        let group = tile.group;
+        let stride = tile.stride();
+        let points = Points {
+            count: tile.count,
+            stride,
+            jets: &buffers.jets,
+            coordinates: &buffers.points,
+            columns: &buffers.columns,
+            scalars: self.scalars,
+            seeds: &buffers.seeds,
+        };
+        group.kernel.adjoint(self.isa, points, &mut buffers.bars);
+        buffers.output_bars[..group.outputs.len() * stride].fill(E::ZERO);
+        for (map, bar) in group.jets.iter().zip(buffers.bars.chunks_exact(stride)) {
+            for &(output, factor) in &map.parts {
+                for (out, &bar) in buffers.output_bars[output * stride..][..stride].iter_mut().zip(bar) {
+                    *out += factor * bar;
+                }
+            }
+        }
+        let learned = &buffers.bars[group.jets.len() * stride..];
+        for (first, count, at) in parts.ranges() {
+            for i in 0..self.layout.learned.len() {
+                gradient[at + self.layout.learned_at + i] += learned[i * stride + first..][..count].iter().copied().sum();
+            }
+            for (output, bar) in group.outputs.iter().zip(buffers.output_bars.chunks_exact(stride)) {
+                if output.channel == 0 {
+                    gradient[at + self.layout.head.padded_bias + output.head] +=
+                        bar[first..][..count].iter().copied().sum();
+                }
+            }
+        }
+    }
+
+    /// Gradient of whatever multiplies the output of layer `layer` (counted from 0): the next layer's weights, or
+    /// the heads. `next_bar` holds the adjoint of the next layer's argument.
+    fn output_used(
+        &self,
+        tile: &Tile<'_, E>,
+        shape: Shape,
+        buffers: &Buffers<E>,
+        gradient: &mut [E],
+        parts: Parts,
+        layer: usize,
+    ) {
+        let channels = tile.group.kernel.channels();
+        let next = self.layout.hidden.get(layer);
+        for (first, count, at) in parts.ranges() {
+            let start = first * channels * shape.ld;
+            match next {
+                None => {
+                    let heads = HeadsWeightsAdjoint {
+                        shape: Shape { points: count, ..shape },
+                        channels,
+                        outputs: &tile.group.outputs,
+                        first,
+                        rows: &buffers.output,
+                        seeds: &buffers.output_bars,
+                        stride: tile.stride(),
+                        weights_bar: &mut gradient[at + self.layout.head.padded..],
+                    };
+                    dispatch(self.isa, heads);
+                }
+                Some(matrix) => {
+                    let bar = &buffers.next_bar[start..];
+                    let bias_bar = &mut gradient[at + matrix.padded_bias..][..shape.width];
+                    for row in bar.chunks(channels * shape.ld).take(count) {
+                        bias_bar.iter_mut().zip(row).for_each(|(sum, &x)| *sum += x);
+                    }
+                    let weights_bar = &mut gradient[at + matrix.padded..][..shape.width * shape.width];
+                    let rows = count * channels;
+                    add_outer(self.isa, rows, shape, bar, &buffers.output[start..], weights_bar);
+                }
+            }
+        }
+    }
+
+    /// The first layer and the gates.
+    fn affine_adjoint(&self, tile: &Tile<'_, E>, shape: Shape, buffers: &mut Buffers<E>, gradient: &mut [E], parts: Parts) {
+        let kernel = &*tile.group.kernel;
+        let gated = self.layout.affine.len() > 1;
+        if gated {
+            let layer = LayerAdjoint {
+                shape,
+                argument: &buffers.lifted[0],
+                slope: &[],
+                seed: &buffers.seed,
+                argument_bar: &mut buffers.bar,
+                output: &mut buffers.output,
+            };
+            let gate = GateAdjoint {
+                gate: Gate { difference: &buffers.lifted[1], floor: &buffers.lifted[2] },
+                difference_bar: &mut buffers.difference_bar,
+                floor_bar: &mut buffers.floor_bar,
+            };
+            kernel.gate_adjoint(self.isa, layer, gate, self.layout.hidden.is_empty());
+            // z = d + (c - d) z': c takes the adjoint of the difference, d what is left of its own.
+            for (floor, &difference) in buffers.floor_bar.iter_mut().zip(buffers.difference_bar.iter()) {
+                *floor -= difference;
+            }
+        } else {
+            std::mem::swap(&mut buffers.bar, &mut buffers.seed);
+            buffers.output.copy_from_slice(&buffers.lifted[0]);
+        }
+        self.output_used(tile, shape, buffers, gradient, parts, 0);
+        let seeds = [&buffers.bar, &buffers.difference_bar, &buffers.floor_bar];
+        let channels = kernel.channels();
+        for (j, matrix) in self.layout.affine.iter().enumerate() {
+            for (first, count, at) in parts.ranges() {
+                let (weights_bar, rest) = gradient[at + matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
+                let layer = AffineAdjoint {
+                    shape: Shape { points: count, ..shape },
+                    weights: self.weights.matrix(matrix),
+                    coordinates: &buffers.coordinates[first * self.layout.inputs..],
+                    value: &buffers.values[j][first * shape.ld..],
+                    slope: &buffers.slopes[j][first * shape.ld..],
+                    seed: &seeds[j][first * channels * shape.ld..],
+                    weights_bar,
+                    bias_bar: rest,
+                };
+                kernel.affine_adjoint(self.isa, layer);
+            }
+        }
+    }
+}
+
+/// How a tile's gradient is split: as a whole, or point by point.
+#[derive(Clone, Copy)]
+struct Parts {
+    count: usize,
+    per_point: bool,
+    distance: usize,
+}
+
+impl Parts {
+    /// First point, number of points, and where their gradient begins.
+    fn ranges(self) -> impl Iterator<Item = (usize, usize, usize)> {
+        let size = if self.per_point { 1 } else { self.count };
+        (0..self.count).step_by(size).map(move |first| (first, size, if self.per_point { first * self.distance } else { 0 }))
+    }
+}
+
+/// The first layer's channels, and the gates as difference and floor: `c` is replaced by `c - d` in place.
+fn split_gates<E: Real>(lifted: &mut [AlignedVec<E>], len: usize) -> (&mut [E], Option<Gate<'_, E>>) {
+    match lifted {
+        [first, c, d] => {
+            c[..len].iter_mut().zip(&d[..len]).for_each(|(c, &d)| *c -= d);
+            (&mut first[..len], Some(Gate { difference: c, floor: d }))
+        }
+        lifted => (&mut lifted[0][..len], None),
+    }
+}

@@ -1,0 +1,269 @@
+//! From a [`Problem`] to an engine: checks, units, scales.
+
+use thiserror::Error;
+
+use super::scale::{Scales, scales};
+use super::{Binding, Problem, UnitSystem};
+use crate::engine::{BoundGroup, Engine, Learned, LearnedMap, Scaling};
+use crate::kernel::Precision;
+use crate::network::{Architecture, Layout};
+use crate::schema::{self, Origin};
+use crate::simd::Isa;
+
+/// Why a problem cannot be solved as it is bound.
+#[derive(Clone, Debug, PartialEq, Error)]
+pub enum BindError {
+    /// A name that the scene does not have.
+    #[error("there is no {what} `{name}`; the scene has: {have}")]
+    Unknown {
+        /// What kind of name it should be.
+        what: &'static str,
+        /// The name given.
+        name: String,
+        /// The names there are.
+        have: String,
+    },
+    /// A parameter that is not finite.
+    #[error("parameter `{name}` is {value}; give a finite number in its declared unit")]
+    Parameter {
+        /// Its name.
+        name: String,
+        /// Its value.
+        value: f64,
+    },
+    /// A parameter without a value.
+    #[error("parameter `{name}` has no value; give it one{}", unit_hint(.unit))]
+    MissingParameter {
+        /// Its name.
+        name: String,
+        /// Its declared unit.
+        unit: &'static str,
+    },
+    /// A group without points.
+    #[error("group `{group}` has no points; bind at least one")]
+    NoPoints {
+        /// The group.
+        group: &'static str,
+    },
+    /// Numbers that do not come in whole points, or as many as there are points.
+    #[error("group `{group}`: {what} has {found} numbers where {expected} are expected")]
+    Length {
+        /// The group.
+        group: &'static str,
+        /// Which of its data.
+        what: String,
+        /// How many numbers were given.
+        found: usize,
+        /// How many are expected.
+        expected: usize,
+    },
+    /// A number that is NaN or infinite.
+    #[error("group `{group}`: {what} is not finite at point {point}; remove the point or mend its data")]
+    NotFinite {
+        /// The group.
+        group: &'static str,
+        /// Which of its data.
+        what: String,
+        /// The point, counted from 0.
+        point: usize,
+    },
+    /// A network that cannot be.
+    #[error("a network of {layers} layers of {width} units cannot be built; both must be at least 1")]
+    Architecture {
+        /// Layers asked for.
+        layers: usize,
+        /// Units asked for.
+        width: usize,
+    },
+}
+
+fn unit_hint(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" in {unit}") }
+}
+
+impl BindError {
+    pub(super) fn unknown<'a>(what: &'static str, name: &str, have: impl Iterator<Item = &'a str>) -> Self {
+        Self::Unknown { what, name: name.into(), have: have.collect::<Vec<_>>().join(", ") }
+    }
+}
+
+/// A problem in the engine's units, whatever the precision.
+#[derive(Clone, Debug)]
+pub(crate) struct Bound {
+    pub(crate) problem: Problem,
+    pub(crate) system: UnitSystem,
+    pub(crate) scaling: Scaling,
+    pub(crate) scalars: Vec<f64>,
+    pub(crate) learned: Vec<Learned>,
+    /// Natural size of each term's rows, by group and term.
+    pub(crate) sizes: Vec<Vec<f64>>,
+    /// Coordinates by group, in the engine's units, point by point.
+    pub(crate) coordinates: Vec<Vec<f64>>,
+    /// Columns by group, in the engine's units.
+    pub(crate) columns: Vec<Vec<Vec<f64>>>,
+}
+
+impl Problem {
+    /// Checks what is bound and expresses it in the engine's units.
+    pub(crate) fn bound(&self) -> Result<Bound, BindError> {
+        let schema = self.scene.schema;
+        let bindings = self.bindings()?;
+        for (scalar, value) in schema.scalars.iter().zip(&self.scalars) {
+            let own = matches!(scalar.origin, Origin::HeadScale(_) | Origin::SideScale { .. });
+            match value {
+                None if !own => {
+                    return Err(BindError::MissingParameter { name: scalar.name.into(), unit: scalar.unit.text });
+                }
+                Some(value) if !value.is_finite() => {
+                    return Err(BindError::Parameter { name: scalar.name.into(), value: *value });
+                }
+                _ => {}
+            }
+        }
+        let system = self.system(&bindings);
+        let coordinates: Vec<Vec<f64>> = bindings.iter().map(|b| inward_points(schema, &system, b)).collect();
+        let columns: Vec<Vec<Vec<f64>>> =
+            bindings.iter().zip(schema.groups).map(|(b, group)| inward_columns(group, &system, b)).collect();
+        let mut scalars: Vec<f64> = schema
+            .scalars
+            .iter()
+            .zip(&self.scalars)
+            .map(|(scalar, value)| value.map_or(1.0, |value| value / system.size(&scalar.unit)))
+            .collect();
+        let Scales { scaling, sizes } = scales(&self.scene, &mut scalars, &coordinates, &columns);
+        let learned = learned(schema, &system, &scalars);
+        Ok(Bound { problem: self.clone(), system, scaling, scalars, learned, sizes, coordinates, columns })
+    }
+
+    /// What is bound to each group, checked for lengths and finite numbers.
+    fn bindings(&self) -> Result<Vec<&Binding>, BindError> {
+        let inputs = self.scene.schema.coordinates.len();
+        let mut bindings = Vec::new();
+        for (group, binding) in self.scene.schema.groups.iter().zip(&self.groups) {
+            let Some(binding) = binding.as_ref().filter(|b| !b.points.coordinates.is_empty()) else {
+                return Err(BindError::NoPoints { group: group.name });
+            };
+            let numbers = binding.points.coordinates.len();
+            let length = |what: String, found: usize, expected: usize| {
+                if found == expected { Ok(()) } else { Err(BindError::Length { group: group.name, what, found, expected }) }
+            };
+            length("the point list".into(), numbers, numbers.div_ceil(inputs) * inputs)?;
+            let points = numbers / inputs;
+            length("the list of columns".into(), binding.columns.len(), group.columns.len())?;
+            for (column, values) in group.columns.iter().zip(&binding.columns) {
+                length(format!("column `{}`", column.name), values.len(), points)?;
+                finite(group.name, || format!("column `{}`", column.name), values, 1)?;
+            }
+            if !binding.points.weights.is_empty() {
+                length("the weights".into(), binding.points.weights.len(), points)?;
+            }
+            finite(group.name, || "a coordinate".into(), &binding.points.coordinates, inputs)?;
+            bindings.push(binding);
+        }
+        Ok(bindings)
+    }
+
+    /// A system of units in which what is bound is of the order of one.
+    fn system(&self, bindings: &[&Binding]) -> UnitSystem {
+        let schema = self.scene.schema;
+        let inputs = schema.coordinates.len();
+        let mut quantities: Vec<(&schema::Unit, f64)> = Vec::new();
+        for (i, coordinate) in schema.coordinates.iter().enumerate() {
+            let values = bindings.iter().flat_map(|b| b.points.coordinates.iter().skip(i).step_by(inputs));
+            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+            quantities.push((&coordinate.unit, (high - low) / 2.0 * coordinate.unit.factor));
+        }
+        for (scalar, value) in schema.scalars.iter().zip(&self.scalars) {
+            quantities.push((&scalar.unit, value.unwrap_or(0.0)));
+        }
+        for (group, binding) in schema.groups.iter().zip(bindings) {
+            for (column, values) in group.columns.iter().zip(&binding.columns) {
+                let square: f64 = values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64;
+                quantities.push((&column.unit, square.sqrt() * column.unit.factor));
+            }
+        }
+        UnitSystem::fitting(quantities)
+    }
+}
+
+fn finite(group: &'static str, what: impl Fn() -> String, values: &[f64], per_point: usize) -> Result<(), BindError> {
+    match values.iter().position(|x| !x.is_finite()) {
+        None => Ok(()),
+        Some(at) => Err(BindError::NotFinite { group, what: what(), point: at / per_point }),
+    }
+}
+
+fn inward_points(schema: &schema::Scene, system: &UnitSystem, binding: &Binding) -> Vec<f64> {
+    let factors: Vec<f64> = schema.coordinates.iter().map(|c| system.inward(&c.unit)).collect();
+    binding.points.coordinates.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect()
+}
+
+fn inward_columns(group: &schema::Group, system: &UnitSystem, binding: &Binding) -> Vec<Vec<f64>> {
+    let columns = group.columns.iter().zip(&binding.columns);
+    columns.map(|(column, values)| values.iter().map(|x| x * system.inward(&column.unit)).collect()).collect()
+}
+
+/// How learned scalars follow from their parameters.
+fn learned(schema: &schema::Scene, system: &UnitSystem, scalars: &[f64]) -> Vec<Learned> {
+    let slots = schema.scalars.iter().enumerate();
+    let learned = slots.filter_map(|(slot, scalar)| match scalar.origin {
+        Origin::Learned { lower, upper, .. } => Some((slot, scalar, lower, upper)),
+        _ => None,
+    });
+    learned
+        .map(|(slot, scalar, lower, upper)| {
+            let size = system.size(&scalar.unit);
+            let start = scalars[slot];
+            let map = match (lower.map(|x| x / size), upper.map(|x| x / size)) {
+                (Some(lower), Some(upper)) if lower < start && start < upper => {
+                    LearnedMap::Between(lower, upper, ((start - lower) / (upper - start)).ln())
+                }
+                _ if start > 0.0 => LearnedMap::Positive(start),
+                _ => LearnedMap::Linear(start, start.abs().max(1.0)),
+            };
+            Learned { slot, map }
+        })
+        .collect()
+}
+
+impl Bound {
+    /// The engine of this problem in precision `E`, for a network of the given shape.
+    pub(crate) fn engine<E: Precision>(&self, architecture: Architecture) -> Result<Engine<E>, BindError> {
+        if architecture.width == 0 || architecture.layers == 0 {
+            return Err(BindError::Architecture { layers: architecture.layers, width: architecture.width });
+        }
+        let scene = self.problem.scene;
+        let inputs = scene.schema.coordinates.len();
+        let lanes = Isa::detect().lanes::<E>();
+        let layout = Layout::new(architecture, inputs, scene.schema.heads.len(), self.learned.len(), lanes);
+        let mut groups = Vec::new();
+        for (at, kernel) in E::kernels(&scene).into_iter().enumerate().take(scene.schema.groups.len()) {
+            let schema = &scene.schema.groups[at];
+            let mut group = BoundGroup::new(kernel, schema, &self.scaling, &self.coordinates[at], &self.columns[at]);
+            for (term, size) in group.terms.iter_mut().zip(&self.sizes[at]) {
+                term.size = *size;
+                let weights = self.problem.groups[at].as_ref().map_or(&[][..], |b| &b.points.weights);
+                if term.schema.kind == schema::TermKind::Integral && !weights.is_empty() {
+                    term.point_weights = Some(weights.iter().map(|&w| E::from_f64(w)).collect());
+                }
+            }
+            groups.push(group);
+        }
+        let scalars = self.scalars.iter().map(|&x| E::from_f64(x)).collect();
+        Ok(Engine::new(layout, groups, scalars, self.learned.clone()))
+    }
+
+    /// The outputs group at points given in declared units, as an engine with no terms that count.
+    pub(crate) fn readout<E: Precision>(&self, architecture: Architecture, points: &[f64]) -> Engine<E> {
+        let scene = self.problem.scene;
+        let coordinates = scene.schema.coordinates;
+        let factors: Vec<f64> = coordinates.iter().map(|c| self.system.inward(&c.unit)).collect();
+        let points: Vec<f64> = points.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect();
+        let lanes = Isa::detect().lanes::<E>();
+        let layout = Layout::new(architecture, coordinates.len(), scene.schema.heads.len(), self.learned.len(), lanes);
+        let kernel = E::kernels(&scene).pop();
+        let groups = kernel.map(|kernel| BoundGroup::new(kernel, &scene.schema.outputs, &self.scaling, &points, &[]));
+        let scalars = self.scalars.iter().map(|&x| E::from_f64(x)).collect();
+        Engine::new(layout, groups.into_iter().collect(), scalars, self.learned.clone())
+    }
+}

@@ -1,0 +1,145 @@
+//! A scene bound to parameters, points and data; numbers cross this boundary in their declared units.
+
+mod bind;
+mod scale;
+mod system;
+
+pub use bind::BindError;
+pub(crate) use bind::Bound;
+pub use system::UnitSystem;
+
+use crate::kernel::SceneRef;
+
+/// A scene with what has been bound to it so far.
+#[derive(Clone, Debug)]
+pub struct Problem {
+    scene: SceneRef,
+    /// Given values of scalars, in SI units.
+    scalars: Vec<Option<f64>>,
+    groups: Vec<Option<Binding>>,
+}
+
+/// Points of a group, flat and point by point, with what belongs to each.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Points {
+    /// Coordinates in their declared units, point by point.
+    pub coordinates: Vec<f64>,
+    /// Quadrature weights for integral terms, one per point; empty for one each.
+    pub weights: Vec<f64>,
+    /// Coordinates of every point's partner, for periodic pairs; empty otherwise.
+    pub partners: Vec<f64>,
+}
+
+impl From<Vec<f64>> for Points {
+    fn from(coordinates: Vec<f64>) -> Self {
+        Self { coordinates, ..Self::default() }
+    }
+}
+
+impl From<&[f64]> for Points {
+    fn from(coordinates: &[f64]) -> Self {
+        coordinates.to_vec().into()
+    }
+}
+
+/// What is bound to a group.
+#[derive(Clone, Debug, Default)]
+struct Binding {
+    points: Points,
+    /// In declared units.
+    columns: Vec<Vec<f64>>,
+    /// Clouds of Chamfer terms: term, points flat.
+    clouds: Vec<(String, Vec<f64>)>,
+}
+
+impl Problem {
+    /// A scene with nothing bound but its declared defaults.
+    pub fn new(scene: SceneRef) -> Self {
+        use crate::schema::Origin;
+        let scalars = scene.schema.scalars.iter().map(|scalar| match scalar.origin {
+            Origin::Given(value) => value,
+            Origin::Learned { start, .. } => start,
+            Origin::Literal(value) => Some(value),
+            Origin::HeadScale(_) | Origin::SideScale { .. } => None,
+        });
+        Self { scene, scalars: scalars.collect(), groups: vec![None; scene.schema.groups.len()] }
+    }
+
+    /// The scene.
+    pub fn scene(&self) -> SceneRef {
+        self.scene
+    }
+
+    /// Gives a parameter its value, in its declared unit.
+    ///
+    /// # Errors
+    /// No such parameter, or a value that is not finite.
+    pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), BindError> {
+        let scalars = self.scene.schema.scalars;
+        let at = scalars.iter().position(|s| !name.is_empty() && s.name == name).ok_or_else(|| {
+            BindError::unknown("parameter", name, scalars.iter().map(|s| s.name).filter(|n| !n.is_empty()))
+        })?;
+        if !value.is_finite() {
+            return Err(BindError::Parameter { name: name.into(), value });
+        }
+        self.scalars[at] = Some(value * scalars[at].unit.factor);
+        Ok(())
+    }
+
+    /// Gives a group its points and columns (in the schema's order), each in its declared unit.
+    ///
+    /// # Errors
+    /// No such group.
+    pub fn set_group(&mut self, name: &str, points: Points, columns: Vec<Vec<f64>>) -> Result<(), BindError> {
+        let groups = self.scene.schema.groups;
+        let at = groups
+            .iter()
+            .position(|g| g.name == name)
+            .ok_or_else(|| BindError::unknown("group", name, groups.iter().map(|g| g.name)))?;
+        self.groups[at] = Some(Binding { points, columns, clouds: Vec::new() });
+        Ok(())
+    }
+
+    /// Gives a Chamfer term its cloud, flat and point by point, in the term's unit.
+    ///
+    /// # Errors
+    /// No such group, or nothing bound to it yet.
+    pub fn set_cloud(&mut self, group: &str, term: &str, cloud: Vec<f64>) -> Result<(), BindError> {
+        let groups = self.scene.schema.groups;
+        let binding = groups.iter().position(|g| g.name == group).and_then(|at| self.groups[at].as_mut());
+        let binding = binding.ok_or_else(|| BindError::unknown("group", group, groups.iter().map(|g| g.name)))?;
+        binding.clouds.push((term.into(), cloud));
+        Ok(())
+    }
+
+    /// As [`Problem::set_parameter`], for emitted builders, which know the names; a value that is not finite is
+    /// reported when the problem is solved.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_parameters(mut self, values: &[(&str, f64)]) -> Self {
+        for &(name, value) in values {
+            if let Some(at) = self.scene.schema.scalars.iter().position(|s| s.name == name) {
+                self.scalars[at] = Some(value * self.scene.schema.scalars[at].unit.factor);
+            }
+        }
+        self
+    }
+
+    /// As [`Problem::set_group`], for emitted builders.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_group(mut self, at: usize, points: Points, columns: Vec<Vec<f64>>) -> Self {
+        self.groups[at] = Some(Binding { points, columns, clouds: Vec::new() });
+        self
+    }
+
+    /// As [`Problem::set_cloud`], for emitted builders.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_cloud(mut self, at: usize, term: &str, cloud: Vec<f64>) -> Self {
+        if let Some(binding) = &mut self.groups[at] {
+            binding.clouds.push((term.into(), cloud));
+        }
+        self
+    }
+}

@@ -1,0 +1,250 @@
+//! Natural sizes from units, domain and data, so that no user rescales a modulus by hand.
+//!
+//! Observed heads take offset and scale from their data. The others take theirs from the balance of an equation: the
+//! size that makes their term as large as the rest of it. Rows are then divided by the sum of their terms' sizes.
+
+use crate::engine::Scaling;
+use crate::kernel::{GroupKernel, Precision, SceneRef};
+use crate::residual::Points;
+use crate::schema::{self, Origin, TermKind};
+use crate::simd::Isa;
+
+/// What [`scales`] finds.
+pub(super) struct Scales {
+    pub(super) scaling: Scaling,
+    /// By group and term.
+    pub(super) sizes: Vec<Vec<f64>>,
+}
+
+/// Points that natural sizes are judged at, at most, of every group.
+const SAMPLE: usize = 256;
+
+/// Padding of the points, as everywhere in the engine.
+const LANES: usize = 16;
+
+/// Finds natural sizes; fills in the scalars that hold them.
+pub(super) fn scales(
+    scene: &SceneRef,
+    scalars: &mut [f64],
+    coordinates: &[Vec<f64>],
+    columns: &[Vec<Vec<f64>>],
+) -> Scales {
+    let schema = scene.schema;
+    let (centre, half) = extents(schema, coordinates);
+    let probes: Vec<Probe> = <f64 as Precision>::kernels(scene)
+        .into_iter()
+        .zip(schema.groups)
+        .zip(coordinates.iter().zip(columns))
+        .map(|((kernel, group), (coordinates, columns))| Probe::new(kernel, group, coordinates, columns, half.len()))
+        .collect();
+    let mut heads: Vec<Option<(f64, f64)>> = vec![None; schema.heads.len()];
+    for probe in &probes {
+        probe.observe(schema, scalars, &mut heads);
+    }
+    // Every pass settles at least one head or is the last.
+    for _ in 0..schema.heads.len() {
+        for probe in &probes {
+            probe.balance(scalars, &half, &mut heads);
+        }
+    }
+    let found: Vec<(f64, f64)> = heads.iter().map(|h| h.unwrap_or((0.0, 1.0))).collect();
+    for (scalar, value) in schema.scalars.iter().zip(scalars.iter_mut()) {
+        if let Origin::HeadScale(head) = scalar.origin {
+            *value = found[head].1;
+        }
+    }
+    let sizes = probes.iter().map(|probe| probe.sizes(schema, scalars, &half, &found)).collect();
+    let free = |head: usize, value: f64, otherwise: f64| if schema.heads[head].transformed { otherwise } else { value };
+    let scaling = Scaling {
+        centre,
+        half,
+        offset: found.iter().enumerate().map(|(h, s)| free(h, s.0, 0.0)).collect(),
+        scale: found.iter().enumerate().map(|(h, s)| free(h, s.1, 1.0)).collect(),
+    };
+    Scales { scaling, sizes }
+}
+
+/// Middle and half extent of every coordinate; the extent is shared within a scale group.
+fn extents(schema: &schema::Scene, coordinates: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
+    let inputs = schema.coordinates.len();
+    let range = |i: usize| {
+        let values = coordinates.iter().flat_map(|points| points.iter().skip(i).step_by(inputs));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
+    };
+    let ranges: Vec<(f64, f64)> = (0..inputs).map(range).collect();
+    let half = |i: usize| {
+        let group = schema.coordinates[i].scale_group;
+        let tied = (0..inputs).filter(|&j| schema.coordinates[j].scale_group == group);
+        let half = tied.map(|j| (ranges[j].1 - ranges[j].0) / 2.0).fold(0.0, f64::max);
+        if half > 0.0 { half } else { 1.0 }
+    };
+    (ranges.iter().map(|(low, high)| (low + high) / 2.0).collect(), (0..inputs).map(half).collect())
+}
+
+/// A group's programs on a sample of its points, with jets to choose.
+struct Probe {
+    kernel: Box<dyn GroupKernel<f64>>,
+    schema: &'static schema::Group,
+    count: usize,
+    stride: usize,
+    coordinates: Vec<f64>,
+    columns: Vec<f64>,
+}
+
+impl Probe {
+    fn new(
+        kernel: Box<dyn GroupKernel<f64>>,
+        schema: &'static schema::Group,
+        coordinates: &[f64],
+        columns: &[Vec<f64>],
+        inputs: usize,
+    ) -> Self {
+        let points = coordinates.len() / inputs;
+        let step = points.div_ceil(SAMPLE).max(1);
+        let sample: Vec<usize> = (0..points).step_by(step).collect();
+        let stride = sample.len().next_multiple_of(LANES);
+        let spread = |value: &dyn Fn(usize) -> f64| {
+            (0..stride).map(|p| value(sample[p.min(sample.len() - 1)])).collect::<Vec<_>>()
+        };
+        Self {
+            kernel,
+            schema,
+            count: sample.len(),
+            stride,
+            coordinates: (0..inputs).flat_map(|i| spread(&|p| coordinates[p * inputs + i])).collect(),
+            columns: columns.iter().flat_map(|column| spread(&|p| column[p])).collect(),
+        }
+    }
+
+    fn points<'a>(&'a self, jets: &'a [f64], scalars: &'a [f64], seeds: &'a [f64]) -> Points<'a, f64> {
+        Points {
+            count: self.count,
+            stride: self.stride,
+            jets,
+            coordinates: &self.coordinates,
+            columns: &self.columns,
+            scalars,
+            seeds,
+        }
+    }
+
+    /// Jets, `[jet][point]`, all points alike.
+    fn jets(&self, value: impl Fn(&schema::Jet) -> f64) -> Vec<f64> {
+        self.schema.jets.iter().flat_map(|jet| std::iter::repeat_n(value(jet), self.stride)).collect()
+    }
+
+    /// Derivatives of a row by every jet, `[jet][point]`.
+    fn sensitivities(&self, row: usize, jets: &[f64], scalars: &[f64]) -> Vec<f64> {
+        let mut seeds = vec![0.0; self.schema.rows * self.stride];
+        seeds[row * self.stride..][..self.stride].fill(1.0);
+        let mut bars = vec![0.0; (self.schema.jets.len() + scalars.len()) * self.stride];
+        self.kernel.adjoint(Isa::detect(), self.points(jets, scalars, &seeds), &mut bars);
+        bars
+    }
+
+    fn rows(&self, jets: &[f64], scalars: &[f64], magnitude: bool) -> Vec<f64> {
+        let mut rows = vec![0.0; self.schema.rows * self.stride];
+        let points = self.points(jets, scalars, &[]);
+        if magnitude {
+            self.kernel.magnitude(Isa::detect(), points, &mut rows);
+        } else {
+            self.kernel.residual(Isa::detect(), points, &mut rows);
+        }
+        rows
+    }
+
+    fn rms(&self, values: &[f64]) -> f64 {
+        let finite = values[..self.count].iter().filter(|x| x.is_finite());
+        let (sum, count) = finite.fold((0.0, 0usize), |(sum, count), x| (sum + x * x, count + 1));
+        (sum / count.max(1) as f64).sqrt()
+    }
+
+    /// Offset and scale of heads that a row observes directly: it depends on the head's value and nothing else.
+    fn observe(&self, scene: &schema::Scene, scalars: &[f64], heads: &mut [Option<(f64, f64)>]) {
+        let zero = self.jets(|_| 0.0);
+        let rows = self.rows(&zero, scalars, false);
+        for term in self.schema.terms.iter().filter(|t| t.kind == TermKind::Observation) {
+            for row in term.first..term.first + term.rows {
+                let slopes = self.sensitivities(row, &zero, scalars);
+                let read: Vec<usize> =
+                    (0..self.schema.jets.len()).filter(|&j| self.rms(&slopes[j * self.stride..]) > 0.0).collect();
+                let [jet] = read[..] else { continue };
+                let head = self.schema.jets[jet].head;
+                let is_value = self.schema.jets[jet].degree.iter().all(|&n| n == 0);
+                if !is_value || heads[head].is_some() || scene.heads[head].transformed {
+                    continue;
+                }
+                let values = (0..self.count).map(|p| -rows[row * self.stride + p] / slopes[jet * self.stride + p]);
+                heads[head] = spread(values.filter(|x| x.is_finite()));
+            }
+        }
+    }
+
+    /// Scales of heads that are the only unknown of some row.
+    fn balance(&self, scalars: &[f64], half: &[f64], heads: &mut [Option<(f64, f64)>]) {
+        for term in self.schema.terms.iter().filter(|t| matches!(t.kind, TermKind::Residual | TermKind::Observation)) {
+            for row in term.first..term.first + term.rows {
+                let known = self.jets(|jet| heads[jet.head].map_or(0.0, |h| typical(jet, half, h)));
+                let point = self.jets(|jet| heads[jet.head].map_or(1e-3, |h| typical(jet, half, h)));
+                let slopes = self.sensitivities(row, &point, scalars);
+                let pull = |head: usize| -> f64 {
+                    let jets = self.schema.jets.iter().enumerate().filter(|(_, jet)| jet.head == head);
+                    jets.map(|(j, jet)| self.rms(&slopes[j * self.stride..]) * typical(jet, half, (0.0, 1.0))).sum()
+                };
+                let unknown: Vec<(usize, f64)> = (0..heads.len())
+                    .filter(|&head| heads[head].is_none())
+                    .map(|head| (head, pull(head)))
+                    .filter(|&(_, pull)| pull > 0.0 && pull.is_finite())
+                    .collect();
+                let [(head, pull)] = unknown[..] else { continue };
+                let rest = self.rms(&self.rows(&known, scalars, true)[row * self.stride..]);
+                if rest > 0.0 && rest.is_finite() {
+                    heads[head] = Some((0.0, rest / pull));
+                }
+            }
+        }
+    }
+
+    /// Natural sizes of the group's terms.
+    fn sizes(&self, scene: &schema::Scene, scalars: &[f64], half: &[f64], heads: &[(f64, f64)]) -> Vec<f64> {
+        let network = |head: usize| if scene.heads[head].transformed { (0.0, 1.0) } else { heads[head] };
+        let jets = self.jets(|jet| typical(jet, half, network(jet.head)));
+        let rows = self.rows(&jets, scalars, true);
+        let size = |term: &schema::Term| -> f64 {
+            let square: f64 = (term.first..term.first + term.rows)
+                .map(|row| match term.kind {
+                    // Data may sit far from zero; what counts is how far they spread.
+                    TermKind::Observation => {
+                        let slopes = self.sensitivities(row, &jets, scalars);
+                        let parts = self.schema.jets.iter().enumerate().map(|(j, jet)| {
+                            let scale = network(jet.head).1;
+                            self.rms(&slopes[j * self.stride..]) * typical(jet, half, (0.0, scale))
+                        });
+                        parts.sum::<f64>()
+                    }
+                    _ => self.rms(&rows[row * self.stride..]),
+                })
+                .map(|size| size * size)
+                .sum();
+            let size = (square / term.rows.max(1) as f64).sqrt();
+            if size > 0.0 && size.is_finite() { size } else { 1.0 }
+        };
+        self.schema.terms.iter().map(size).collect()
+    }
+}
+
+/// Typical magnitude of a jet of a head with this offset and scale.
+fn typical(jet: &schema::Jet, half: &[f64], (offset, scale): (f64, f64)) -> f64 {
+    let shrink: f64 = jet.degree.iter().zip(half).map(|(&n, half)| half.powi(i32::from(n))).product();
+    let is_value = jet.degree.iter().all(|&n| n == 0);
+    if is_value { offset.abs() + scale } else { scale / shrink }
+}
+
+/// Mean and standard deviation; constant data take their own size as scale.
+fn spread(values: impl Iterator<Item = f64> + Clone) -> Option<(f64, f64)> {
+    let count = values.clone().count() as f64;
+    let mean = values.clone().sum::<f64>() / count;
+    let deviation = (values.map(|x| (x - mean) * (x - mean)).sum::<f64>() / count).sqrt();
+    let scale = if deviation > 1e-12 * mean.abs() { deviation } else { mean.abs() };
+    (count > 0.0 && scale > 0.0 && scale.is_finite()).then_some((mean, scale))
+}

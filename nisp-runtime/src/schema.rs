@@ -1,0 +1,211 @@
+//! What the compiler knows of a scene, as static data: names, units, channels, equations.
+//!
+//! The macro emits one [`Scene`] per scene. The engine reads shapes from it, error messages read names, and
+//! `explain` prints it.
+
+/// A physical unit: exponents of m, kg, s, A, K, mol, cd, the factor to SI, and the text the user wrote.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unit {
+    /// Exponents over the SI base units.
+    pub exponents: [f64; 7],
+    /// One of this unit in SI units.
+    pub factor: f64,
+    /// The unit as written; empty if dimensionless.
+    pub text: &'static str,
+}
+
+/// A scene of a `pde!` module: one specialisation of its equations.
+#[derive(Clone, Copy, Debug)]
+pub struct Scene {
+    /// Name of the module.
+    pub module: &'static str,
+    /// Name of the scene.
+    pub name: &'static str,
+    /// The user's documentation.
+    pub docs: &'static str,
+    /// Independent variables.
+    pub coordinates: &'static [Coordinate],
+    /// Network outputs, fields first.
+    pub heads: &'static [Head],
+    /// Scalars that group programs read, in slot order.
+    pub scalars: &'static [Scalar],
+    /// Point groups.
+    pub groups: &'static [Group],
+    /// The group that reads out the network: one term per head, its value after transformations.
+    pub outputs: Group,
+    /// What was left out and why.
+    pub skipped: &'static [&'static str],
+}
+
+/// An independent variable.
+#[derive(Clone, Copy, Debug)]
+pub struct Coordinate {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: Unit,
+    /// Coordinates with the same number share one length scale.
+    pub scale_group: usize,
+}
+
+/// A network output.
+#[derive(Clone, Copy, Debug)]
+pub struct Head {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: Unit,
+    /// True for an unknown cause, false for a part of the state.
+    pub source: bool,
+    /// Lower bound in SI units, kept by construction.
+    pub lower: Option<f64>,
+    /// Upper bound in SI units, kept by construction.
+    pub upper: Option<f64>,
+    /// True if the network's output enters through a transformation (a bound or a hard condition), so that it is
+    /// dimensionless and neither shifted nor scaled.
+    pub transformed: bool,
+    /// The user's documentation.
+    pub docs: &'static str,
+}
+
+/// A scalar that group programs read.
+#[derive(Clone, Copy, Debug)]
+pub struct Scalar {
+    /// Its name; empty for literals.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: Unit,
+    /// Where its value comes from.
+    pub origin: Origin,
+}
+
+/// Where a scalar's value comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Origin {
+    /// The user gives it; the value is the declared default in SI units.
+    Given(Option<f64>),
+    /// It is learned; bounds in SI units.
+    Learned {
+        /// The declared default in SI units: where learning starts.
+        start: Option<f64>,
+        /// Smallest sensible value.
+        lower: Option<f64>,
+        /// Largest sensible value.
+        upper: Option<f64>,
+    },
+    /// A literal of the equations, in SI units.
+    Literal(f64),
+    /// The natural size of a head.
+    HeadScale(usize),
+    /// The natural size of one side of a complementarity.
+    SideScale {
+        /// Group of the term.
+        group: usize,
+        /// Term within the group.
+        term: usize,
+        /// Which side.
+        side: usize,
+    },
+}
+
+/// A point group within a scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Group {
+    /// Its name.
+    pub name: &'static str,
+    /// The user's documentation.
+    pub docs: &'static str,
+    /// Channels of the hidden layers, as people write them: `w_xx`, `lap w`.
+    pub channels: &'static [&'static str],
+    /// Highest order of a channel.
+    pub order: usize,
+    /// Number of channels of a dense jet of the same order: what is saved is the difference.
+    pub dense: usize,
+    /// What the programs read of the heads.
+    pub jets: &'static [Jet],
+    /// Per-point data.
+    pub columns: &'static [Column],
+    /// Conditions and their rows.
+    pub terms: &'static [Term],
+    /// Rows of all terms.
+    pub rows: usize,
+    /// True if every point has a partner.
+    pub paired: bool,
+    /// Floating-point operations per point of the residual program and its adjoint.
+    pub flops: [usize; 2],
+}
+
+/// A network output or a derivative of it.
+#[derive(Clone, Copy, Debug)]
+pub struct Jet {
+    /// Index of the head in [`Scene::heads`].
+    pub head: usize,
+    /// The derivative as people write it.
+    pub name: &'static str,
+    /// Degree of the operator in each scale group's coordinates, one entry per coordinate (collapsed operators put
+    /// their whole degree on one coordinate of the group).
+    pub degree: &'static [u8],
+    /// The operator in channels: (channel, coefficient).
+    pub combination: &'static [(usize, f64)],
+    /// 0 for the point itself, 1 for its partner.
+    pub site: usize,
+}
+
+/// Per-point data of a group.
+#[derive(Clone, Copy, Debug)]
+pub struct Column {
+    /// Its name.
+    pub name: &'static str,
+    /// Its unit.
+    pub unit: Unit,
+}
+
+/// One condition of a group.
+#[derive(Clone, Copy, Debug)]
+pub struct Term {
+    /// Its name.
+    pub name: &'static str,
+    /// The condition as plain text.
+    pub equation: &'static str,
+    /// The condition as LaTeX.
+    pub latex: &'static str,
+    /// Unit of its rows.
+    pub unit: Unit,
+    /// How its rows are meant.
+    pub kind: TermKind,
+    /// How a row's misfit counts.
+    pub loss: Loss,
+    /// The user's weight.
+    pub weight: f64,
+    /// First row.
+    pub first: usize,
+    /// Number of rows.
+    pub rows: usize,
+}
+
+/// How a term's rows are meant.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TermKind {
+    /// Wanted zero at every point.
+    Residual,
+    /// Wanted zero up to measurement noise.
+    Observation,
+    /// The weighted sum over the group is wanted to equal a target.
+    Integral,
+    /// Rows are coordinates of a surface that passes through a cloud.
+    Chamfer {
+        /// Both directions, not only cloud to surface.
+        symmetric: bool,
+    },
+}
+
+/// How the misfit of a row counts; thresholds in units of the row's natural size.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Loss {
+    /// Half the square.
+    Square,
+    /// Huber's loss.
+    Huber(f64),
+    /// Welsch's loss.
+    Welsch(f64),
+}
