@@ -5,8 +5,11 @@
 
 pub mod atomic;
 pub mod cloud;
+pub mod colour;
 pub mod domain;
 pub mod error;
+pub mod export;
+pub mod nearest;
 pub mod picture;
 pub mod table;
 

@@ -1,0 +1,69 @@
+//! VTU, the unstructured grid of VTK, as text: exact, readable, and small enough for the meshes of this project.
+
+use std::fmt::{Display, Write as _};
+use std::io::{self, Write};
+use std::path::Path;
+
+use super::Mesh;
+use crate::DataError;
+use crate::atomic::write_atomic;
+
+/// VTK's numbers for a lone point and a triangle.
+const VERTEX: u8 = 1;
+const TRIANGLE: u8 = 5;
+
+impl Mesh {
+    /// Writes the mesh as VTU.
+    pub fn write_vtu(&self, path: impl AsRef<Path>) -> Result<(), DataError> {
+        write_atomic(path.as_ref(), |out| self.vtu(out))
+    }
+
+    fn vtu(&self, out: &mut dyn Write) -> io::Result<()> {
+        let lone = self.triangles.is_empty();
+        let cells = if lone { self.points.len() } else { self.triangles.len() };
+        writeln!(out, "<?xml version=\"1.0\"?>")?;
+        writeln!(out, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">")?;
+        writeln!(
+            out,
+            "<UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{cells}\">",
+            self.points.len()
+        )?;
+        writeln!(out, "<Points>")?;
+        array(out, "Float64", "position [m]", 3, self.points.iter().flatten())?;
+        writeln!(out, "</Points>\n<Cells>")?;
+        if lone {
+            array(out, "Int64", "connectivity", 1, 0..cells)?;
+        } else {
+            array(out, "Int64", "connectivity", 1, self.triangles.iter().flatten())?;
+        }
+        let (corners, kind) = if lone { (1, VERTEX) } else { (3, TRIANGLE) };
+        array(out, "Int64", "offsets", 1, (1..=cells).map(|cell| cell * corners))?;
+        array(out, "UInt8", "types", 1, std::iter::repeat_n(kind, cells))?;
+        writeln!(out, "</Cells>\n<PointData>")?;
+        for data in &self.arrays {
+            array(out, "Float64", &data.name, data.components, data.values.iter())?;
+        }
+        writeln!(out, "</PointData>\n</Piece>\n</UnstructuredGrid>\n</VTKFile>")
+    }
+}
+
+fn array(
+    out: &mut dyn Write,
+    kind: &str,
+    name: &str,
+    components: usize,
+    values: impl Iterator<Item = impl Display>,
+) -> io::Result<()> {
+    let name = name.replace('&', "&amp;").replace('<', "&lt;").replace('"', "&quot;");
+    writeln!(out, "<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{components}\" format=\"ascii\">")?;
+    let mut line = String::new();
+    for value in values {
+        // Writing into a String cannot fail.
+        let _ = write!(line, "{value} ");
+        if line.len() > 100 {
+            writeln!(out, "{}", line.trim_end())?;
+            line.clear();
+        }
+    }
+    writeln!(out, "{}\n</DataArray>", line.trim_end())
+}
