@@ -1,12 +1,12 @@
 //! Timings, to be run by hand: `cargo test --release --test solve_timing -- --ignored --nocapture --test-threads 1`.
 
-mod solve_common;
-
 use nisp_runtime::solve::adam::{Adam, AdamSettings};
 use nisp_runtime::solve::broyden::{Broyden, Update};
 use nisp_runtime::solve::fault::Fault;
-use nisp_runtime::solve::method::Method;
-use nisp_runtime::solve::objective::Objective;
+use nisp_runtime::solve::marquardt::Marquardt;
+use nisp_runtime::solve::method::{Method, Verdict};
+use nisp_runtime::solve::objective::{Block, LeastSquares, Objective};
+use nisp_runtime::solve::prior::WeightPrior;
 use std::time::Instant;
 
 /// A diagonal quadratic: costs next to nothing beside a step.
@@ -63,8 +63,84 @@ fn adam_update() {
         let mut method = Adam::new(vec![0.0_f32; len], AdamSettings::default());
         let mut function = Cheap(vec![1.0_f32; len]);
         let start = Instant::now();
-        (0..500).for_each(|_| drop(method.step(&mut function).unwrap()));
+        (0..500).for_each(|_| assert!(method.step(&mut function).is_ok()));
         let each = start.elapsed().as_secs_f64() * 1e3 / 500.0;
         println!("adam f32 {len}: {each:.4} ms a step with a scalar gradient");
+    }
+}
+
+#[test]
+#[ignore = "a timing"]
+fn marquardt_step() {
+    for (rows, len) in [(1500, 436), (1500, 844), (1500, 1380), (1500, 2836), (300, 436)] {
+        let mut problem = TanhRows { rows, len };
+        let start = (0..len).map(|i| (i as f64).sin()).collect();
+        let mut method = Marquardt::new(start, WeightPrior::uniform(1e-6, len));
+        method.step(&mut problem).unwrap();
+        let (mut r, mut j) = (vec![0.0; rows], vec![0.0; rows * len]);
+        let theta = Method::<f64, TanhRows>::theta(&method).to_vec();
+        let start = Instant::now();
+        (0..10).for_each(|_| assert!(problem.jacobian(&theta, &mut r, &mut j).is_ok()));
+        let jacobian = start.elapsed().as_secs_f64() * 1e2;
+        let start = Instant::now();
+        let moved = (0..10).filter(|_| method.step(&mut problem).unwrap().verdict == Verdict::Moved).count();
+        let each = start.elapsed().as_secs_f64() * 1e2;
+        println!("lm {rows} x {len}: {each:.2} ms a step ({moved} of 10 moved), of which jacobian {jacobian:.2} ms");
+    }
+}
+
+/// Rows without structure, cheap to evaluate.
+struct TanhRows {
+    rows: usize,
+    len: usize,
+}
+
+impl Objective<f64> for TanhRows {
+    fn len(&self) -> usize {
+        self.len
+    }
+    fn value(&mut self, _: &[f64]) -> Result<f64, Fault> {
+        Ok(0.0)
+    }
+    fn gradient(&mut self, _: &[f64], _: &mut [f64]) -> Result<f64, Fault> {
+        Ok(0.0)
+    }
+}
+
+impl LeastSquares for TanhRows {
+    fn rows(&self) -> usize {
+        self.rows
+    }
+    fn residuals(&mut self, theta: &[f64], r: &mut [f64]) -> Result<f64, Fault> {
+        for (i, r) in r.iter_mut().enumerate() {
+            let mut sum = -1.0;
+            let mut c = 0.3 + i as f64 * 1e-4;
+            for x in theta {
+                c = (c * 3.999) * (1.0 - c);
+                sum += (c - 0.5) * (x + 0.1 * x * x);
+            }
+            *r = sum;
+        }
+        Ok(0.5 * r.iter().map(|r| r * r).sum::<f64>())
+    }
+    fn jacobian(&mut self, theta: &[f64], r: &mut [f64], j: &mut [f64]) -> Result<f64, Fault> {
+        for (i, row) in j.chunks_exact_mut(self.len).enumerate() {
+            let mut c = 0.3 + i as f64 * 1e-4;
+            for (j, x) in row.iter_mut().zip(theta) {
+                c = (c * 3.999) * (1.0 - c);
+                *j = (c - 0.5) * (1.0 + 0.2 * x);
+            }
+        }
+        self.residuals(theta, r)
+    }
+    fn blocks(&self) -> &[Block] {
+        &[]
+    }
+    fn set_sigma(&mut self, _: usize, _: f64) {}
+    fn jacobian_vector(&mut self, _: &[f64], _: &[f64], _: &mut [f64]) -> Result<(), Fault> {
+        Ok(())
+    }
+    fn vector_jacobian(&mut self, _: &[f64], _: &[f64], _: &mut [f64]) -> Result<(), Fault> {
+        Ok(())
     }
 }

@@ -16,6 +16,8 @@ pub struct Limits {
     pub iterations: u64,
     /// Estimated distance of the loss from its minimum, relative to the loss, at which the answer counts as converged.
     pub tolerance: f64,
+    /// Loss at which the answer counts as converged, however far the minimum is: for exact data, whose minimum is zero.
+    pub floor: f64,
     /// Steps without an improvement of the best loss by more than `tolerance` after which the method is given up; ten
     /// times as many for methods without a model of curvature.
     pub patience: u64,
@@ -27,6 +29,7 @@ impl Default for Limits {
             budget: None,
             iterations: u64::MAX,
             tolerance: 1e-6,
+            floor: 0.0,
             patience: 100,
         }
     }
@@ -137,7 +140,7 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
     let mut judge = Judge::new(limits, E::NAME, E::EPSILON.to_f64());
     let mut clock = Clock::new(limits.budget);
     let mut warnings = Vec::new();
-    let (mut iterations, mut evaluations) = (0, 0);
+    let (mut iterations, mut evaluations, mut changed) = (0, 0, false);
     let status = loop {
         if iterations >= limits.iterations || clock.is_spent(start.elapsed()) {
             break Status::Budget;
@@ -151,12 +154,11 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
         };
         iterations += 1;
         evaluations += step.evaluations as u64;
-        if step.verdict == Verdict::Changed {
-            // Losses before and after are those of different functions.
-            best.take(method.theta(), step.loss);
-        } else if step.loss < best.loss {
+        // After a change, losses before and after are those of different functions.
+        if changed || step.verdict == Verdict::Changed || step.loss < best.loss {
             best.take(method.theta(), step.loss);
         }
+        changed = step.verdict == Verdict::Changed;
         let elapsed = start.elapsed();
         clock.tick(elapsed);
         if let Verdict::Faulty(fault) = &step.verdict {
@@ -181,9 +183,6 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
                 warnings.push(warning);
                 break Status::NotConverged;
             }
-        }
-        if step.verdict == Verdict::Changed {
-            best.loss = f64::INFINITY;
         }
     };
     let wall_s = start.elapsed().as_secs_f64();

@@ -4,7 +4,7 @@ use super::curvature::Curvature;
 use super::evidence::{self, Evidence};
 use super::fault::Fault;
 use super::marquardt::Marquardt;
-use super::method::{Method, Step, Verdict};
+use super::method::{FAULTS_IN_A_ROW, Method, Step, Verdict};
 use super::objective::LeastSquares;
 use super::prior::WeightPrior;
 use super::state::State;
@@ -40,6 +40,8 @@ pub struct EmpiricalBayes {
     settings: EmpiricalBayesSettings,
     accepted: u64,
     since: u64,
+    /// Times in a row that the curvature could not be had.
+    faults: u64,
     evidence: Option<Evidence>,
     /// Scales that were given to blocks, by number of the block; kept so that a checkpoint has them.
     sigmas: Vec<(usize, f64)>,
@@ -55,6 +57,7 @@ impl EmpiricalBayes {
             settings,
             accepted: 0,
             since: 0,
+            faults: 0,
             evidence: None,
             sigmas: Vec::new(),
             restored: false,
@@ -140,8 +143,18 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for EmpiricalBayes {
             .decrement
             .is_some_and(|decrement| decrement < 1e-4 * step.loss)
             && self.since > 0;
-        if (due || still || step.verdict == Verdict::Exhausted) && self.choose(objective)? {
-            step.verdict = Verdict::Changed;
+        if due || still || step.verdict == Verdict::Exhausted {
+            match self.choose(objective) {
+                Ok(changed) => {
+                    self.faults = 0;
+                    if changed {
+                        step.verdict = Verdict::Changed;
+                    }
+                }
+                // The step itself was good, and the weights can wait.
+                Err(_) if self.faults + 1 < FAULTS_IN_A_ROW => self.faults += 1,
+                Err(fault) => return Err(fault),
+            }
         }
         Ok(step)
     }
@@ -158,11 +171,13 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for EmpiricalBayes {
             .with("sigmas", &flat)
             .with_counter("accepted", self.accepted)
             .with_counter("since", self.since)
+            .with_counter("waiting", self.faults)
     }
 
     fn restore(&mut self, state: &State) -> Result<(), Fault> {
         state.check_method("lm-evidence")?;
         let (accepted, since) = (state.counter("accepted")?, state.counter("since")?);
+        let faults = state.counter("waiting")?;
         let (sigmas, rest) = state.vector("sigmas")?.as_chunks::<2>();
         if !rest.is_empty() || sigmas.iter().any(|[_, sigma]| *sigma <= 0.0) {
             return Err(Fault::state("sigmas"));
@@ -172,7 +187,7 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for EmpiricalBayes {
             ..state.clone()
         };
         Method::<f64, O>::restore(&mut self.inner, &inner)?;
-        (self.accepted, self.since) = (accepted, since);
+        (self.accepted, self.since, self.faults) = (accepted, since, faults);
         self.sigmas = sigmas
             .iter()
             .map(|[index, sigma]| (*index as usize, *sigma))

@@ -26,6 +26,8 @@ pub(crate) struct Judge {
     losses: Vec<f64>,
     seen: usize,
     first_gradient: Option<f64>,
+    /// Decrement of the last step that moved: a method at its wits' end has forgotten the curvature.
+    decrement: Option<f64>,
     agreeing: u64,
     best: f64,
     since_best: u64,
@@ -42,6 +44,7 @@ impl Judge {
             losses: Vec::new(),
             seen: 0,
             first_gradient: None,
+            decrement: None,
             agreeing: 0,
             best: f64::INFINITY,
             since_best: 0,
@@ -67,14 +70,19 @@ impl Judge {
     fn forget(&mut self) {
         (self.seen, self.agreeing, self.since_best, self.stuck) = (0, 0, 0, 0);
         self.best = f64::INFINITY;
-        self.first_gradient = None;
+        (self.first_gradient, self.decrement) = (None, None);
     }
 
     /// The method sees no way on: that is convergence where rounding is all that is left.
     fn exhausted(&mut self, step: &Step) -> Judgement {
         self.stuck += 1;
-        let rounding = 1e3 * self.epsilon;
-        let left = step.decrement.unwrap_or(0.0);
+        // In single precision rounding is no answer: double precision would go on.
+        let rounding = if self.precision == "f32" {
+            0.0
+        } else {
+            1e3 * self.epsilon
+        };
+        let left = self.decrement.or(step.decrement).unwrap_or(0.0);
         if left <= self.limits.tolerance.max(rounding) * step.loss {
             Judgement::Converged
         } else if self.stuck < 3 {
@@ -86,6 +94,7 @@ impl Judge {
 
     fn moved(&mut self, step: &Step) -> Judgement {
         self.stuck = 0;
+        self.decrement = step.decrement;
         let tolerance = self.limits.tolerance;
         let window = if step.decrement.is_some() {
             WINDOW
@@ -103,7 +112,7 @@ impl Judge {
             None => step.gradient_norm <= tolerance.sqrt() * first_gradient,
         };
         self.agreeing = if flat && close { self.agreeing + 1 } else { 0 };
-        if step.loss == 0.0 || self.agreeing >= AGREEING {
+        if step.loss <= self.limits.floor || self.agreeing >= AGREEING {
             return Judgement::Converged;
         }
         if step.loss < self.best * (1.0 - tolerance) {
