@@ -1,11 +1,13 @@
 //! The two element types, `f32` and `f64`.
 
+use crate::gemm::Multiply;
 use crate::simd::Dispatch;
 
 /// A floating-point element type of the engine: `f32` or `f64`, no other can exist.
-#[expect(private_bounds, reason = "seals the trait and ties the vector types to it")]
+#[expect(private_bounds, reason = "seals the trait and ties vectors and products to it")]
 pub trait Real:
     Dispatch
+    + Multiply
     + Copy
     + Send
     + Sync
