@@ -111,8 +111,9 @@ impl Panel {
         }
     }
 
-    /// Frame, marks and their texts. Drawn after the data. `named_x` is false where a panel below carries the texts.
-    pub(super) fn draw_frame(&self, canvas: &mut Canvas, named_x: bool) {
+    /// Frame, marks and their texts. Drawn after the data. `named_x` and `named_y` are false where a neighbour
+    /// carries the texts.
+    pub(super) fn draw_frame(&self, canvas: &mut Canvas, named_x: bool, named_y: bool) {
         let Frame { left, .. } = self.frame;
         let bottom = self.frame.bottom();
         let stroke = Stroke::solid(FRAME, 1.2);
@@ -127,7 +128,7 @@ impl Panel {
         for (value, text) in &self.y.marks {
             let y = bottom - self.y.share(*value) * self.frame.height;
             canvas.line([left - mark_length(text), y], [left, y], stroke);
-            if !text.is_empty() {
+            if named_y && !text.is_empty() {
                 canvas.text([left - TICK_LENGTH - 0.5 * GAP, y + 0.35 * TICK], TICK, Anchor::End, text);
             }
         }

@@ -91,6 +91,15 @@ impl Canvas {
         ));
     }
 
+    /// Many separate pieces of a line, as one element.
+    pub(super) fn pieces(&mut self, pieces: &[[[f64; 2]; 2]], stroke: Stroke<'_>) {
+        let d: String = pieces.iter().map(|piece| path(piece, false)).collect();
+        let (colour, width) = (stroke.colour, num(stroke.width));
+        self.push(format_args!(
+            "<path d=\"{d}\" fill=\"none\" stroke=\"{colour}\" stroke-width=\"{width}\" stroke-linecap=\"round\"/>"
+        ));
+    }
+
     pub(super) fn polygon(&mut self, points: &[[f64; 2]], fill: &str, opacity: f64) {
         let opacity = num(opacity);
         self.push(format_args!("<path d=\"{}\" fill=\"{fill}\" fill-opacity=\"{opacity}\"/>", path(points, true)));

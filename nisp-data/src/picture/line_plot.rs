@@ -101,7 +101,7 @@ pub fn line_plot(plot: &LinePlot) -> Result<Picture, DataError> {
         let last = index + 1 == plot.panels.len();
         area.draw_grid(&mut canvas);
         canvas.clipped(area.frame, |canvas| draw_curves(canvas, &area, panel, [shown_x.factor, shown.factor]));
-        area.draw_frame(&mut canvas, last);
+        area.draw_frame(&mut canvas, last, true);
         area.draw_y_label(&mut canvas, MARGIN + 0.9 * super::style::LABEL, &shown.label);
         if last {
             area.draw_x_label(&mut canvas, &shown_x.label);

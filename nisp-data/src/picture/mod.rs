@@ -1,20 +1,29 @@
 //! Figures for papers and talks: SVG text laid out here, so that every axis has its unit, legends stay outside the data
 //! and labels never overlap.
 //!
-//! [`line_plot`] stacks source and states over one axis. It returns a [`Picture`].
+//! [`line_plot`] stacks source and states over one axis, [`field_map`] colours a plane region, [`log_log`] shows error
+//! against time. Each returns a [`Picture`].
 
 mod axis;
 mod canvas;
+mod contour;
+mod field_map;
+mod grid;
 mod legend;
 mod line_plot;
+mod log_log;
 mod quantity;
+mod raster;
 mod style;
 mod text;
 mod ticks;
 
 use std::path::Path;
 
+pub use field_map::{FieldMap, MapPanel, field_map};
+pub use grid::Grid;
 pub use line_plot::{Curve, LinePanel, LinePlot, line_plot};
+pub use log_log::{LogLog, Mark, Series, log_log};
 pub use quantity::Quantity;
 
 use crate::DataError;

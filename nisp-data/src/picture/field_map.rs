@@ -1,0 +1,191 @@
+//! Coloured maps of a plane region, side by side: truth, estimate, error.
+
+use super::axis::{Panel, Scale, x_axis_height, y_axis_width};
+use super::canvas::{Anchor, Canvas, Frame, Stroke};
+use super::contour::level_line;
+use super::grid::Grid;
+use super::legend::{self, Swatch};
+use super::line_plot::extent;
+use super::quantity::Shown;
+use super::raster;
+use super::style::{FRAME, GAP, INK, LABEL, MARGIN, PALETTE, TICK, TICK_LENGTH, TITLE, WIDTH};
+use super::{Picture, Quantity};
+use crate::DataError;
+use crate::colour::ColourScale;
+
+/// Maps of one region.
+#[derive(Debug, Clone)]
+pub struct FieldMap {
+    /// One line above everything.
+    pub title: String,
+    /// The horizontal coordinate.
+    pub x: Quantity,
+    /// The vertical coordinate.
+    pub y: Quantity,
+    /// The region's edge (`Domain::outline`); empty if the colours may end where the values do.
+    pub outline: Vec<[f64; 2]>,
+    /// From left to right, at most three.
+    pub panels: Vec<MapPanel>,
+}
+
+/// One map.
+#[derive(Debug, Clone)]
+pub struct MapPanel {
+    /// A word or two above the map.
+    pub title: String,
+    /// What is coloured.
+    pub value: Quantity,
+    /// Its values.
+    pub grid: Grid,
+    /// Its colours.
+    pub scale: ColourScale,
+    /// Level lines over the map: name, grid, level. A mask's outline is its level 0.5.
+    pub contours: Vec<(String, Grid, f64)>,
+}
+
+const BAR_HEIGHT: f64 = 14.0;
+/// A lone map need not fill the page.
+const WIDEST: f64 = 560.0;
+
+/// Draws the maps.
+pub fn field_map(map: &FieldMap) -> Result<Picture, DataError> {
+    let Some(([left_x, right_x], [low_y, high_y])) = region(map).filter(|_| map.panels.len() <= 3) else {
+        return Err(DataError::invalid("a map needs one to three panels with some extent"));
+    };
+    let (shown_x, shown_y) = shown_axes(map, [left_x, right_x], [low_y, high_y]);
+    let y_scale =
+        |height: f64| Scale::linear(low_y / shown_y.factor, high_y / shown_y.factor, (height / 42.0).max(4.0));
+    let left = MARGIN + y_axis_width(y_scale(200.0).text_width());
+    let count = map.panels.len() as f64;
+    let gap = 3.0 * GAP;
+    // Maps side by side span two columns of a page.
+    let page = WIDTH * (0.75 + 0.25 * count);
+    let width = ((page - left - 1.8 * MARGIN - gap * (count - 1.0)) / count).min(WIDEST);
+    let height = (width * (high_y - low_y) / (right_x - left_x)).min(page);
+
+    let mut canvas = Canvas::new();
+    let mut top = MARGIN;
+    if !map.title.is_empty() {
+        canvas.bold_text([left, top + 0.8 * TITLE], TITLE, Anchor::Start, &map.title);
+        top += 1.4 * TITLE;
+    }
+    let names = contour_names(map);
+    let entries: Vec<_> =
+        names.iter().enumerate().map(|(k, name)| (Swatch::Line(contour_stroke(k)), name.to_string())).collect();
+    legend::draw(&mut canvas, [left, top], page - left - MARGIN, &entries);
+    top += legend::height(&entries, page - left - MARGIN) + 1.3 * LABEL;
+
+    for (index, map_panel) in map.panels.iter().enumerate() {
+        let frame = Frame { left: left + index as f64 * (width + gap), top, width, height };
+        let x = Scale::linear(left_x / shown_x.factor, right_x / shown_x.factor, width / 75.0);
+        let area = Panel { frame, x, y: y_scale(height) };
+        canvas.text([frame.left + 0.5 * width, top - 0.45 * LABEL], LABEL, Anchor::Middle, &map_panel.title);
+        draw_map(&mut canvas, &area, map, map_panel, [shown_x.factor, shown_y.factor], &names)?;
+        area.draw_frame(&mut canvas, true, index == 0);
+        area.draw_x_label(&mut canvas, &shown_x.label);
+        if index == 0 {
+            area.draw_y_label(&mut canvas, MARGIN + 0.9 * LABEL, &shown_y.label);
+        }
+        draw_bar(&mut canvas, frame, map_panel)?;
+    }
+    let bottom = top + height + x_axis_height() + 2.0 * GAP + BAR_HEIGHT + bar_text_height();
+    Ok(canvas.finish(left + count * width + gap * (count - 1.0) + 1.8 * MARGIN, bottom + MARGIN, &map.title))
+}
+
+fn shown_axes(map: &FieldMap, x: [f64; 2], y: [f64; 2]) -> (Shown, Shown) {
+    let size = |range: [f64; 2]| range[0].abs().max(range[1].abs());
+    // Both axes have one scale, so they should have one unit.
+    let largest = size(x).max(size(y));
+    (map.x.shown(largest), map.y.shown(largest))
+}
+
+/// What the maps cover, with a little air.
+fn region(map: &FieldMap) -> Option<([f64; 2], [f64; 2])> {
+    let grids = || map.panels.iter().map(|panel| &panel.grid);
+    let span = |axis: usize| {
+        let nodes = grids().flat_map(move |grid| if axis == 0 { &grid.x } else { &grid.y }).copied();
+        let edge = map.outline.iter().map(move |point| point[axis]);
+        extent(nodes.chain(edge)).filter(|(low, high)| low < high)
+    };
+    let ((left, right), (low, high)) = (span(0)?, span(1)?);
+    let air = 0.02 * (right - left).max(high - low);
+    Some(([left - air, right + air], [low - air, high + air]))
+}
+
+fn contour_names(map: &FieldMap) -> Vec<&str> {
+    let mut names: Vec<&str> = Vec::new();
+    for (name, _, _) in map.panels.iter().flat_map(|panel| &panel.contours) {
+        if !names.contains(&name.as_str()) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+fn contour_stroke(index: usize) -> Stroke<'static> {
+    Stroke { colour: [PALETTE[1], INK, PALETTE[3]][index % 3], width: 1.5, dash: "" }
+}
+
+fn draw_map(
+    canvas: &mut Canvas,
+    area: &Panel,
+    map: &FieldMap,
+    panel: &MapPanel,
+    factors: [f64; 2],
+    names: &[&str],
+) -> Result<(), DataError> {
+    let place = |[x, y]: [f64; 2]| area.at([x / factors[0], y / factors[1]]);
+    let grid = &panel.grid;
+    let (low, high) = ([grid.x[0], grid.y[0]], [grid.x[grid.x.len() - 1], grid.y[grid.y.len() - 1]]);
+    let edge: Vec<[f64; 2]> = map.outline.iter().map(|&point| place(point)).collect();
+    let (low, high) = if edge.is_empty() { (low, high) } else { hull(map, low, high) };
+    let image = raster::field(grid, &panel.scale, low, high, edge.is_empty())?;
+    let (corner, opposite) = (place([low[0], high[1]]), place([high[0], low[1]]));
+    let frame =
+        Frame { left: corner[0], top: corner[1], width: opposite[0] - corner[0], height: opposite[1] - corner[1] };
+    if edge.is_empty() {
+        canvas.image(frame, &image);
+    } else {
+        canvas.clipped_to(&edge, |canvas| canvas.image(frame, &image));
+        canvas.outline(&edge, Stroke::solid(INK, 1.4));
+    }
+    for (name, grid, level) in &panel.contours {
+        let stroke = contour_stroke(names.iter().position(|known| known == name).unwrap_or(0));
+        let pieces: Vec<_> = level_line(grid, *level).into_iter().map(|piece| piece.map(place)).collect();
+        // A light casing keeps the line visible on every colour.
+        canvas.pieces(&pieces, Stroke::solid("#ffffff", stroke.width + 1.2));
+        canvas.pieces(&pieces, stroke);
+    }
+    Ok(())
+}
+
+/// The box around grid and outline together.
+fn hull(map: &FieldMap, low: [f64; 2], high: [f64; 2]) -> ([f64; 2], [f64; 2]) {
+    map.outline.iter().fold((low, high), |(low, high), point| {
+        ([low[0].min(point[0]), low[1].min(point[1])], [high[0].max(point[0]), high[1].max(point[1])])
+    })
+}
+
+/// The colour bar below a map.
+fn draw_bar(canvas: &mut Canvas, map: Frame, panel: &MapPanel) -> Result<(), DataError> {
+    let (low, high) = panel.scale.range();
+    let shown = panel.value.shown(low.abs().max(high.abs()));
+    let frame =
+        Frame { left: map.left, top: map.bottom() + x_axis_height() + 2.0 * GAP, width: map.width, height: BAR_HEIGHT };
+    canvas.image(frame, &raster::bar(&panel.scale)?);
+    let stroke = Stroke::solid(FRAME, 1.2);
+    canvas.rect(frame, "none", Some(stroke));
+    let scale = Scale::linear(low / shown.factor, high / shown.factor, map.width / 70.0);
+    for (value, text) in &scale.marks {
+        let x = frame.left + scale.share(*value) * frame.width;
+        canvas.line([x, frame.bottom()], [x, frame.bottom() + TICK_LENGTH], stroke);
+        canvas.text([x, frame.bottom() + TICK_LENGTH + 0.3 * GAP + 0.8 * TICK], TICK, Anchor::Middle, text);
+    }
+    let y = frame.bottom() + bar_text_height() - 0.3 * LABEL;
+    canvas.text([frame.left + 0.5 * frame.width, y], LABEL, Anchor::Middle, &shown.label);
+    Ok(())
+}
+
+fn bar_text_height() -> f64 {
+    TICK_LENGTH + 0.3 * GAP + 1.3 * TICK + 1.2 * LABEL
+}

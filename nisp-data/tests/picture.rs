@@ -1,0 +1,73 @@
+//! Pictures: nonsense is refused, and what is drawn is well-formed.
+
+use nisp_data::colour::ColourScale;
+use nisp_data::picture::{
+    Curve, FieldMap, Grid, LinePanel, LinePlot, LogLog, MapPanel, Mark, Quantity, Series, field_map, line_plot, log_log,
+};
+
+fn plot(y: &[f64]) -> LinePlot {
+    let x: Vec<f64> = (0..y.len()).map(|i| i as f64).collect();
+    let mut panel = LinePanel::new(Quantity::new("f", "N"));
+    panel.estimate = Some(Curve::new(&x, y));
+    LinePlot { title: "a < b & c".into(), x: Quantity::new("t", "s"), panels: vec![panel] }
+}
+
+#[test]
+fn line_plots_name_units_and_escape_titles() {
+    let svg = line_plot(&plot(&[0.0, 0.01, 0.02])).unwrap().svg().to_string();
+    assert!(svg.contains("f [mN]") && svg.contains("t [s]") && svg.contains("a &lt; b &amp; c"));
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
+}
+
+#[test]
+fn constant_and_tiny_curves_are_drawn() {
+    for y in [[0.0; 3], [5.0; 3], [1e-300; 3], [-1e300, 0.0, 1e300]] {
+        let svg = line_plot(&plot(&y)).unwrap().svg().to_string();
+        assert!(!svg.contains("NaN") && !svg.contains("inf"), "{y:?}");
+    }
+}
+
+#[test]
+fn nonsense_is_refused() {
+    assert!(line_plot(&plot(&[0.0, f64::NAN])).is_err());
+    assert!(line_plot(&plot(&[])).is_err());
+    let mut uneven = plot(&[0.0, 1.0]);
+    uneven.panels[0].deviation = Some(vec![1.0]);
+    assert!(line_plot(&uneven).unwrap_err().to_string().contains("the band does not fit the estimate"));
+    let quantity = || Quantity::new("e", "N");
+    let empty = LogLog { title: String::new(), x: quantity(), y: quantity(), series: vec![], marks: vec![] };
+    assert!(log_log(&empty).is_err());
+    let series = vec![Series { name: "a".into(), points: vec![[0.0, 1.0]], joined: true }];
+    assert!(log_log(&LogLog { series, ..empty.clone() }).is_err());
+    let one = LogLog {
+        series: vec![Series { name: "a".into(), points: vec![[1.0, 1.0]], joined: false }],
+        marks: vec![Mark::Horizontal("b".into(), 1.0), Mark::Vertical("c".into(), 1.0)],
+        ..empty
+    };
+    assert!(!log_log(&one).unwrap().svg().contains("NaN"));
+}
+
+#[test]
+fn maps_of_scattered_points_are_drawn() {
+    let points: Vec<[f64; 2]> =
+        (0..300).map(|i| [(f64::from(i) * 0.618).fract(), (f64::from(i) * 0.7548).fract()]).collect();
+    let values: Vec<f64> = points.iter().map(|p| p[0] * p[1]).collect();
+    let grid = Grid::from_points(&points, &values).unwrap();
+    let panel = MapPanel {
+        title: "estimate".into(),
+        value: Quantity::new("f", "Pa"),
+        scale: ColourScale::sequential(&values),
+        contours: vec![("half".into(), grid.clone(), 0.5)],
+        grid,
+    };
+    let map = FieldMap {
+        title: "a map".into(),
+        x: Quantity::new("x", "m"),
+        y: Quantity::new("y", "m"),
+        outline: vec![],
+        panels: vec![panel],
+    };
+    let svg = field_map(&map).unwrap().svg().to_string();
+    assert!(svg.contains("data:image/png;base64,") && svg.contains("f [Pa]") && !svg.contains("NaN"));
+    assert!(field_map(&FieldMap { panels: vec![], ..map }).is_err());
+}
