@@ -1,12 +1,18 @@
 //! Timings, to be run by hand: `cargo test --release --test solve_timing -- --ignored --nocapture --test-threads 1`.
 
+mod solve_common;
+
 use nisp_runtime::solve::adam::{Adam, AdamSettings};
 use nisp_runtime::solve::broyden::{Broyden, Update};
+use nisp_runtime::solve::driver::{Flow, Limits, run};
 use nisp_runtime::solve::fault::Fault;
+use nisp_runtime::solve::gauss_newton::GaussNewton;
+use nisp_runtime::solve::lbfgs::Lbfgs;
 use nisp_runtime::solve::marquardt::Marquardt;
 use nisp_runtime::solve::method::{Method, Verdict};
 use nisp_runtime::solve::objective::{Block, LeastSquares, Objective};
 use nisp_runtime::solve::prior::WeightPrior;
+use solve_common::rows::Rows;
 use std::time::Instant;
 
 /// A diagonal quadratic: costs next to nothing beside a step.
@@ -142,5 +148,50 @@ impl LeastSquares for TanhRows {
     }
     fn vector_jacobian(&mut self, _: &[f64], _: &[f64], _: &mut [f64]) -> Result<(), Fault> {
         Ok(())
+    }
+}
+
+/// One hidden layer of tanh, fitted to a function with a layer: `theta = (w, b, v)` by unit.
+fn network(units: usize) -> Rows {
+    let points = 200;
+    Rows::new(3 * units, points, move |i, theta, row| {
+        let x = -1.0 + 2.0 * i as f64 / (points - 1) as f64;
+        let mut y = 0.0;
+        for (unit, d) in theta.chunks_exact(3).zip(row.chunks_exact_mut(3)) {
+            let t = (unit[0] * x + unit[1]).tanh();
+            let slope = unit[2] * (1.0 - t * t);
+            d.copy_from_slice(&[slope * x, slope, t]);
+            y += unit[2] * t;
+        }
+        row.iter_mut().for_each(|d| *d *= 0.1);
+        0.1 * (y - (3.0 * x).sin() - (-20.0 * (x + 1.0)).exp())
+    })
+}
+
+#[test]
+#[ignore = "a comparison"]
+fn methods_on_a_network() {
+    let units = 20;
+    for seed in [1.0, 2.0, 3.0] {
+        let start: Vec<f64> = (0..3 * units).map(|i| 2.0 * (12.9898 * (i as f64 + seed) * seed).sin()).collect();
+        let methods: [Box<dyn Method<f64, Rows>>; 6] = [
+            Box::new(Lbfgs::new(start.clone(), 20)),
+            Box::new(Broyden::new(start.clone(), Update::Bfgs)),
+            Box::new(Broyden::new(start.clone(), Update::SelfScaledBfgs)),
+            Box::new(Broyden::new(start.clone(), Update::SelfScaledBroyden)),
+            Box::new(Marquardt::new(start.clone(), WeightPrior::default())),
+            Box::new(GaussNewton::new(start.clone(), WeightPrior::default(), 100)),
+        ];
+        for mut method in methods {
+            let mut rows = network(units);
+            let mut report = format!("{:12}", method.name());
+            for _ in 0..4 {
+                let limits = Limits { iterations: 500, ..Limits::default() };
+                let outcome = run(&mut *method, &mut rows, limits, &mut |_| Flow::Continue);
+                report +=
+                    &format!("  {:.2e} ({} evals, {:.0} ms)", outcome.loss, outcome.evaluations, outcome.wall_s * 1e3);
+            }
+            println!("{report}");
+        }
     }
 }

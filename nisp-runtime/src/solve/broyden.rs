@@ -97,6 +97,16 @@ impl Broyden {
             .for_each(|(d, g)| *d = -g);
     }
 
+    /// Loss, gradient and first direction at theta, unless they are known.
+    fn start<O: Objective<f64> + ?Sized>(&mut self, objective: &mut O) -> Result<f64, Fault> {
+        if let Some(loss) = self.loss {
+            return Ok(loss);
+        }
+        let loss = objective.gradient(&self.theta, &mut self.gradient)?;
+        self.reset();
+        Ok(*self.loss.insert(loss))
+    }
+
     /// Takes over the point that the search found at `step` times the direction, and learns from it.
     fn accept(&mut self, loss: f64, step: f64) {
         for i in 0..self.theta.len() {
@@ -235,19 +245,12 @@ impl<O: Objective<f64> + ?Sized> Method<f64, O> for Broyden {
     }
 
     fn step(&mut self, objective: &mut O) -> Result<Step, Fault> {
-        let loss = match self.loss {
-            Some(loss) => loss,
-            None => match objective.gradient(&self.theta, &mut self.gradient) {
-                Ok(loss) => {
-                    self.loss = Some(loss);
-                    self.reset();
-                    loss
-                }
-                Err(fault) => {
-                    let verdict = self.refuse(Some(fault))?;
-                    return Ok(self.report(f64::INFINITY, 0.0, 1, verdict));
-                }
-            },
+        let loss = match self.start(objective) {
+            Ok(loss) => loss,
+            Err(fault) => {
+                let verdict = self.refuse(Some(fault))?;
+                return Ok(self.report(f64::INFINITY, 0.0, 1, verdict));
+            }
         };
         let mut slope = vector::dot(&self.direction, &self.gradient);
         if slope >= 0.0 || !slope.is_finite() {

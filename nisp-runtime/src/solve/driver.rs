@@ -112,16 +112,43 @@ pub enum WarningKind {
     SinglePrecision,
 }
 
-/// The best iterate so far.
-struct Best<E> {
+/// What a run remembers of its steps.
+struct Record<E> {
     theta: Vec<E>,
     loss: f64,
+    /// The function has changed since `loss` was computed.
+    changed: bool,
+    iterations: u64,
+    evaluations: u64,
+    warnings: Vec<Warning>,
 }
 
-impl<E: Real> Best<E> {
-    fn take(&mut self, theta: &[E], loss: f64) {
-        self.theta.copy_from_slice(theta);
-        self.loss = loss;
+impl<E: Real> Record<E> {
+    fn add(&mut self, step: &Step, theta: &[E]) {
+        self.iterations += 1;
+        self.evaluations += step.evaluations as u64;
+        let now_changed = step.verdict == Verdict::Changed;
+        // Losses before and after a change are those of different functions.
+        if self.changed || now_changed || step.loss < self.loss {
+            self.theta.copy_from_slice(theta);
+            self.loss = step.loss;
+        }
+        self.changed = now_changed;
+        if let Verdict::Faulty(fault) = &step.verdict {
+            warn_of(&mut self.warnings, fault.clone());
+        }
+    }
+
+    fn finish(self, status: Status, wall: Duration) -> Outcome<E> {
+        Outcome {
+            status,
+            theta: self.theta,
+            loss: self.loss,
+            iterations: self.iterations,
+            evaluations: self.evaluations,
+            wall_s: wall.as_secs_f64(),
+            warnings: self.warnings,
+        }
     }
 }
 
@@ -133,45 +160,37 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
     monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
 ) -> Outcome<E> {
     let start = Instant::now();
-    let mut best = Best {
+    let mut record = Record {
         theta: method.theta().to_vec(),
         loss: f64::INFINITY,
+        changed: false,
+        iterations: 0,
+        evaluations: 0,
+        warnings: Vec::new(),
     };
     let mut judge = Judge::new(limits, E::NAME, E::EPSILON.to_f64());
     let mut clock = Clock::new(limits.budget);
-    let mut warnings = Vec::new();
-    let (mut iterations, mut evaluations, mut changed) = (0, 0, false);
     let status = loop {
-        if iterations >= limits.iterations || clock.is_spent(start.elapsed()) {
+        if record.iterations >= limits.iterations || clock.is_spent(start.elapsed()) {
             break Status::Budget;
         }
         let step = match method.step(objective) {
             Ok(step) => step,
             Err(fault) => {
-                warn_of(&mut warnings, fault);
+                warn_of(&mut record.warnings, fault);
                 break Status::NotConverged;
             }
         };
-        iterations += 1;
-        evaluations += step.evaluations as u64;
-        // After a change, losses before and after are those of different functions.
-        if changed || step.verdict == Verdict::Changed || step.loss < best.loss {
-            best.take(method.theta(), step.loss);
-        }
-        changed = step.verdict == Verdict::Changed;
+        record.add(&step, method.theta());
         let elapsed = start.elapsed();
         clock.tick(elapsed);
-        if let Verdict::Faulty(fault) = &step.verdict {
-            warn_of(&mut warnings, fault.clone());
-        }
-        let checkpoint = || method.save();
         let progress = Progress {
-            iteration: iterations,
+            iteration: record.iterations,
             elapsed,
             step: &step,
-            best_loss: best.loss,
+            best_loss: record.loss,
             theta: method.theta(),
-            checkpoint: &checkpoint,
+            checkpoint: &|| method.save(),
         };
         if monitor(&progress) == Flow::Stop {
             break Status::Interrupted;
@@ -180,21 +199,12 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
             Judgement::GoOn => {}
             Judgement::Converged => break Status::Converged,
             Judgement::GiveUp(warning) => {
-                warnings.push(warning);
+                record.warnings.push(warning);
                 break Status::NotConverged;
             }
         }
     };
-    let wall_s = start.elapsed().as_secs_f64();
-    Outcome {
-        status,
-        theta: best.theta,
-        loss: best.loss,
-        iterations,
-        evaluations,
-        wall_s,
-        warnings,
-    }
+    record.finish(status, start.elapsed())
 }
 
 /// Adds a warning of a fault, once for each term and kind.

@@ -1,8 +1,8 @@
 //! Levenberg-Marquardt: Gauss-Newton steps, damped by the diagonal of the normal matrix (Marquardt 1963), with the
 //! damping controlled by the ratio of actual to predicted decrease (Nielsen 1999).
 //!
-//! Each step solves `(J^T J + A + lambda D) p = -g`, where `A` is the weight prior and `D` the diagonal of `J^T J`;
-//! see [`super::normal`].
+//! Each step solves `(J^T J + A + lambda D) p = -g`, where `A` is the weight prior and `D` the diagonal of `J^T J`.
+//! The matrix is that of parameters or that of rows, whichever is smaller.
 
 use super::damping::Damping;
 use super::fault::{Fault, Kind};
