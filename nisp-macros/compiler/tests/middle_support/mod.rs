@@ -3,6 +3,7 @@
 
 pub(crate) mod jet;
 pub(crate) mod models;
+pub(crate) mod oracle;
 
 use nisp_compiler::channels::{ChannelSet, Operator};
 use nisp_compiler::rational::ratio;
