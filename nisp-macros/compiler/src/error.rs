@@ -75,6 +75,11 @@ impl Errors {
         self.faults.is_empty()
     }
 
+    /// True if anything was wrong so far, which does not count as having asked.
+    pub(crate) fn found_any(&self) -> bool {
+        !self.faults.is_empty()
+    }
+
     /// Everything noted, in order of discovery.
     pub fn faults(&self) -> &[Fault] {
         self.asked.set(true);

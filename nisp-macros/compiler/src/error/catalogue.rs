@@ -114,7 +114,9 @@ pub(crate) fn unknown_unit(symbol: &str) -> String {
     } else {
         match nearest(symbol, known_symbols()) {
             Some(found) => format!("did you mean `{found}`?"),
-            None => "SI units with prefixes are known (`mm`, `kPa`, `GHz`), `deg`, `bar`, `min`, `h`, `L`, `t`, `%`".into(),
+            None => {
+                "SI units with prefixes are known (`mm`, `kPa`, `GHz`), `deg`, `bar`, `min`, `h`, `L`, `t`, `%`".into()
+            }
         }
     };
     help(format!("`{}` is not a unit", shorten(symbol)), step)

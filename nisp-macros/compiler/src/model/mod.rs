@@ -8,16 +8,31 @@ use std::rc::Rc;
 use proc_macro2::{Span, TokenStream};
 
 use crate::rational::Rational;
+pub use crate::syntax::Name;
 use crate::unit::{Dimension, Unit};
 
-/// A name and where the user wrote it.
-#[derive(Clone, Debug)]
-pub struct Name {
-    /// The identifier's text.
-    pub text: String,
-    /// The user's token.
-    pub span: Span,
-}
+mod arithmetic;
+mod build;
+mod call;
+mod check;
+mod check_group;
+mod check_integral;
+mod check_observation;
+mod check_scene;
+mod check_term;
+mod compare_units;
+mod constant;
+mod declare;
+mod differentiate;
+mod elaborate;
+mod lint;
+mod orders;
+mod resolve_name;
+mod scope;
+mod tensor;
+mod value;
+
+pub use check::check;
 
 /// A whole `pde!` invocation, checked.
 #[derive(Clone, Debug)]

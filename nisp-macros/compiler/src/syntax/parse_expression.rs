@@ -10,7 +10,8 @@ use crate::error::{Checked, catalogue};
 
 /// Reads an expression, as far as it goes.
 pub(super) fn parse(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Expr> {
-    context.nested(stream, |stream, context| chain(stream, context, product, [("+", false), ("-", true)], ExprKind::Sum))
+    context
+        .nested(stream, |stream, context| chain(stream, context, product, [("+", false), ("-", true)], ExprKind::Sum))
 }
 
 fn product(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Expr> {

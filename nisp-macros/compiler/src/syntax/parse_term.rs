@@ -30,8 +30,8 @@ pub(super) fn observe(
     let name = recover::name(stream, context, "what is observed")?;
     if stream.take(":").is_some() {
         let start = stream.place();
-        let finished = long_observation(stream, context)
-            .and_then(|body| finish(stream, context, name.clone(), body, start, docs));
+        let finished =
+            long_observation(stream, context).and_then(|body| finish(stream, context, name.clone(), body, start, docs));
         return Ok(vec![finished.unwrap_or_else(|_| {
             recover::skip_statement(stream);
             GroupItem::Broken(name)

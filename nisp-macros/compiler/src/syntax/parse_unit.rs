@@ -39,12 +39,7 @@ fn parse(stream: &mut Stream<'_>, place: Place, context: &mut Context<'_>) -> Ch
     Ok(Unit { dimension: product.dimension, factor, text })
 }
 
-fn product(
-    stream: &mut Stream<'_>,
-    place: Place,
-    context: &mut Context<'_>,
-    text: &mut String,
-) -> Checked<Product> {
+fn product(stream: &mut Stream<'_>, place: Place, context: &mut Context<'_>, text: &mut String) -> Checked<Product> {
     let mut whole = Product { dimension: Dimension::none(), coefficient: 1.0, exponent: Rational::zero() };
     let (mut first, mut divided) = (true, false);
     while !stream.at_end() {
@@ -55,7 +50,13 @@ fn product(
             // `J/kg K` means two things to two readers.
             return Err(context.errors.report(at, catalogue::ambiguous_unit(text, &stream.found())));
         }
-        text.push_str(if below { "/" } else if first { "" } else { " " });
+        text.push_str(if below {
+            "/"
+        } else if first {
+            ""
+        } else {
+            " "
+        });
         let factor = factor(stream, context, text)?;
         let sign = if below { -Rational::one() } else { Rational::one() };
         whole = multiply(whole, factor, sign).ok_or_else(|| context.errors.report(place, catalogue::absurd_unit()))?;

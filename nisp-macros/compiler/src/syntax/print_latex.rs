@@ -10,8 +10,7 @@ const GREEK: [&str; 34] = [
 ];
 
 /// Functions that LaTeX knows by a command of their own.
-const COMMANDS: [&str; 12] =
-    ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "ln", "min", "max", "det", "arcsin"];
+const COMMANDS: [&str; 12] = ["sin", "cos", "tan", "sinh", "cosh", "tanh", "exp", "ln", "min", "max", "det", "arcsin"];
 
 /// Operators that stand in front of their argument.
 const PREFIX: [(&str, &str); 6] = [
@@ -36,8 +35,7 @@ const AROUND: [(&str, &str, &str); 6] = [
     ("acos", r"\arccos\left(", r"\right)"),
 ];
 
-const BEHIND: [(&str, &str); 3] =
-    [("transpose", r"^{\mathsf{T}}"), ("inverse", r"^{-1}"), ("partner", r"^{\ast}")];
+const BEHIND: [(&str, &str); 3] = [("transpose", r"^{\mathsf{T}}"), ("inverse", r"^{-1}"), ("partner", r"^{\ast}")];
 
 /// The expression in LaTeX; with one coordinate only, derivatives are ordinary ones.
 pub(crate) fn print_latex(expr: &Expr, ordinary: bool) -> String {
@@ -123,7 +121,13 @@ impl Printer {
     fn sum(&self, terms: &[(bool, Expr)]) -> String {
         let mut text = String::new();
         for (index, (subtracted, term)) in terms.iter().enumerate() {
-            text.push_str(if index == 0 { "" } else if *subtracted { " - " } else { " + " });
+            text.push_str(if index == 0 {
+                ""
+            } else if *subtracted {
+                " - "
+            } else {
+                " + "
+            });
             text.push_str(&self.within(term, Binding::Product));
         }
         text
@@ -170,8 +174,7 @@ impl Printer {
         if let (Some((_, sign)), [inner]) = (BEHIND.iter().find(|(known, _)| *known == name), arguments) {
             return format!("{{{}}}{sign}", self.within(inner, Binding::Atom));
         }
-        let command =
-            if COMMANDS.contains(&name) { format!(r"\{name}") } else { format!(r"\operatorname{{{name}}}") };
+        let command = if COMMANDS.contains(&name) { format!(r"\{name}") } else { format!(r"\operatorname{{{name}}}") };
         format!(r"{command}\left({}\right)", self.separated(arguments))
     }
 

@@ -43,13 +43,25 @@ fn write(expr: &Expr, text: &mut String) {
         }
         ExprKind::Sum(terms) => {
             for (index, (subtracted, term)) in terms.iter().enumerate() {
-                text.push_str(if index == 0 { "" } else if *subtracted { " - " } else { " + " });
+                text.push_str(if index == 0 {
+                    ""
+                } else if *subtracted {
+                    " - "
+                } else {
+                    " + "
+                });
                 write_in(term, Binding::Product, text);
             }
         }
         ExprKind::Product(factors) => {
             for (index, (divided, factor)) in factors.iter().enumerate() {
-                text.push_str(if index == 0 { "" } else if *divided { " / " } else { " * " });
+                text.push_str(if index == 0 {
+                    ""
+                } else if *divided {
+                    " / "
+                } else {
+                    " * "
+                });
                 write_in(factor, Binding::Sign, text);
             }
         }

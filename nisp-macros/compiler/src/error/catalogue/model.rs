@@ -1,0 +1,289 @@
+//! What the model stage has to say.
+
+use super::{bracketed, help, shorten};
+use crate::unit::Dimension;
+
+mod names;
+mod units;
+
+pub(crate) use names::*;
+pub(crate) use units::*;
+
+/// `1 argument`, `2 arguments`
+pub(crate) fn count(expected: usize) -> String {
+    if expected == 1 { "1 argument".into() } else { format!("{expected} arguments") }
+}
+
+pub(crate) fn wrong_arguments(name: &str, expected: &str, found: usize) -> String {
+    let message = format!("`{name}` takes {expected}, found {found}");
+    match name {
+        "d" => help(message, "a derivative is written `d(u, x)`, `d(u, x, 2)` or `d(u, x, y)`"),
+        _ => message,
+    }
+}
+
+pub(crate) fn expression_too_large(limit: u32) -> String {
+    help(
+        format!("this expression grows past {limit} operations when it is written out"),
+        "break the equation up: introduce a field for a part of it, with an equation of its own",
+    )
+}
+
+pub(crate) fn expected_scalar(what: &str, text: &str, found: &str) -> String {
+    help(
+        format!("{what} must be a scalar, but `{}` is {found}", shorten(text)),
+        "take a component (`u[0]`), or a scalar of it: `dot`, `norm`, `tr`, `det`",
+    )
+}
+
+pub(crate) fn bad_list_length(length: usize) -> String {
+    format!("a vector has from 1 to 9 entries, found {length}")
+}
+
+pub(crate) fn uneven_entries(first: &str, text: &str, found: &str) -> String {
+    format!("entries must be alike: the first is {first}, but `{}` is {found}", shorten(text))
+}
+
+pub(crate) fn too_many_brackets() -> String {
+    "vectors and matrices are all there is: these brackets nest too deeply".into()
+}
+
+pub(crate) fn shapes_differ(odd: (&str, &str), other: (&str, &str)) -> String {
+    format!("shapes differ: `{}` is {}, but `{}` is {}", shorten(odd.0), odd.1, shorten(other.0), other.1)
+}
+
+pub(crate) fn cannot_multiply(left: &str, right: &str, text: &str) -> String {
+    let step = if left.contains("vector") && right.contains("vector") {
+        "write `dot(a, b)`, `cross(a, b)` or `outer(a, b)`"
+    } else {
+        "a matrix times a vector or matrix needs as many columns as the other has rows"
+    };
+    help(format!("{left} cannot be multiplied by `{}`, which is {right}", shorten(text)), step)
+}
+
+pub(crate) fn division_by_zero() -> String {
+    "this divides by zero".into()
+}
+
+pub(crate) fn exponent_too_large(limit: i128) -> String {
+    format!("exponents go up to {limit}")
+}
+
+pub(crate) fn cannot_index(text: &str, found: &str, indices: usize) -> String {
+    let step = "units go after numbers only, as in `2 [m]`; components are `u[0]`, `u[x]`, `sigma[x, y]`";
+    help(format!("`{}` is {found} and cannot take {indices} index(es)", shorten(text)), step)
+}
+
+pub(crate) fn bad_index(text: &str, side: usize) -> String {
+    let last = side.saturating_sub(1);
+    help(
+        format!("`{}` is no index", shorten(text)),
+        format!("use a number from 0 to {last}, or the name of a spatial coordinate"),
+    )
+}
+
+pub(crate) fn wrong_shape(name: &str, text: &str, found: &str, spatial: usize) -> String {
+    let expected = match name {
+        "div" => format!("a vector of {spatial}, or a matrix of {spatial} columns"),
+        "curl" => "a vector of 2 or 3, one entry for each spatial coordinate".into(),
+        "hessian" => "a scalar".into(),
+        _ => "a scalar or a vector".into(),
+    };
+    format!("`{name}` takes {expected}, but `{}` is {found}", shorten(text))
+}
+
+pub(crate) fn wrong_shapes(name: &str, found: &str) -> String {
+    let expected = match name {
+        "dot" => "two vectors or two matrices of one shape",
+        "cross" => "two vectors of 3, or of 2",
+        "outer" => "two vectors",
+        "norm" => "a vector or a matrix; of a scalar it is `abs`",
+        "det" => "a square matrix of at most 4 x 4",
+        "inverse" => "an invertible square matrix of at most 3 x 3",
+        "transpose" => "a matrix",
+        _ => "a square matrix",
+    };
+    format!("`{name}` takes {expected}, found {found}")
+}
+
+pub(crate) fn no_coordinates(name: &str) -> String {
+    format!("`{name}` needs spatial coordinates")
+}
+
+pub(crate) fn derivative_of_column() -> String {
+    help("a data column has no derivative", "it is known at single points; make it a field, and `observe` that")
+}
+
+pub(crate) fn derivative_of_partner() -> String {
+    help("take the derivative first", "write `partner(d(u, x))`")
+}
+
+pub(crate) fn derivative_is_zero(text: &str) -> String {
+    format!("this derivative is zero: `{}` does not depend on the coordinates", shorten(text))
+}
+
+pub(crate) fn order_too_high(order: u32, limit: u32) -> String {
+    help(
+        format!("this is a derivative of order {order}; the highest is {limit}"),
+        "introduce a field for a lower derivative, with an equation that defines it",
+    )
+}
+
+pub(crate) fn bad_order(text: &str) -> String {
+    help(format!("`{}` is no order of a derivative", shorten(text)), "use a whole number from 1, as in `d(u, x, 2)`")
+}
+
+pub(crate) fn partner_without_pairs() -> String {
+    help("points have partners in groups of pairs only", "declare the group with `on name pairs { ... }`")
+}
+
+pub(crate) fn partner_of_partner() -> String {
+    "a partner's partner is the point itself".into()
+}
+
+pub(crate) fn partner_of_column() -> String {
+    help("a data column belongs to the point, not to its partner", "give the partner's value a column of its own")
+}
+
+pub(crate) fn integral_within() -> String {
+    help(
+        "`integral(...)` stands alone on one side of a condition",
+        "move what is around it inside, or to the other side: `integral(2 * f) == total`",
+    )
+}
+
+pub(crate) fn integral_inequality() -> String {
+    "an integral is compared by `==`".into()
+}
+
+pub(crate) fn target_varies(text: &str) -> String {
+    help(
+        format!("`{}` varies from point to point", shorten(text)),
+        "what an integral equals is made of parameters and numbers",
+    )
+}
+
+pub(crate) fn integral_units(integrand: (&str, &Dimension), target: (&str, &Dimension)) -> String {
+    help(
+        format!(
+            "units differ: `integral({})` is {} times a length, an area, a volume or an extent of the coordinates, \
+             but `{}` is {}",
+            shorten(integrand.0),
+            bracketed(integrand.1),
+            shorten(target.0),
+            bracketed(target.1)
+        ),
+        "the integral sums over the group with the points' quadrature weights",
+    )
+}
+
+pub(crate) fn mixed_conditions() -> String {
+    help("the conditions of one term must be of one kind", "give each kind a term of its own")
+}
+
+pub(crate) fn nothing_to_solve(text: &str) -> String {
+    help(
+        format!("`{}` contains no field, source or parameter", shorten(text)),
+        "it holds or fails whatever the solution is",
+    )
+}
+
+pub(crate) fn nothing_to_observe(text: &str) -> String {
+    format!("`{}` contains no field or source to observe", shorten(text))
+}
+
+pub(crate) fn complementarity_of_equation() -> String {
+    help("both sides of a complementarity are inequalities", "write `0 <= a _|_ b >= 0`")
+}
+
+pub(crate) fn complementarity_of_vectors() -> String {
+    "complementarity is between scalars: write a term for each component".into()
+}
+
+pub(crate) fn chamfer_of(found: &str) -> String {
+    help(format!("`chamfer` takes the position of a surface point, found {found}"), "write `chamfer [x + u, y + v, w]`")
+}
+
+pub(crate) fn empty_group(name: &str) -> String {
+    format!("nothing is asked of the points `{name}`")
+}
+
+pub(crate) fn empty_interval() -> String {
+    "the upper bound is not above the lower one".into()
+}
+
+pub(crate) fn outside_bounds(name: &str) -> String {
+    format!("the default of `{name}` lies outside its bounds")
+}
+
+pub(crate) fn wrong_number_of_values(expected: usize, found: usize) -> String {
+    format!("expected {expected} value(s), one for each component, found {found}")
+}
+
+pub(crate) fn not_constant(text: &str) -> String {
+    help(format!("`{}` is not known when this compiles", shorten(text)), "use numbers and constants")
+}
+
+pub(crate) fn not_finite(text: &str) -> String {
+    format!("`{}` has no finite value", shorten(text))
+}
+
+pub(crate) fn scene_without_terms(name: &str) -> String {
+    format!("the scene `{name}` uses no term")
+}
+
+pub(crate) fn fixed_by_fields(text: &str) -> String {
+    help(
+        format!("`{}` contains fields, so it fixes nothing", shorten(text)),
+        "use coordinates, parameters and numbers, or write a term",
+    )
+}
+
+pub(crate) fn hard_by_fields(text: &str) -> String {
+    help(format!("`{}` contains fields", shorten(text)), "a hard condition is made of coordinates and parameters")
+}
+
+pub(crate) fn distance_does_not_vary(text: &str) -> String {
+    help(
+        format!("`{}` does not depend on the coordinates", shorten(text)),
+        "the distance is zero on the boundary and not elsewhere: `1 - (x / a)^2`",
+    )
+}
+
+pub(crate) fn hard_and_bounded(name: &str) -> String {
+    format!("`{name}` has bounds by construction and cannot keep a hard condition as well")
+}
+
+pub(crate) fn hard_twice(name: &str) -> String {
+    format!("`{name}` has a hard condition already")
+}
+
+pub(crate) fn source_without_equation(name: &str) -> String {
+    help(format!("no equation contains the source `{name}`"), "nothing could be said about it; add it to a term")
+}
+
+pub(crate) fn unpinned(name: &str, source: bool, order: u32, scene: Option<&str>) -> String {
+    let place = scene.map(|scene| format!(" in scene `{scene}`")).unwrap_or_default();
+    if source {
+        return help(
+            format!(
+                "`{name}` occurs only under an operator of order {order}{place}: what that operator sends to zero stays undetermined"
+            ),
+            format!("add a condition on `{name}`, for instance its value at one point"),
+        );
+    }
+    help(
+        format!("no condition and no data pin `{name}`{place}: it occurs only in equations of order {order}"),
+        "add boundary or initial conditions, or observe it",
+    )
+}
+
+pub(crate) fn few_conditions(name: &str, order: u32, needed: usize, found: usize, scene: Option<&str>) -> String {
+    let place = scene.map(|scene| format!(" in scene `{scene}`")).unwrap_or_default();
+    help(
+        format!(
+            "`{name}` obeys an equation of order {order}{place}, which usually takes {needed} conditions, found {found}"
+        ),
+        "a clamped edge, for instance, is `w == 0` and a zero slope `dot(grad(w), n) == 0`",
+    )
+}

@@ -1,0 +1,127 @@
+//! Messages about names.
+
+use super::super::{help, shorten};
+
+fn meant(nearest: Option<&str>, otherwise: &str) -> String {
+    nearest.map_or_else(|| otherwise.to_string(), |name| format!("did you mean `{name}`?"))
+}
+
+pub(crate) fn unknown_name(name: &str, nearest: Option<&str>) -> String {
+    let step = meant(nearest, "declare it as a coordinate, field, source or parameter, or define it with `let`");
+    help(format!("`{}` is not declared", shorten(name)), step)
+}
+
+pub(crate) fn unknown_function(name: &str, nearest: Option<&str>, declared: bool) -> String {
+    if declared {
+        let message = format!("`{}` is not a function", shorten(name));
+        return help(message, format!("write `{name} * (...)` to multiply"));
+    }
+    let step = meant(nearest, "there are elementary functions, `d`, `grad`, `div`, `dot` and their like");
+    help(format!("there is no function `{}`", shorten(name)), step)
+}
+
+pub(crate) fn defined_later(name: &str) -> String {
+    help(format!("`{name}` is defined further down"), "a definition sees those above it: move it up")
+}
+
+pub(crate) fn reserved_name(name: &str) -> String {
+    format!("`{name}` has a meaning of its own and cannot be declared")
+}
+
+pub(crate) fn declared_twice(name: &str, noun: &str, parent: Option<&str>) -> String {
+    match parent {
+        Some(parent) => help(
+            format!("`{}` is declared twice", shorten(name)),
+            format!("it is already a component of the {noun} `{parent}`"),
+        ),
+        None => {
+            help(format!("`{}` is declared twice", shorten(name)), format!("there is already a {noun} of that name"))
+        }
+    }
+}
+
+pub(crate) fn group_declared_twice(name: &str) -> String {
+    help(format!("there are two groups `{}`", shorten(name)), "put all terms of a group into one block")
+}
+
+pub(crate) fn scene_declared_twice(name: &str) -> String {
+    format!("there are two scenes `{}`", shorten(name))
+}
+
+pub(crate) fn term_declared_twice(name: &str, group: &str) -> String {
+    help(
+        format!("there are two terms `{}` in `{group}`", shorten(name)),
+        "several conditions can share a term: `clamp: u == 0, v == 0;`",
+    )
+}
+
+pub(crate) fn ambiguous_suffix(name: &str, base: &str) -> String {
+    help(
+        format!("`{}` can be read as a derivative of `{base}` in several ways", shorten(name)),
+        format!("write `d({base}, ...)`"),
+    )
+}
+
+pub(crate) fn shadows_derivative(name: &str, base: &str) -> String {
+    help(
+        format!("`{name}` is this declaration, not a derivative of `{base}`"),
+        format!("write `d({base}, ...)` where you mean the derivative"),
+    )
+}
+
+pub(crate) fn not_a_coordinate(text: &str, known: &[&str]) -> String {
+    let listed: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+    let nearest = super::super::nearest(text, known.iter().copied());
+    let step = meant(nearest, &format!("derivatives are taken by coordinates: {}", listed.join(", ")));
+    help(format!("`{}` is not a coordinate", shorten(text)), step)
+}
+
+pub(crate) fn not_a_field(name: &str, nearest: Option<&str>) -> String {
+    help(format!("`{}` is not a field or source", shorten(name)), meant(nearest, "hard conditions are for those"))
+}
+
+pub(crate) fn unused(noun: &str, name: &str) -> String {
+    format!("the {noun} `{}` is never used", shorten(name))
+}
+
+pub(crate) fn nothing_declared(what: &str, example: &str) -> String {
+    help(format!("this module declares no {what}"), format!("for instance `{example}`"))
+}
+
+pub(crate) fn no_groups() -> String {
+    help("this module asks nothing", "add a group of points: `on interior { balance: laplacian(u) == f; }`")
+}
+
+pub(crate) fn column_twice(name: &str) -> String {
+    help(format!("there is already a column `{}` in this group", shorten(name)), "give one of them another name")
+}
+
+pub(crate) fn unknown_group(name: &str, nearest: Option<&str>) -> String {
+    help(format!("there is no group `{}`", shorten(name)), meant(nearest, "groups are declared with `on name { ... }`"))
+}
+
+pub(crate) fn unknown_term(name: &str, group: &str, nearest: Option<&str>) -> String {
+    let step = meant(nearest, "terms are named in their group: `name: a == b;`");
+    help(format!("there is no term `{}` in `{group}`", shorten(name)), step)
+}
+
+pub(crate) fn cannot_learn(name: &str, noun: &str) -> String {
+    let step = match noun {
+        "field" | "source" => "fields and sources are always found; `learn` is for parameters",
+        "constant" => "declare it under `parameters` instead",
+        _ => "`learn` is for parameters",
+    };
+    help(format!("`{name}` is a {noun}, not a parameter"), step)
+}
+
+pub(crate) fn cannot_fix(name: &str, noun: &str) -> String {
+    help(format!("`{name}` is a {noun} and cannot be fixed"), "scenes fix sources, fields and parameters")
+}
+
+pub(crate) fn learned_and_fixed(name: &str) -> String {
+    format!("`{name}` is both fixed and learned in this scene")
+}
+
+pub(crate) fn fixed_twice(name: &str) -> String {
+    format!("`{name}` is fixed twice in this scene")
+}

@@ -1,0 +1,92 @@
+//! Groups of points: their columns, definitions and terms.
+
+use super::check_term::TermInput;
+use super::declare::{add_components, components, shaped, unit_and_dim};
+use super::elaborate::Elaborator;
+use super::scope::{Meaning, Symbol};
+use super::value::{Reads, Scalar};
+use super::{Column, Field, Group, Node, Term};
+use crate::error::catalogue;
+use crate::syntax::{self, Declaration, GroupItem, Let};
+
+/// A group's and its terms' names, those of broken ones too, for scenes to refer to.
+pub(super) struct GroupNames {
+    pub(super) name: String,
+    /// Each term's name and its number among the sound ones.
+    pub(super) terms: Vec<(String, Option<usize>)>,
+}
+
+/// Checks a group.
+pub(super) fn check(group: &syntax::Group, elaborator: &mut Elaborator<'_>, fields: &[Field]) -> (Group, GroupNames) {
+    elaborator.scope.enter_group();
+    elaborator.paired = group.paired;
+    let mut checked = Group {
+        name: group.name.clone(),
+        columns: Vec::new(),
+        terms: Vec::new(),
+        paired: group.paired,
+        docs: group.docs.clone(),
+    };
+    let mut names = GroupNames { name: group.name.text.clone(), terms: Vec::new() };
+    // Columns first, so that their numbers do not depend on where in the group they are declared.
+    for item in &group.items {
+        if let GroupItem::Column(declaration) = item {
+            column(declaration, elaborator, &mut checked.columns);
+        }
+    }
+    for item in &group.items {
+        match item {
+            GroupItem::Column(_) => {}
+            GroupItem::Let(definition) => define(definition, elaborator),
+            GroupItem::Broken(name) => names.terms.push((name.text.clone(), None)),
+            GroupItem::Term(term) => {
+                let number = term_of(term, elaborator, fields, &mut checked, &names);
+                names.terms.push((term.name.text.clone(), number));
+            }
+        }
+    }
+    let unused = elaborator.scope.leave_group();
+    for (name, symbol) in unused.iter().filter(|(_, symbol)| !symbol.used && symbol.parent.is_none()) {
+        elaborator.warnings.push((catalogue::unused(symbol.meaning.noun(), name), symbol.span));
+    }
+    elaborator.paired = false;
+    if group.items.is_empty() {
+        elaborator.warnings.push((catalogue::empty_group(&group.name.text), group.name.span));
+    }
+    (checked, names)
+}
+
+fn term_of(
+    term: &syntax::Term,
+    elaborator: &mut Elaborator<'_>,
+    fields: &[Field],
+    group: &mut Group,
+    names: &GroupNames,
+) -> Option<usize> {
+    if names.terms.iter().any(|(name, _)| *name == term.name.text) {
+        elaborator.errors.push(term.name.span, catalogue::term_declared_twice(&term.name.text, &names.name));
+    }
+    let mut input = TermInput { elaborator, fields, columns: &mut group.columns };
+    let checked: Term = input.check(term).ok()?;
+    group.terms.push(checked);
+    Some(group.terms.len() - 1)
+}
+
+fn column(declaration: &Declaration, elaborator: &mut Elaborator<'_>, columns: &mut Vec<Column>) {
+    let (unit, dim) = unit_and_dim(declaration, elaborator);
+    let names = components(declaration, elaborator);
+    let first = columns.len();
+    let entries = (0..names.len()).map(|k| Scalar::leaf(Node::Column(first + k), Reads::COLUMN)).collect();
+    // Numbered even if a name is taken, which was reported.
+    let _ = add_components(elaborator, declaration, Meaning::Column, first, &names, shaped(declaration, entries, dim));
+    columns.extend(names.into_iter().map(|name| Column { name, unit: unit.clone(), docs: declaration.docs.clone() }));
+}
+
+/// `let`, in a module or in a group.
+pub(super) fn define(definition: &Let, elaborator: &mut Elaborator<'_>) {
+    let value = definition.value.as_ref().and_then(|value| elaborator.value(value).ok());
+    let symbol =
+        Symbol { meaning: Meaning::Definition, value, span: definition.name.span, index: 0, parent: None, used: false };
+    // A name that is taken was reported.
+    let _ = elaborator.scope.declare(&definition.name, symbol, elaborator.errors);
+}

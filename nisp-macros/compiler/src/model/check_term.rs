@@ -1,0 +1,216 @@
+//! Terms: conditions, complementarities and clouds, as rows of scalar expressions.
+
+use super::elaborate::Elaborator;
+use super::value::{Dim, Extent, Reads, Scalar, Value};
+use super::{Column, Expr, Field, Loss, Term, TermKind, build};
+use crate::error::{Checked, catalogue};
+use crate::syntax::{self, Comparison, Condition, ExprKind, Relation, TermBody, print_latex, print_text};
+use crate::unit::{Dimension, Unit};
+
+/// What terms are checked against.
+pub(super) struct TermInput<'a, 'e> {
+    pub(super) elaborator: &'a mut Elaborator<'e>,
+    pub(super) fields: &'a [Field],
+    /// The group's columns, to which observations add theirs.
+    pub(super) columns: &'a mut Vec<Column>,
+}
+
+/// What a term's body comes to.
+pub(super) struct Body {
+    pub(super) kind: TermKind,
+    pub(super) unit: Unit,
+    pub(super) equation: String,
+    pub(super) latex: String,
+}
+
+impl TermInput<'_, '_> {
+    pub(super) fn check(&mut self, term: &syntax::Term) -> Checked<Term> {
+        let body = match &term.body {
+            TermBody::Conditions(conditions) => self.conditions(conditions, term)?,
+            TermBody::Observe { value, column, unit } => {
+                self.observation(value, column.as_ref(), unit.as_ref(), term)?
+            }
+            TermBody::Chamfer { point, symmetric } => self.chamfer(point, *symmetric)?,
+        };
+        let loss = match &term.loss {
+            None => Loss::Square,
+            Some((name, threshold)) if name.text == "welsch" => Loss::Welsch(*threshold),
+            Some((_, threshold)) => Loss::Huber(*threshold),
+        };
+        Ok(Term {
+            name: term.name.clone(),
+            kind: body.kind,
+            loss,
+            weight: term.weight.unwrap_or(1.0),
+            unit: body.unit,
+            equation: body.equation,
+            latex: body.latex,
+            docs: term.docs.clone(),
+        })
+    }
+
+    pub(super) fn latex(&self, expr: &syntax::Expr) -> String {
+        print_latex(expr, self.elaborator.coordinates.len() == 1)
+    }
+
+    fn conditions(&mut self, conditions: &[Condition], term: &syntax::Term) -> Checked<Body> {
+        let relations: Vec<&Comparison> = match conditions {
+            [Condition::Complementarity(a, b)] => return self.complementarity(a, b),
+            _ => conditions
+                .iter()
+                .filter_map(|condition| match condition {
+                    Condition::Relation(comparison) => Some(comparison),
+                    Condition::Complementarity(..) => None,
+                })
+                .collect(),
+        };
+        let equality = relations.iter().filter(|relation| relation.relation == Relation::Equal).count();
+        let integrals = relations.iter().filter(|relation| integral_side(relation).is_some()).count();
+        let mixed = |count: usize| count != 0 && count != relations.len();
+        if relations.len() != conditions.len() || mixed(equality) || mixed(integrals) {
+            return Err(self.elaborator.errors.report(term.place, catalogue::mixed_conditions()));
+        }
+        if integrals > 0 {
+            return self.integrals(&relations);
+        }
+        let (mut rows, mut dims) = (Vec::new(), Vec::new());
+        let found: Vec<Checked<(Vec<Expr>, Dim)>> = relations.iter().map(|relation| self.rows(relation)).collect();
+        for one in found {
+            let (expressions, dim) = one?;
+            rows.extend(expressions);
+            dims.push(dim);
+        }
+        let parts: Vec<(&syntax::Expr, &Dim)> = relations.iter().map(|relation| &relation.left).zip(&dims).collect();
+        let dim = self.elaborator.agree(&parts, "conditions of one term");
+        let kind = if equality > 0 { TermKind::Residual(rows) } else { TermKind::Inequality(rows) };
+        Ok(self.body(kind, &dim, &relations))
+    }
+
+    pub(super) fn body(&self, kind: TermKind, dim: &Dim, relations: &[&Comparison]) -> Body {
+        let join = |parts: Vec<String>| parts.join(", ");
+        Body {
+            kind,
+            unit: Unit::si(dim.known().cloned().unwrap_or_default()),
+            equation: join(relations.iter().map(|relation| equation(relation)).collect()),
+            latex: join(relations.iter().map(|relation| self.equation_latex(relation)).collect()),
+        }
+    }
+
+    fn equation_latex(&self, relation: &Comparison) -> String {
+        let sign = match relation.relation {
+            Relation::Equal => "=",
+            Relation::AtLeast => r"\ge",
+            Relation::AtMost => r"\le",
+        };
+        format!("{} {sign} {}", self.latex(&relation.left), self.latex(&relation.right))
+    }
+
+    /// Both sides' difference, one entry per row, so that inequalities want it non-negative.
+    fn rows(&mut self, relation: &Comparison) -> Checked<(Vec<Expr>, Dim)> {
+        let (extent, dim, left, right) = self.sides(relation)?;
+        let count = match extent {
+            Extent::Scalar => 1,
+            Extent::Vector(length) => length,
+            Extent::Matrix(rows, columns) => rows * columns,
+        };
+        let entry = |value: &Value, index: usize| -> Scalar {
+            value.entries.get(index).filter(|_| !value.is_zero()).cloned().unwrap_or_else(build::zero)
+        };
+        let rows = (0..count).map(|index| {
+            let (left, right) = (entry(&left, index), entry(&right, index));
+            match relation.relation {
+                Relation::AtMost => build::subtract(&right, &left),
+                Relation::Equal | Relation::AtLeast => build::subtract(&left, &right),
+            }
+        });
+        let rows: Vec<Scalar> = rows.collect();
+        if !rows.iter().any(|row| row.reads.any(Reads::FIELD.and(Reads::PARAMETER))) {
+            let place = relation.left.place.to(relation.right.place);
+            return Err(self.elaborator.errors.report(place, catalogue::nothing_to_solve(&equation(relation))));
+        }
+        Ok((rows.into_iter().map(|row| row.expr).collect(), dim))
+    }
+
+    fn sides(&mut self, relation: &Comparison) -> Checked<(Extent, Dim, Value, Value)> {
+        let (left, right) = (self.elaborator.value(&relation.left), self.elaborator.value(&relation.right));
+        let (left, right) = (left?, right?);
+        let extent = self.elaborator.common_extent(&[(&relation.left, &left), (&relation.right, &right)])?;
+        let parts = [(&relation.left, &left.dim), (&relation.right, &right.dim)];
+        let dim = self.elaborator.agree(&parts, "sides of one condition");
+        Ok((extent, dim, left, right))
+    }
+
+    fn complementarity(&mut self, a: &Comparison, b: &Comparison) -> Checked<Body> {
+        let (first, second) = (self.positive_part(a), self.positive_part(b));
+        let ((a_expr, a_dimension), (b_expr, b_dimension)) = (first?, second?);
+        let kind = TermKind::Complementarity { a: a_expr, b: b_expr, a_dimension: a_dimension.clone(), b_dimension };
+        Ok(Body {
+            kind,
+            unit: Unit::si(a_dimension),
+            equation: format!("{} _|_ {}", equation(a), equation(b)),
+            latex: format!(r"{} \perp {}", self.equation_latex(a), self.equation_latex(b)),
+        })
+    }
+
+    fn positive_part(&mut self, relation: &Comparison) -> Checked<(Expr, Dimension)> {
+        if relation.relation == Relation::Equal {
+            return Err(self
+                .elaborator
+                .errors
+                .report(relation.relation_place, catalogue::complementarity_of_equation()));
+        }
+        let (rows, dim) = self.rows(relation)?;
+        match rows.as_slice() {
+            [only] => Ok((only.clone(), dim.known().cloned().unwrap_or_default())),
+            _ => {
+                let place = relation.left.place.to(relation.right.place);
+                Err(self.elaborator.errors.report(place, catalogue::complementarity_of_vectors()))
+            }
+        }
+    }
+
+    fn chamfer(&mut self, point: &syntax::Expr, symmetric: bool) -> Checked<Body> {
+        let value = self.elaborator.value(point)?;
+        if !matches!(value.extent, Extent::Vector(2..=9)) {
+            let message = catalogue::chamfer_of(&value.extent.to_string());
+            return Err(self.elaborator.errors.report(point.place, message));
+        }
+        let prefix = if symmetric { "symmetric chamfer" } else { "chamfer" };
+        let arrow = if symmetric { r"\leftrightarrow" } else { r"\leftarrow" };
+        Ok(Body {
+            kind: TermKind::Chamfer { point: value.entries.into_iter().map(|entry| entry.expr).collect(), symmetric },
+            unit: Unit::si(value.dim.known().cloned().unwrap_or_default()),
+            equation: format!("{prefix} {}", print_text(point)),
+            latex: format!(r"{} {arrow} \mathrm{{cloud}}", self.latex(point)),
+        })
+    }
+}
+
+/// A comparison as plain text.
+pub(super) fn equation(comparison: &Comparison) -> String {
+    let sign = match comparison.relation {
+        Relation::Equal => "==",
+        Relation::AtLeast => ">=",
+        Relation::AtMost => "<=",
+    };
+    format!("{} {sign} {}", print_text(&comparison.left), print_text(&comparison.right))
+}
+
+/// If one side is `integral(e)`: e, and the other side.
+pub(super) fn integral_side(comparison: &Comparison) -> Option<(&[syntax::Expr], &syntax::Expr)> {
+    let arguments = |expr: &'_ syntax::Expr| match &expr.kind {
+        ExprKind::Call(name, _) => name.text == "integral",
+        _ => false,
+    };
+    let (call, target) = if arguments(&comparison.left) {
+        (&comparison.left, &comparison.right)
+    } else if arguments(&comparison.right) {
+        (&comparison.right, &comparison.left)
+    } else {
+        return None;
+    };
+    match &call.kind {
+        ExprKind::Call(_, arguments) => Some((arguments, target)),
+        _ => None,
+    }
+}

@@ -1,0 +1,221 @@
+//! Declarations: coordinates, fields, sources, parameters and constants get their numbers and units.
+
+use super::build;
+use super::constant::{Constant, in_unit};
+use super::elaborate::Elaborator;
+use super::scope::{Meaning, Symbol};
+use super::value::{Dim, Extent, Reads, Scalar, Value};
+use super::{Coordinate, Field, Model, Name, Node, Parameter, Role};
+use crate::error::{Checked, catalogue};
+use crate::syntax::{Declaration, Kind, Module, Shape};
+use crate::unit::{Dimension, Unit};
+
+/// Declares everything a module declares outside its groups.
+pub(super) fn declare(module: &Module, elaborator: &mut Elaborator<'_>, model: &mut Model) {
+    // In this order, because vectors have one component for each spatial coordinate, and sources come after fields.
+    for kind in [Kind::Coordinate, Kind::Constant, Kind::Parameter, Kind::Field, Kind::Source] {
+        for declaration in module.declarations.iter().filter(|declaration| declaration.kind == kind) {
+            // A name that is taken was reported; the rest is declared all the same.
+            match kind {
+                Kind::Coordinate => drop(coordinate(declaration, elaborator, model)),
+                Kind::Constant => drop(constant(declaration, elaborator)),
+                Kind::Parameter => parameter(declaration, elaborator, model),
+                _ => field(declaration, elaborator, model),
+            }
+        }
+        if kind == Kind::Coordinate {
+            let times = module.declarations.iter().filter(|declaration| declaration.shape == Shape::Time);
+            let times: Vec<&str> = times.map(|declaration| declaration.name.text.as_str()).collect();
+            elaborator.spatial = spatial(&model.coordinates, &times);
+            elaborator.coordinates = model.coordinates.clone();
+        }
+    }
+    if model.coordinates.is_empty() && !module.declarations.iter().any(|d| d.kind == Kind::Coordinate) {
+        elaborator.errors.push(module.name.span, catalogue::nothing_declared("coordinates", "coordinates: x [m];"));
+    }
+    if model.fields.is_empty() && !module.declarations.iter().any(|d| matches!(d.kind, Kind::Field | Kind::Source)) {
+        elaborator.errors.push(module.name.span, catalogue::nothing_declared("fields", "fields: u [m];"));
+    }
+}
+
+/// The coordinates of space: lengths if there are any, else those with the first one's dimension; never one marked
+/// `time`.
+fn spatial(coordinates: &[Coordinate], times: &[&str]) -> Vec<usize> {
+    let candidates: Vec<usize> =
+        (0..coordinates.len()).filter(|&index| !times.contains(&coordinates[index].name.text.as_str())).collect();
+    let dimension = |index: usize| &coordinates[index].unit.dimension;
+    let lengths = candidates.iter().any(|&index| *dimension(index) == Dimension::length());
+    let Some(&first) = candidates.first() else { return Vec::new() };
+    let wanted = if lengths { Dimension::length() } else { dimension(first).clone() };
+    candidates.into_iter().filter(|&index| *dimension(index) == wanted).collect()
+}
+
+/// The unit of a declaration; what could not be read counts as a pure number and compares with everything.
+pub(super) fn unit_and_dim(declaration: &Declaration, elaborator: &Elaborator<'_>) -> (Unit, Dim) {
+    match &declaration.unit {
+        Some(unit) => (unit.clone(), elaborator.dim(&unit.dimension)),
+        None => (Unit::one(), Dim::Unknown),
+    }
+}
+
+fn coordinate(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: &mut Model) -> Checked<()> {
+    let (unit, dim) = unit_and_dim(declaration, elaborator);
+    let index = model.coordinates.len();
+    let scalar = Scalar::leaf(Node::Coordinate(index), Reads::COORDINATE);
+    add_symbol(elaborator, &declaration.name, Meaning::Coordinate, index, Value::scalar(scalar, dim))?;
+    model.coordinates.push(Coordinate { name: declaration.name.clone(), unit, docs: declaration.docs.clone() });
+    Ok(())
+}
+
+fn constant(declaration: &Declaration, elaborator: &mut Elaborator<'_>) -> Checked<()> {
+    let (unit, dim) = unit_and_dim(declaration, elaborator);
+    let Some(expr) = &declaration.value else {
+        let message = catalogue::constant_without_value(&declaration.name.text);
+        let reported = elaborator.errors.report(declaration.name.span, message);
+        elaborator.scope.broken.insert(declaration.name.text.clone());
+        return Err(reported);
+    };
+    let found = in_unit(expr, &unit, elaborator);
+    let value = found.ok().and_then(|constants| constants.into_iter().next()).map(|Constant { value, exact }| {
+        let scalar = match exact.filter(|_| unit.dimension.is_none() && unit.factor == 1.0) {
+            Some(exact) => Scalar::number(exact),
+            None if unit.dimension.is_none() || !elaborator.units_checked => build::real(value),
+            None => Scalar::leaf(Node::Quantity(value, unit.dimension.clone()), Reads::default()),
+        };
+        Value::scalar(scalar, dim)
+    });
+    let symbol =
+        Symbol { meaning: Meaning::Constant, value, span: declaration.name.span, index: 0, parent: None, used: false };
+    elaborator.scope.declare(&declaration.name, symbol, elaborator.errors)
+}
+
+fn parameter(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: &mut Model) {
+    let (unit, dim) = unit_and_dim(declaration, elaborator);
+    let names = components(declaration, elaborator);
+    let first = model.parameters.len();
+    let entries = (0..names.len()).map(|k| Scalar::leaf(Node::Parameter(first + k), Reads::PARAMETER)).collect();
+    // Numbered even if a name is taken, which was reported: what else was declared keeps its number.
+    let _ =
+        add_components(elaborator, declaration, Meaning::Parameter, first, &names, shaped(declaration, entries, dim));
+    let default = each(declaration.value.as_ref(), names.len(), &unit, elaborator);
+    let lower = each(declaration.lower.as_ref(), names.len(), &unit, elaborator);
+    let upper = each(declaration.upper.as_ref(), names.len(), &unit, elaborator);
+    for (k, name) in names.into_iter().enumerate() {
+        let (lower, upper, default) = (lower[k], upper[k], default[k]);
+        check_order(declaration, lower, upper, elaborator);
+        let outside = |value: f64| lower.is_some_and(|low| value < low) || upper.is_some_and(|high| value > high);
+        if let (Some(expr), true) = (&declaration.value, default.is_some_and(outside)) {
+            elaborator.errors.push(expr.place, catalogue::outside_bounds(&name.text));
+        }
+        let docs = declaration.docs.clone();
+        model.parameters.push(Parameter { name, unit: unit.clone(), default, lower, upper, docs });
+    }
+}
+
+fn field(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: &mut Model) {
+    let (unit, dim) = unit_and_dim(declaration, elaborator);
+    let (role, meaning) = match declaration.kind {
+        Kind::Source => (Role::Source, Meaning::Source),
+        _ => (Role::Field, Meaning::Field),
+    };
+    let names = components(declaration, elaborator);
+    let first = model.fields.len();
+    let entries = (0..names.len()).map(|k| Scalar::leaf(Node::Field(first + k), Reads::FIELD)).collect();
+    // Numbered even if a name is taken, which was reported: what else was declared keeps its number.
+    let _ = add_components(elaborator, declaration, meaning, first, &names, shaped(declaration, entries, dim));
+    let lower = each(declaration.lower.as_ref(), names.len(), &unit, elaborator);
+    let upper = each(declaration.upper.as_ref(), names.len(), &unit, elaborator);
+    for (k, name) in names.into_iter().enumerate() {
+        let (lower, upper) = (lower[k], upper[k]);
+        check_order(declaration, lower, upper, elaborator);
+        let docs = declaration.docs.clone();
+        model.fields.push(Field { name, role, unit: unit.clone(), lower, upper, hard: None, docs });
+    }
+}
+
+fn check_order(declaration: &Declaration, lower: Option<f64>, upper: Option<f64>, elaborator: &mut Elaborator<'_>) {
+    if let (Some(expr), Some(low), Some(high)) = (&declaration.upper, lower, upper)
+        && low >= high
+    {
+        elaborator.errors.push(expr.place, catalogue::empty_interval());
+    }
+}
+
+/// One value for each component: of a vector as written, of a scalar for all alike.
+fn each(
+    expr: Option<&crate::syntax::Expr>,
+    count: usize,
+    unit: &Unit,
+    elaborator: &mut Elaborator<'_>,
+) -> Vec<Option<f64>> {
+    let Some(expr) = expr else { return vec![None; count] };
+    match in_unit(expr, unit, elaborator) {
+        Err(_) => vec![None; count],
+        Ok(values) if values.len() == count => values.into_iter().map(|constant| Some(constant.value)).collect(),
+        Ok(values) if values.len() == 1 => vec![Some(values[0].value); count],
+        Ok(values) => {
+            elaborator.errors.push(expr.place, catalogue::wrong_number_of_values(count, values.len()));
+            vec![None; count]
+        }
+    }
+}
+
+/// The names of a declaration's components: `u_x, u_y`, or `u_1, u_2, u_3` of a `vector(3)`.
+pub(super) fn components(declaration: &Declaration, elaborator: &Elaborator<'_>) -> Vec<Name> {
+    let named =
+        |suffix: &str| Name { text: format!("{}_{suffix}", declaration.name.text), span: declaration.name.span };
+    match declaration.shape {
+        Shape::Scalar | Shape::Time => vec![declaration.name.clone()],
+        Shape::Numbered(count) => (1..=count).map(|number| named(&number.to_string())).collect(),
+        Shape::Vector => {
+            elaborator.spatial.iter().map(|&index| named(&elaborator.coordinates[index].name.text)).collect()
+        }
+    }
+}
+
+/// The value of a declared name, of the shape declared.
+pub(super) fn shaped(declaration: &Declaration, entries: Vec<Scalar>, dim: Dim) -> Value {
+    let extent = match declaration.shape {
+        Shape::Scalar | Shape::Time => Extent::Scalar,
+        Shape::Vector | Shape::Numbered(_) => Extent::Vector(entries.len()),
+    };
+    Value { extent, dim, entries }
+}
+
+/// Declares a name and, of a vector, its components.
+pub(super) fn add_components(
+    elaborator: &mut Elaborator<'_>,
+    declaration: &Declaration,
+    meaning: Meaning,
+    first: usize,
+    names: &[Name],
+    value: Value,
+) -> Checked<()> {
+    add_symbol(elaborator, &declaration.name, meaning, first, value.clone())?;
+    if value.extent == Extent::Scalar {
+        return Ok(());
+    }
+    for (k, (name, entry)) in names.iter().zip(&value.entries).enumerate() {
+        let symbol = Symbol {
+            meaning,
+            value: Some(Value::scalar(entry.clone(), value.dim.clone())),
+            span: name.span,
+            index: first + k,
+            parent: Some(declaration.name.text.clone()),
+            used: false,
+        };
+        elaborator.scope.declare(name, symbol, elaborator.errors)?;
+    }
+    Ok(())
+}
+
+fn add_symbol(
+    elaborator: &mut Elaborator<'_>,
+    name: &Name,
+    meaning: Meaning,
+    index: usize,
+    value: Value,
+) -> Checked<()> {
+    let symbol = Symbol { meaning, value: Some(value), span: name.span, index, parent: None, used: false };
+    elaborator.scope.declare(name, symbol, elaborator.errors)
+}

@@ -1,0 +1,133 @@
+//! What is probably a mistake: unused names, and fields or sources that nothing pins down.
+
+use std::collections::{BTreeMap, BTreeSet};
+
+use super::elaborate::Elaborator;
+use super::orders::{Orders, Walker, merge};
+use super::scope::Meaning;
+use super::{Expr, Model, Role, Scene, Term, TermKind};
+use crate::error::catalogue;
+
+/// What one term reads.
+struct Row {
+    group: usize,
+    fields: BTreeMap<usize, Orders>,
+    /// Measured data pins a field whatever the equations' orders are.
+    measured: bool,
+    conditions: usize,
+}
+
+/// Adds warnings; a source in no equation is an error.
+pub(super) fn check(elaborator: &mut Elaborator<'_>, model: &mut Model) {
+    if elaborator.errors.found_any() {
+        // What could not be read may well have used or pinned what seems to lie idle.
+        return;
+    }
+    unused(elaborator);
+    let mut walker = Walker::default();
+    let rows: Vec<Vec<Row>> = model
+        .groups
+        .iter()
+        .enumerate()
+        .map(|(number, group)| group.terms.iter().map(|term| row(number, term, &mut walker)).collect())
+        .collect();
+    sources_without_equation(elaborator, model, &rows);
+    let mut said = BTreeSet::new();
+    for scene in &model.scenes {
+        for (message, field) in unpinned(scene, model, &rows) {
+            if said.insert((field, message.clone())) {
+                model.warnings.push((message, model.fields[field].name.span));
+            }
+        }
+    }
+}
+
+fn unused(elaborator: &mut Elaborator<'_>) {
+    let unused = elaborator.scope.module_symbols().filter(|(_, symbol)| !symbol.used && symbol.parent.is_none());
+    let unused: Vec<_> = unused
+        // A source that nothing reads is an error of its own.
+        .filter(|(_, symbol)| symbol.meaning != Meaning::Source)
+        .map(|(name, symbol)| (catalogue::unused(symbol.meaning.noun(), name), symbol.span))
+        .collect();
+    elaborator.warnings.extend(unused);
+}
+
+fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
+    let mut fields = BTreeMap::new();
+    let expressions = expressions(term);
+    for expr in &expressions {
+        merge(&mut fields, &walker.fields(expr));
+    }
+    let measured = matches!(term.kind, TermKind::Observation(_) | TermKind::Chamfer { .. } | TermKind::Integral { .. });
+    let conditions = match &term.kind {
+        TermKind::Residual(rows) => rows.len(),
+        _ => 1,
+    };
+    Row { group, fields, measured, conditions }
+}
+
+fn expressions(term: &Term) -> Vec<&Expr> {
+    match &term.kind {
+        TermKind::Residual(rows) | TermKind::Observation(rows) | TermKind::Inequality(rows) => rows.iter().collect(),
+        TermKind::Complementarity { a, b, .. } => vec![a, b],
+        TermKind::Integral { integrand, target } => integrand.iter().chain(target).collect(),
+        TermKind::Chamfer { point, .. } => point.iter().collect(),
+    }
+}
+
+fn sources_without_equation(elaborator: &mut Elaborator<'_>, model: &Model, rows: &[Vec<Row>]) {
+    for (index, field) in model.fields.iter().enumerate().filter(|(_, field)| field.role == Role::Source) {
+        let equations = model.groups.iter().zip(rows).flat_map(|(group, rows)| group.terms.iter().zip(rows));
+        let read = equations
+            .filter(|(term, _)| !matches!(term.kind, TermKind::Observation(_) | TermKind::Chamfer { .. }))
+            .any(|(_, row)| row.fields.contains_key(&index));
+        if !read {
+            elaborator.errors.push(field.name.span, catalogue::source_without_equation(&field.name.text));
+        }
+    }
+}
+
+/// Fields and sources whose every equation in a scene leaves constants of integration open.
+fn unpinned(scene: &Scene, model: &Model, rows: &[Vec<Row>]) -> Vec<(String, usize)> {
+    let used: Vec<&Row> = rows
+        .iter()
+        .zip(&scene.uses)
+        .flat_map(|(rows, uses)| rows.iter().zip(uses).filter(|(_, used)| **used).map(|(row, _)| row))
+        .collect();
+    let name = if model.scenes.len() > 1 { Some(scene.name.text.as_str()) } else { None };
+    let mut found = Vec::new();
+    for (index, field) in model.fields.iter().enumerate() {
+        let reading: Vec<&&Row> = used.iter().filter(|row| row.fields.contains_key(&index)).collect();
+        let idle = scene.fixed_fields[index].is_some() || field.hard.is_some() || reading.is_empty();
+        if idle || reading.iter().any(|row| row.measured) {
+            continue;
+        }
+        let order = reading.iter().map(|row| row.fields[&index].total).max().unwrap_or(0);
+        let pinning = reading.iter().filter(|row| row.fields[&index].total < order);
+        if order > 0 && pinning.clone().count() == 0 {
+            found.push((catalogue::unpinned(&field.name.text, field.role == Role::Source, order, name), index));
+            continue;
+        }
+        if field.role == Role::Field {
+            found.extend(too_few_conditions(&reading, index, &field.name.text, name).map(|message| (message, index)));
+        }
+    }
+    found
+}
+
+/// An equation of order 2k in space wants k conditions on each side of the domain; an ordinary one as many as its order.
+fn too_few_conditions(reading: &[&&Row], field: usize, text: &str, scene: Option<&str>) -> Option<String> {
+    let mut highest: Orders = Orders::default();
+    for row in reading {
+        let mut all = BTreeMap::from([(field, highest)]);
+        merge(&mut all, &BTreeMap::from([(field, row.fields[&field].clone())]));
+        highest = all.remove(&field).unwrap_or_default();
+    }
+    let order = highest.by.values().copied().max().unwrap_or(0);
+    let needed = if highest.by.len() == 1 { order } else { order.div_ceil(2) } as usize;
+    let equations: BTreeSet<usize> =
+        reading.iter().filter(|row| row.fields[&field].total == highest.total).map(|row| row.group).collect();
+    let conditions: usize =
+        reading.iter().filter(|row| !equations.contains(&row.group)).map(|row| row.conditions).sum();
+    (order > 1 && conditions < needed).then(|| catalogue::few_conditions(text, order, needed, conditions, scene))
+}
