@@ -6,10 +6,12 @@ use middle_support::jet::Jet;
 use middle_support::{Numbers, iterated, laplacian, minimal, operator, partial};
 use nisp_compiler::channels::{self, Operator, Rule};
 use nisp_compiler::plan::rule_programs;
-use nisp_compiler::program::{Program, Slot};
+use nisp_compiler::program::{Op, Program, Slot};
+use nisp_compiler::symbolic::exact::Exact;
 
-const RULES: [fn(&channels::ChannelSet) -> Result<Rule, nisp_compiler::symbolic::exact::Overflow>; 3] =
-    [channels::compose, channels::affine, channels::product];
+type MakeRule = fn(&channels::ChannelSet) -> Exact<Rule>;
+
+const RULES: [MakeRule; 3] = [channels::compose, channels::affine, channels::product];
 
 /// Values of all inputs, by slot.
 #[derive(Clone)]
@@ -152,7 +154,7 @@ fn seeds_of_channels_that_are_not_read_do_not_occur() {
             assert!(read[k] || output.is_none());
         }
         for op in &adjoint.ops {
-            if let nisp_compiler::program::Op::Input(Slot::Seed, k) = op {
+            if let Op::Input(Slot::Seed, k) = op {
                 assert!(read[*k]);
             }
         }
@@ -164,7 +166,7 @@ fn seeds_of_channels_that_are_not_read_do_not_occur() {
 fn von_karman_takes_about_a_hundred_operations() {
     let set = minimal(&[iterated(&laplacian(2, 2), 2), partial(&[1, 1])]);
     let all = vec![true; set.len()];
-    let count = |rule: fn(&channels::ChannelSet) -> Result<Rule, _>| {
+    let count = |rule: MakeRule| {
         let (forward, adjoint) = rule_programs(rule(&set).unwrap(), &all).unwrap();
         (forward.operations(), adjoint.operations())
     };

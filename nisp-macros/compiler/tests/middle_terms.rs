@@ -74,9 +74,10 @@ fn an_integral_has_integrands_and_targets() {
     m.group("g", 0, vec![("r", TermKind::Integral { integrand: vec![field(0), field(1)], target })]);
     m.scene().learned = vec![false, true];
     let plan = plan::build(&m).unwrap();
-    let RowKind::Integral(program) = &plan.scenes[0].groups[0].terms[0].kind else { panic!("not an integral") };
-    // Two targets, then the derivative of each by the learned parameter.
-    assert_eq!(run(program, &[], 0.0), [32.0, 0.0, 16.0, 0.0]);
+    let term = &plan.scenes[0].groups[0].terms[0];
+    let RowKind::Integral(program) = &term.kind else { panic!("not an integral") };
+    assert_eq!(run(program, &[], 0.0), [32.0, 0.0]);
+    assert_eq!(run(&term.target_slopes, &[], 0.0), [16.0, 0.0], "2 g F at F = 2, g = 4");
     assert_eq!(plan.scenes[0].scalars, [Scalar::Parameter(0), Scalar::Parameter(1)]);
 }
 

@@ -12,6 +12,7 @@ use crate::channels::Operator;
 use crate::model::Model;
 use crate::rational::Rational;
 use crate::symbolic::exact::{self, Exact};
+use crate::symbolic::factor::LONG_SUM;
 use crate::symbolic::graph::{Fault, Graph, Id, Leaf, Node};
 use crate::symbolic::rewrite::rewrite;
 
@@ -35,6 +36,9 @@ pub(super) fn collapse(graph: &mut Graph, roots: &[Id], classes: &[usize]) -> Ve
 fn collect_sum(graph: &mut Graph, id: Id) -> Id {
     let mut sum = id;
     while let Node::Sum(constant, terms) = graph.node(sum).clone() {
+        if terms.len() > LONG_SUM {
+            break;
+        }
         let Some((cofactor, members)) = shared_cofactor(graph, &terms) else { break };
         let mut inner = Vec::new();
         let mut rest = vec![(Rational::one(), graph.number(constant))];

@@ -1,6 +1,6 @@
 //! One group of one scene: its rows, channels and programs.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeSet;
 
 use super::rows::{Rows, rows};
 use super::schedule::schedule;
@@ -62,7 +62,14 @@ pub(super) fn draft(
         let Rows { rows, targets: goal } = rows(&mut lowering, term, (place, terms.len()));
         check(&lowering.graph, &rows, model, scene, &term.name)?;
         let (first, count) = (all.len(), rows.len());
-        terms.push(TermPlan { term: index, kind: kind(&term.kind), loss: term.loss, first, rows: count });
+        terms.push(TermPlan {
+            term: index,
+            kind: kind(&term.kind),
+            loss: term.loss,
+            first,
+            rows: count,
+            target_slopes: Program::default(),
+        });
         all.extend(rows);
         targets.push(goal);
     }
@@ -76,7 +83,7 @@ pub(super) fn draft(
     if let Some(fault) = graph.fault() {
         return Err(error(fault, scene, name));
     }
-    let jets = jets(&graph, &rows, &set).into_iter().map(|(key, _)| key).collect();
+    let jets = jets(&graph, &rows, &set).into_iter().collect();
     Ok(Draft { group, graph, terms, rows, targets, set, jets })
 }
 
@@ -137,14 +144,14 @@ fn expand(graph: &mut Graph, id: Id, set: &ChannelSet) -> Id {
     graph.linear(&terms)
 }
 
-/// The jets that rows read, as (field, site, channel), with their nodes.
-fn jets(graph: &Graph, rows: &[Id], set: &ChannelSet) -> BTreeMap<(usize, usize, usize), Id> {
-    let mut found = BTreeMap::new();
+/// The jets that rows read, as (field, site, channel).
+fn jets(graph: &Graph, rows: &[Id], set: &ChannelSet) -> BTreeSet<(usize, usize, usize)> {
+    let mut found = BTreeSet::new();
     for id in graph.reachable(rows.iter().copied()) {
         if let Node::Leaf(Leaf::Jet { field, site, operator }) = graph.node(id)
             && let Some(channel) = set.basis.iter().position(|basis| basis == operator)
         {
-            found.insert((*field, *site, channel), id);
+            found.insert((*field, *site, channel));
         }
     }
     found
@@ -235,7 +242,7 @@ impl Draft {
         slots.learned.iter().map(|scalar| scalar.map(|index| graph.input(Slot::Parameter, index))).collect()
     }
 
-    /// Targets of integrals, each followed by its derivatives by the learned parameters.
+    /// Targets of integrals, and their derivatives by the learned parameters.
     fn integral_targets(&mut self, slots: &Slots) {
         let learned = self.learned(slots);
         let wanted: Vec<Id> = learned.iter().flatten().copied().collect();
@@ -244,13 +251,14 @@ impl Draft {
                 continue;
             }
             let targets = self.targets[term].clone();
-            let mut outputs = targets.clone();
-            for target in targets {
+            let mut slopes = Vec::new();
+            for &target in &targets {
                 let one = self.graph.integer(1);
-                let mut slopes = reverse(&mut self.graph, &[(target, one)], &wanted).into_iter();
-                outputs.extend(learned.iter().map(|id| id.and_then(|_| slopes.next()).unwrap_or(ZERO)));
+                let mut found = reverse(&mut self.graph, &[(target, one)], &wanted).into_iter();
+                slopes.extend(learned.iter().map(|id| id.and_then(|_| found.next()).unwrap_or(ZERO)));
             }
-            self.terms[term].kind = RowKind::Integral(self.program(&outputs, slots, &[]));
+            self.terms[term].kind = RowKind::Integral(self.program(&targets, slots, &[]));
+            self.terms[term].target_slopes = self.program(&slopes, slots, &[]);
         }
     }
 }

@@ -168,6 +168,9 @@ pub struct TermPlan {
     pub first: usize,
     /// Number of rows.
     pub rows: usize,
+    /// Of an integral: the derivatives of its targets by the learned parameters, over slot Parameter only. Outputs row
+    /// by row, each in the order of [`ScenePlan::learned`]. Empty for other kinds.
+    pub target_slopes: Program,
 }
 
 /// How rows are meant.
@@ -178,8 +181,7 @@ pub enum RowKind {
     /// Wanted zero, up to measurement noise.
     Observation,
     /// Rows are integrands; their weighted sum over the group is compared with a target: a program over slot Parameter
-    /// only, whose outputs are one target per row, then for each row the derivative of its target by each learned
-    /// parameter (row by row, in the order of [`ScenePlan::learned`]).
+    /// only, with one output per row.
     Integral(Program),
     /// Rows are coordinates of a surface point, compared with a cloud; true for both directions.
     Chamfer(bool),

@@ -11,6 +11,9 @@ use crate::rational::Rational;
 /// A base with the sign of its exponent: `1/d` and `d` are different factors.
 type Key = (Id, bool);
 
+/// Sums longer than this stay as they are: looking for the best factor takes time quadratic in the length.
+pub const LONG_SUM: usize = 1000;
+
 /// Pulls common factors out of every sum below `roots`.
 pub fn factor(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     rewrite(graph, roots, factor_sum)
@@ -18,6 +21,9 @@ pub fn factor(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
 
 fn factor_sum(graph: &mut Graph, id: Id) -> Id {
     let Node::Sum(constant, terms) = graph.node(id).clone() else { return id };
+    if terms.len() > LONG_SUM {
+        return id;
+    }
     let Some((base, positive)) = most_frequent(graph, &terms) else { return id };
     let matching = |e: &Rational| e.is_integer() && e.is_positive() == positive;
     let exponent = |graph: &Graph, term: Id| exponent_of(graph, term, base).filter(matching);

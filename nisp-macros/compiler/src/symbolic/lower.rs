@@ -14,7 +14,7 @@ use crate::rational::ratio;
 use crate::unit::Dimension;
 
 /// Deeper nesting than any sensible equation has; bounds the recursion.
-const DEPTH_LIMIT: usize = 800;
+const DEPTH_LIMIT: usize = 500;
 
 /// The scalars of a scene, in order of first use.
 #[derive(Clone, Debug, Default)]

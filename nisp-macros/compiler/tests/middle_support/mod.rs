@@ -1,6 +1,7 @@
 //! Shared by the tests of the middle stages: operators from text, and an independent dense Taylor jet.
 #![allow(dead_code, reason = "each test file uses a part")]
 
+pub(crate) mod check;
 pub(crate) mod jet;
 pub(crate) mod models;
 pub(crate) mod oracle;

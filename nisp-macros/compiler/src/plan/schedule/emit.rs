@@ -169,6 +169,13 @@ impl Emitter<'_> {
     }
 
     fn sum(&mut self, constant: Rational, terms: &[(usize, Rational)]) -> Value {
+        if let [(item, coefficient)] = *terms
+            && constant.is_zero()
+            && !coefficient.abs().is_one()
+        {
+            let (factor, value) = (self.number(coefficient), self.value(item));
+            return self.push(Op::Mul(factor, value));
+        }
         let mut terms = terms.to_vec();
         terms.sort_by_key(|&(item, _)| (!self.flat.uniform[item], item));
         let mut addends: Vec<(bool, Addend)> = Vec::new();

@@ -70,6 +70,9 @@ fn share_factors(flat: &mut Flat, roots: &[Option<usize>], work: &mut usize) {
             if let Item::Product(factors) = &flat.items[product]
                 && (factors.len() > 2 || valued[product])
             {
+                if factors.len() * factors.len() + pairs.len() > WORK_LIMIT {
+                    return;
+                }
                 factor_pairs(factors, &mut pairs);
             }
         }
@@ -124,6 +127,10 @@ fn share_terms(flat: &mut Flat, roots: &[Option<usize>], work: &mut usize) {
         let mut pairs: Vec<TermPair> = Vec::new();
         for &sum in &sums {
             if let Item::Sum(_, terms) = &flat.items[sum] {
+                // A long sum alone may have more pairs than there is memory for.
+                if terms.len() * terms.len() / 2 + pairs.len() > WORK_LIMIT / 4 {
+                    return;
+                }
                 term_pairs(terms, &mut pairs);
             }
         }
