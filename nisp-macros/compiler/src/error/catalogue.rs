@@ -1,6 +1,6 @@
 //! What errors say, in one place so that they say it alike: what was expected, what was found, what to do.
 
-use crate::unit::{Dimension, known_symbols};
+use crate::unit::{Dimension, known_symbols, look_up};
 
 mod model;
 mod nearest;
@@ -22,7 +22,7 @@ pub(crate) fn shorten(text: &str) -> String {
     format!("{}...", text.chars().take(LONGEST).collect::<String>())
 }
 
-/// `` `N` (kg m/s^2) `` is more than anybody needs: the unit in brackets.
+/// A dimension as a unit in brackets.
 fn bracketed(dimension: &Dimension) -> String {
     format!("[{dimension}]")
 }
@@ -42,12 +42,17 @@ pub(crate) fn expected_end(found: &str) -> String {
         "inequalities are written `a >= b` or `a <= b`"
     } else if found.starts_with("`_") {
         "complementarity is written `0 <= a _|_ b >= 0`"
-    } else if found == "`(`" || found.starts_with(|c: char| c != '`') || found[1..].starts_with(char::is_alphanumeric) {
+    } else if is_operand(found) {
         "multiplication is written `a * b`, and a statement ends with `;`"
     } else {
         "a statement ends with `;`"
     };
     help(format!("expected an operator or `;`, found {found}"), step)
+}
+
+/// True if what was found could be a factor, so that an operator is missing in front of it.
+fn is_operand(found: &str) -> bool {
+    found == "`(`" || found.trim_start_matches('`').starts_with(char::is_alphanumeric) && found != "the end"
 }
 
 pub(crate) fn expected_separator(found: &str) -> String {
@@ -78,6 +83,9 @@ pub(crate) fn not_a_number(written: &str) -> String {
 }
 
 pub(crate) fn suffixed_number(number: &str, suffix: &str) -> String {
+    if number == "0" && suffix.starts_with(['x', 'b', 'o']) && suffix.len() > 1 {
+        return help(format!("`{number}{}` is not a decimal number", shorten(suffix)), "write it in decimal");
+    }
     help(
         format!("`{number}{}` is not a number", shorten(suffix)),
         format!("write `{number} * {0}`, or `{number} [{0}]` for a unit", shorten(suffix)),
@@ -105,14 +113,41 @@ pub(crate) fn expected_unit(found: &str) -> String {
     help(format!("expected a unit, found {found}"), "for instance `[m/s^2]`, `[kg m^-3]`, or `[1]` for a pure number")
 }
 
+/// Names of units, for those who spell them out; the first that fits is meant.
+const SPELLED_OUT: [(&str, &str); 12] = [
+    ("kilogram", "kg"),
+    ("gram", "g"),
+    ("met", "m"),
+    ("sec", "s"),
+    ("newton", "N"),
+    ("pascal", "Pa"),
+    ("joule", "J"),
+    ("watt", "W"),
+    ("volt", "V"),
+    ("kelvin", "K"),
+    ("radian", "rad"),
+    ("degree", "deg"),
+];
+
+/// `Nm` as `N` and `m`.
+fn two_units(symbol: &str) -> Option<(&str, &str)> {
+    let cuts = symbol.char_indices().skip(1).map(|(cut, _)| symbol.split_at(cut));
+    cuts.into_iter().find(|(first, second)| look_up(first).is_some() && look_up(second).is_some())
+}
+
 pub(crate) fn unknown_unit(symbol: &str) -> String {
     let stem = symbol.trim_end_matches(|c: char| c.is_ascii_digit());
-    let step = if stem.len() < symbol.len() && crate::unit::look_up(stem).is_some() {
-        format!("a power is written `{stem}^{}`", &symbol[stem.len()..])
-    } else if symbol == "degC" {
+    let step = if symbol == "degC" {
         "temperatures are in `K`: degrees Celsius are no multiple of it".into()
+    } else if stem.len() < symbol.len() && look_up(stem).is_some() {
+        format!("a power is written `{stem}^{}`", &symbol[stem.len()..])
+    } else if let Some((_, short)) = SPELLED_OUT.iter().find(|(long, _)| symbol.to_lowercase().starts_with(long)) {
+        format!("write `{short}`")
+    } else if let Some((first, second)) = two_units(symbol) {
+        format!("a product is written `{first} {second}`")
     } else {
-        match nearest(symbol, known_symbols()) {
+        // The commonest prefixed units come first, so that ties go to them.
+        match nearest(symbol, ["kg", "mm", "kN", "kPa", "MPa", "GPa", "ms"].into_iter().chain(known_symbols())) {
             Some(found) => format!("did you mean `{found}`?"),
             None => {
                 "SI units with prefixes are known (`mm`, `kPa`, `GHz`), `deg`, `bar`, `min`, `h`, `L`, `t`, `%`".into()
@@ -127,7 +162,8 @@ pub(crate) fn expected_exponent(found: &str) -> String {
 }
 
 pub(crate) fn expected_expression(found: &str) -> String {
-    format!("expected an expression, found {found}")
+    let message = format!("expected an expression, found {found}");
+    if found == "`*`" { help(message, "a power is written `a^b`") } else { message }
 }
 
 pub(crate) fn expected_close(found: &str) -> String {
@@ -187,6 +223,7 @@ pub(crate) fn expected_relation(found: &str) -> String {
         "`=`" => "an equation is written `a == b`".into(),
         "`<`" | "`>`" | "`=>`" | "`=<`" => "inequalities are written `a >= b` or `a <= b`".to_string(),
         "`~`" => "observations begin with `observe`: `observe NAME: expression ~ column;`".into(),
+        _ if is_operand(found) => "multiplication is written `a * b`; a term is written `name: a == b;`".into(),
         _ => "a term is written `name: a == b;`".into(),
     };
     help(format!("expected `==`, `>=` or `<=`, found {found}"), step)

@@ -51,9 +51,9 @@ impl Elaborator<'_> {
     pub(super) fn product(&mut self, factors: &[(bool, Expr)], place: Place) -> Checked<Value> {
         let values: Vec<Checked<Value>> = factors.iter().map(|(_, factor)| self.value(factor)).collect();
         let values: Vec<Value> = values.into_iter().collect::<Checked<_>>()?;
-        let mut whole: Option<Value> = None;
-        // Scalars in a row become one flat product.
-        let mut scalars: Vec<Scalar> = Vec::new();
+        let mut tensor: Option<Value> = None;
+        // Scalars become one flat quotient, so that long chains nest no deeper than short ones.
+        let (mut above, mut below): (Vec<Scalar>, Vec<Scalar>) = (Vec::new(), Vec::new());
         let mut dim = if self.units_checked { Dim::none() } else { Dim::Unknown };
         for ((divided, factor), value) in factors.iter().zip(values) {
             let combined = if *divided {
@@ -63,31 +63,20 @@ impl Elaborator<'_> {
                 dim.combine(&value.dim, Dimension::times)
             };
             dim = combined.ok_or_else(|| self.errors.report(place, catalogue::absurd_unit()))?;
-            match value.as_scalar() {
-                Some(scalar) if *divided => {
-                    let above = build::product(&scalars);
-                    match &mut whole {
-                        Some(tensor) => *tensor = tensor.map(Dim::Unknown, |entry| build::divide(entry, scalar)),
-                        None => scalars = vec![build::divide(&above, scalar)],
-                    }
+            match (value.as_scalar(), tensor.take()) {
+                (Some(scalar), kept) => {
+                    if *divided { &mut below } else { &mut above }.push(scalar.clone());
+                    tensor = kept;
                 }
-                Some(scalar) if whole.is_none() => scalars.push(scalar.clone()),
-                Some(scalar) => {
-                    whole = whole.map(|tensor| tensor.map(Dim::Unknown, |entry| build::multiply(entry, scalar)));
-                }
-                None => {
-                    let scale = build::product(&scalars);
-                    whole = Some(match whole {
-                        None => value.map(Dim::Unknown, |entry| build::multiply(&scale, entry)),
-                        Some(left) => self.matrix_product(&left, &value, factor)?,
-                    });
-                    scalars.clear();
-                }
+                (None, None) => tensor = Some(value),
+                (None, Some(left)) => tensor = Some(self.matrix_product(&left, &value, factor)?),
             }
         }
-        let mut whole = whole.unwrap_or_else(|| Value::scalar(build::product(&scalars), Dim::Unknown));
-        whole.dim = dim;
-        Ok(whole)
+        let scale = build::divide(&build::product(&above), &build::product(&below));
+        Ok(match tensor {
+            Some(tensor) => tensor.map(dim, |entry| build::multiply(&scale, entry)),
+            None => Value::scalar(scale, dim),
+        })
     }
 
     fn refuse_division(&mut self, factor: &Expr, value: &Value) -> Checked<()> {

@@ -30,10 +30,14 @@ pub(super) fn declare(module: &Module, elaborator: &mut Elaborator<'_>, model: &
             elaborator.coordinates = model.coordinates.clone();
         }
     }
-    if model.coordinates.is_empty() && !module.declarations.iter().any(|d| d.kind == Kind::Coordinate) {
+    if elaborator.errors.found_any() {
+        // A declaration that could not be read is no missing one.
+        return;
+    }
+    if model.coordinates.is_empty() {
         elaborator.errors.push(module.name.span, catalogue::nothing_declared("coordinates", "coordinates: x [m];"));
     }
-    if model.fields.is_empty() && !module.declarations.iter().any(|d| matches!(d.kind, Kind::Field | Kind::Source)) {
+    if model.fields.is_empty() {
         elaborator.errors.push(module.name.span, catalogue::nothing_declared("fields", "fields: u [m];"));
     }
 }

@@ -54,8 +54,11 @@ impl<'e> Elaborator<'e> {
             ExprKind::List(entries) => self.list(entries, expr.place),
             ExprKind::Index(base, indices) => self.index(base, indices, expr.place),
         }?;
-        if value.entries.iter().any(|entry| entry.size > LARGEST || entry.depth > DEEPEST) {
+        if value.entries.iter().any(|entry| entry.size > LARGEST) {
             return Err(self.errors.report(expr.place, catalogue::expression_too_large(LARGEST)));
+        }
+        if value.entries.iter().any(|entry| entry.depth > DEEPEST) {
+            return Err(self.errors.report(expr.place, catalogue::expression_too_deep(DEEPEST)));
         }
         Ok(value)
     }

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::elaborate::Elaborator;
 use super::orders::{Orders, Walker, merge};
 use super::scope::Meaning;
-use super::{Expr, Model, Role, Scene, Term, TermKind};
+use super::{Expr, Model, Role, Scene, Term, TermKind, build};
 use crate::error::catalogue;
 
 /// What one term reads.
@@ -24,6 +24,7 @@ pub(super) fn check(elaborator: &mut Elaborator<'_>, model: &mut Model) {
         return;
     }
     unused(elaborator);
+    shadowed_derivatives(elaborator);
     let mut walker = Walker::default();
     let rows: Vec<Vec<Row>> = model
         .groups
@@ -50,6 +51,20 @@ fn unused(elaborator: &mut Elaborator<'_>) {
         .map(|(name, symbol)| (catalogue::unused(symbol.meaning.noun(), name), symbol.span))
         .collect();
     elaborator.warnings.extend(unused);
+}
+
+/// A name that reads like a derivative but is declared as something else.
+fn shadowed_derivatives(elaborator: &mut Elaborator<'_>) {
+    let symbols = elaborator.scope.module_symbols().filter(|(_, symbol)| symbol.parent.is_none());
+    let shadowing = symbols.filter_map(|(name, symbol)| {
+        let (base, by) = elaborator.derivative_by_suffix(name)?;
+        let inner = elaborator.scope.find(&base)?.value.as_ref()?.as_scalar()?.clone();
+        let derivative = by.into_iter().fold(inner, |inner, coordinate| build::derivative(&inner, coordinate));
+        let same = symbol.value.as_ref()?.as_scalar()?.expr == derivative.expr;
+        (!same).then(|| (catalogue::shadows_derivative(name, &base), symbol.span))
+    });
+    let shadowing: Vec<_> = shadowing.collect();
+    elaborator.warnings.extend(shadowing);
 }
 
 fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {

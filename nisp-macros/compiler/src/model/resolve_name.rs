@@ -62,6 +62,14 @@ impl Elaborator<'_> {
         self.errors.report(place, catalogue::unknown_name(name, nearest.as_deref()))
     }
 
+    /// What a name would mean as a derivative in suffix notation, if it can be read so in one way.
+    pub(super) fn derivative_by_suffix(&self, name: &str) -> Option<(String, Vec<usize>)> {
+        match self.split_suffix(name)? {
+            (base, Suffix::Derivatives(by)) => Some((base, by)),
+            (_, Suffix::Ambiguous) => None,
+        }
+    }
+
     /// Reads `w_xx` as a derivative of `w`, if `w` is a scalar that can depend on coordinates.
     fn split_suffix(&self, name: &str) -> Option<(String, Suffix)> {
         let cuts = name.char_indices().filter(|(_, character)| *character == '_').map(|(index, _)| index);

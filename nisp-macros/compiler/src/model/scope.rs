@@ -64,6 +64,7 @@ impl Scope {
     /// Adds a name, unless it is taken: then that is reported, at the second one.
     pub(super) fn declare(&mut self, name: &Name, symbol: Symbol, errors: &mut Errors) -> Checked<()> {
         if name.text == "pi" {
+            self.broken.insert(name.text.clone());
             return Err(errors.report(name.span, catalogue::reserved_name(&name.text)));
         }
         if let Some(first) = self.find(&name.text) {

@@ -86,7 +86,7 @@ fn entry(
     kind: Kind,
     outer_docs: &[String],
 ) -> Checked<Declaration> {
-    let mut docs = recover::docs(stream, context)?;
+    let mut docs = recover::docs(stream, context);
     if docs.is_empty() {
         docs = outer_docs.to_vec();
     }

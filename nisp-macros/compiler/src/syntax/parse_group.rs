@@ -18,7 +18,7 @@ pub(super) fn parse(stream: &mut Stream<'_>, context: &mut Context<'_>, docs: Ve
 }
 
 fn statement(stream: &mut Stream<'_>, context: &mut Context<'_>, items: &mut Vec<GroupItem>) -> Checked<()> {
-    let docs = recover::docs(stream, context)?;
+    let docs = recover::docs(stream, context);
     let word = stream.peek_word().unwrap_or_default();
     if word == "columns" && stream.second_is(':') {
         let columns = parse_declarations::parse(stream, context, Kind::Column, &docs);

@@ -10,7 +10,7 @@ use crate::error::{Checked, catalogue};
 
 /// Reads the one module of an invocation.
 pub(super) fn parse(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Module> {
-    let docs = recover::docs(stream, context)?;
+    let docs = recover::docs(stream, context);
     let visibility = visibility(stream);
     if !stream.take_word("mod") {
         return Err(context.errors.report(stream.place(), catalogue::expected_module(&stream.found())));
@@ -46,7 +46,7 @@ fn visibility(stream: &mut Stream<'_>) -> TokenStream {
 }
 
 fn statement(stream: &mut Stream<'_>, context: &mut Context<'_>, module: &mut Module) -> Checked<()> {
-    let docs = recover::docs(stream, context)?;
+    let docs = recover::docs(stream, context);
     let word = stream.peek_word().unwrap_or_default();
     if let Some(kind) = parse_declarations::kind_of(&word).filter(|kind| *kind != Kind::Column) {
         module.declarations.extend(parse_declarations::parse(stream, context, kind, &docs));

@@ -86,6 +86,7 @@ pub(super) fn name(stream: &mut Stream<'_>, context: &mut Context<'_>, what: &st
         return Err(context.errors.report(place, catalogue::expected_name(what, &found)));
     };
     if name.text == "_" || syn::parse_str::<syn::Ident>(&name.text).is_err() {
+        context.broken.insert(name.text.clone());
         return Err(context.errors.report(place, catalogue::keyword_as_name(&name.text)));
     }
     Ok(name)
@@ -111,18 +112,19 @@ pub(super) fn block<'a>(stream: &mut Stream<'a>, context: &mut Context<'_>, afte
     }
 }
 
-/// Takes doc comments; any other attribute is a mistake.
-pub(super) fn docs(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Vec<String>> {
+/// Takes doc comments; any other attribute is reported and left out.
+pub(super) fn docs(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Vec<String> {
     let mut lines = Vec::new();
     while let Some(hash) = stream.take("#") {
         let Some((mut inside, place)) = stream.take_group(Delimiter::Bracket) else {
-            return Err(context.errors.report(hash, catalogue::not_a_doc_comment()));
+            context.errors.push(hash, catalogue::not_a_doc_comment());
+            continue;
         };
         let literal = (inside.take_word("doc") && inside.take("=").is_some()).then(|| inside.take_literal()).flatten();
         match literal.map(syn::Lit::new) {
             Some(syn::Lit::Str(text)) => lines.push(text.value().trim().to_string()),
-            _ => return Err(context.errors.report(hash.to(place), catalogue::not_a_doc_comment())),
+            _ => context.errors.push(hash.to(place), catalogue::not_a_doc_comment()),
         }
     }
-    Ok(lines)
+    lines
 }

@@ -29,6 +29,13 @@ pub(crate) fn expression_too_large(limit: u32) -> String {
     )
 }
 
+pub(crate) fn expression_too_deep(limit: u32) -> String {
+    help(
+        format!("this expression is more than {limit} operations deep, with all definitions written out"),
+        "break the equation up: introduce a field for a part of it, with an equation of its own",
+    )
+}
+
 pub(crate) fn expected_scalar(what: &str, text: &str, found: &str) -> String {
     help(
         format!("{what} must be a scalar, but `{}` is {found}", shorten(text)),
