@@ -140,3 +140,21 @@ fn objects_of_the_trait_are_accepted() {
     let mut method = Marquardt::new(vec![1.0, 0.1, 0.0], flat());
     assert!(method.step(rows).unwrap().loss.is_finite());
 }
+
+#[test]
+fn the_number_of_threads_does_not_change_a_bit() {
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| {
+            let mut rows = Rows::new(250, 300, |i, theta, row| {
+                let entry = |k: usize, x: f64| cosine(k, i, 300) * (1.0 + 0.1 * x);
+                (0..250).for_each(|k| row[k] = entry(k, 2.0 * theta[k]));
+                (0..250).map(|k| entry(k, theta[k]) * theta[k]).sum::<f64>() - (i as f64).cos()
+            });
+            let mut method = Marquardt::new(vec![0.1; 250], WeightPrior::uniform(0.1, 250));
+            (0..3).for_each(|_| assert!(method.step(&mut rows).is_ok()));
+            theta(&method).to_vec()
+        })
+    };
+    assert_eq!(run(1), run(3));
+}

@@ -8,6 +8,8 @@ use nisp_runtime::solve::lbfgs::Lbfgs;
 use nisp_runtime::solve::method::{Method, Verdict};
 use nisp_runtime::solve::objective::Objective;
 use solve_common::{Function, quadratic, rosenbrock};
+use std::cell::RefCell;
+use std::rc::Rc;
 
 /// Steps until the loss is below `target`; `None` after `most` steps.
 fn steps_to(
@@ -104,4 +106,39 @@ fn single_precision_gets_as_far_as_it_can() {
     }
     let theta = Method::<f32, dyn Objective<f32>>::theta(&method);
     assert!((theta[0] - 1.0).abs() < 2e-3 && (theta[1] - 1.0).abs() < 4e-3, "{theta:?}");
+}
+
+/// Half the squared distance of `theta`, stretched, to the nearest whole numbers as they were when last looked at.
+fn nearest(len: usize) -> Function {
+    let targets = Rc::new(RefCell::new(vec![0.0; len]));
+    let seen = Rc::clone(&targets);
+    let stretch = |i: usize| 1.0 + 10.0 * i as f64;
+    let mut function = Function::new(len, move |x| {
+        let difference = |i: usize| x[i] - seen.borrow()[i];
+        let value = (0..len).map(|i| 0.5 * stretch(i) * difference(i).powi(2)).sum();
+        (value, (0..len).map(|i| stretch(i) * difference(i)).collect())
+    });
+    function.on_accepted = Some(Box::new(move |x| {
+        let new: Vec<f64> = x.iter().map(|x| (x + 0.4).round()).collect();
+        let changed = *targets.borrow() != new;
+        targets.replace(new);
+        changed
+    }));
+    function
+}
+
+#[test]
+fn an_assignment_may_be_refreshed_at_every_step() {
+    let start: Vec<f64> = (0..10).map(|i| (7.0 * i as f64).sin() * 3.0).collect();
+    let methods: [Box<dyn Method<f64, dyn Objective<f64>>>; 2] =
+        [Box::new(Lbfgs::new(start.clone(), 10)), Box::new(Broyden::new(start, Update::SelfScaledBroyden))];
+    for mut method in methods {
+        let mut function = nearest(10);
+        let function: &mut (dyn Objective<f64> + 'static) = &mut function;
+        let verdicts: Vec<_> = (0..60).map(|_| method.step(function).unwrap().verdict).collect();
+        assert!(verdicts.contains(&Verdict::Changed), "{}", method.name());
+        for x in method.theta() {
+            assert!((x - x.round()).abs() < 1e-7, "{}: {x}", method.name());
+        }
+    }
 }

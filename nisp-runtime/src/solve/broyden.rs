@@ -40,6 +40,9 @@ impl Update {
     }
 }
 
+/// First trial step where the loss falls by as much as in the last step; 2 would be exact for a parabola.
+const FIRST_TRIAL: f64 = 3.0;
+
 /// A dense quasi-Newton method with a strong Wolfe line search.
 pub struct Broyden {
     update: Update,
@@ -54,6 +57,8 @@ pub struct Broyden {
     /// Updates since the matrix was last a multiple of the unit matrix.
     updates: u64,
     faults: u64,
+    /// Decrease of the loss in the last step.
+    decrease: f64,
 }
 
 /// The scalars from which an update is chosen.
@@ -69,7 +74,7 @@ struct Quotients {
 }
 
 impl Broyden {
-    /// Starts at `theta`. Takes 4 bytes per pair of parameters.
+    /// Starts at `theta`. The matrix takes `4 P^2` bytes for `P` parameters.
     pub fn new(theta: Vec<f64>, update: Update) -> Self {
         let len = theta.len();
         Self {
@@ -83,6 +88,7 @@ impl Broyden {
             y: vec![0.0; len],
             updates: 0,
             faults: 0,
+            decrease: 0.0,
             theta,
         }
     }
@@ -103,8 +109,30 @@ impl Broyden {
             return Ok(loss);
         }
         let loss = objective.gradient(&self.theta, &mut self.gradient)?;
-        self.reset();
+        if self.updates == 0 {
+            self.reset();
+        } else {
+            // The function has changed a little, and the curvature is still worth having.
+            let (_, hg) = self.inverse.products(&self.gradient, &self.gradient);
+            self.direction
+                .iter_mut()
+                .zip(hg)
+                .for_each(|(d, hg)| *d = -hg);
+            self.decrease = 0.0;
+        }
         Ok(*self.loss.insert(loss))
+    }
+
+    /// The multiple of a direction of length `norm` to try first. The full step is often too long where the scaling
+    /// has enlarged the matrix; what the last step gained says so without an evaluation (Nocedal and Wright, 3.60).
+    fn first_trial(&self, norm: f64, slope: f64) -> f64 {
+        if self.updates == 0 {
+            (1.0 / norm).min(1.0)
+        } else if self.decrease > 0.0 {
+            (-FIRST_TRIAL * self.decrease / slope).min(1.0)
+        } else {
+            1.0
+        }
     }
 
     /// Takes over the point that the search found at `step` times the direction, and learns from it.
@@ -117,6 +145,7 @@ impl Broyden {
         let sbs = -step * vector::dot(&self.s, &self.gradient);
         std::mem::swap(&mut self.theta, &mut self.search.theta);
         std::mem::swap(&mut self.gradient, &mut self.search.gradient);
+        self.decrease = self.loss.map_or(0.0, |before| before - loss);
         self.loss = Some(loss);
         self.faults = 0;
         self.learn(sbs);
@@ -261,11 +290,7 @@ impl<O: Objective<f64> + ?Sized> Method<f64, O> for Broyden {
             return Ok(self.report(0.0, 0.0, 0, Verdict::Exhausted));
         }
         let norm = vector::norm(&self.direction);
-        let first = if self.updates == 0 {
-            (1.0 / norm).min(1.0)
-        } else {
-            1.0
-        };
+        let first = self.first_trial(norm, slope);
         let found = self.search.run(
             objective,
             &self.theta,
@@ -301,6 +326,7 @@ impl<O: Objective<f64> + ?Sized> Method<f64, O> for Broyden {
             .with("gradient", &self.gradient)
             .with("direction", &self.direction)
             .with("loss", self.loss.as_slice())
+            .with("decrease", &[self.decrease])
             .with("inverse", &self.inverse.export())
             .with_counter("updates", self.updates)
             .with_counter("faults", self.faults)
@@ -314,11 +340,12 @@ impl<O: Objective<f64> + ?Sized> Method<f64, O> for Broyden {
         let direction = state.sized("direction", len)?;
         let loss = state.vector("loss")?.first().copied();
         let (updates, faults) = (state.counter("updates")?, state.counter("faults")?);
+        let [decrease] = state.scalars("decrease")?;
         if !self.inverse.import(state.vector("inverse")?) {
             return Err(Fault::state("inverse"));
         }
         (self.theta, self.gradient, self.direction, self.loss) = (theta, gradient, direction, loss);
-        (self.updates, self.faults) = (updates, faults);
+        (self.updates, self.faults, self.decrease) = (updates, faults, decrease);
         Ok(())
     }
 }

@@ -8,6 +8,8 @@ use nisp_runtime::solve::objective::Objective;
 
 type Evaluate = Box<dyn FnMut(&[f64]) -> (f64, Vec<f64>)>;
 
+type Refresh = Box<dyn FnMut(&[f64]) -> bool>;
+
 /// A function given by its value and gradient.
 pub(crate) struct Function {
     len: usize,
@@ -16,11 +18,13 @@ pub(crate) struct Function {
     pub(crate) evaluations: usize,
     /// Evaluations that report a fault.
     pub(crate) faulty: Vec<usize>,
+    /// What to do at a new iterate; true where the function has changed.
+    pub(crate) on_accepted: Option<Refresh>,
 }
 
 impl Function {
     pub(crate) fn new(len: usize, evaluate: impl FnMut(&[f64]) -> (f64, Vec<f64>) + 'static) -> Self {
-        Self { len, evaluate: Box::new(evaluate), evaluations: 0, faulty: Vec::new() }
+        Self { len, evaluate: Box::new(evaluate), evaluations: 0, faulty: Vec::new(), on_accepted: None }
     }
 }
 
@@ -43,6 +47,10 @@ impl Objective<f64> for Function {
         let (value, g) = (self.evaluate)(theta);
         gradient.copy_from_slice(&g);
         if value.is_finite() { Ok(value) } else { Err(Fault::residual("balance", Some(3))) }
+    }
+
+    fn accepted(&mut self, theta: &[f64]) -> bool {
+        self.on_accepted.as_mut().is_some_and(|refresh| refresh(theta))
     }
 }
 
