@@ -5,6 +5,9 @@
 pub use nisp_macros::pde;
 pub use nisp_runtime::kernel::{Scene, SceneRef, scene};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
+pub use nisp_runtime::recover::{
+    Estimate, LearnedValue, Optimizer, RecoverError, Report, Settings, Solution, TermReport, Width, recover,
+};
 pub use nisp_runtime::{network, real, schema, simd, solve};
 
 /// What emitted code refers to; not for direct use.

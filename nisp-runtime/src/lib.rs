@@ -12,6 +12,7 @@ pub mod network;
 pub mod peak;
 pub mod problem;
 pub mod real;
+pub mod recover;
 pub mod residual;
 pub mod schema;
 pub mod simd;

@@ -168,7 +168,7 @@ impl<E: Real> Engine<E> {
 
     /// Takes over parameters: weights are materialised and packed once, for all tiles.
     pub(crate) fn set(&mut self, theta: &[E]) {
-        self.weights.set(self.isa, &self.layout, theta);
+        self.weights.set(&self.layout, theta);
         for (learned, &theta) in self.learned.iter().zip(&theta[self.layout.learned.clone()]) {
             self.scalars[learned.slot] = E::from_f64(learned.map.at(theta.to_f64()).0);
         }

@@ -31,7 +31,7 @@ impl<E: Real> Engine<E> {
     }
 
     /// Raw rows of a group at `theta`, `[row][point]`, in the engine's units.
-    pub(crate) fn rows(&mut self, group: usize, theta: &[E]) -> Vec<f64> {
+    pub(crate) fn raw_rows(&mut self, group: usize, theta: &[E]) -> Vec<f64> {
         self.set(theta);
         let bound = &self.groups[group];
         let mut all = vec![0.0; bound.schema.rows * bound.points];

@@ -5,6 +5,8 @@ mod layout;
 mod weights;
 
 pub use init::initialise;
+#[cfg(test)]
+pub(crate) use init::normal;
 pub use layout::{Layout, Matrix};
 pub use weights::Weights;
 pub(crate) use weights::add_outer;

@@ -2,6 +2,7 @@
 
 use super::{Layout, Matrix};
 use crate::aligned::AlignedVec;
+use crate::gemm::{self, Left, Packed, Right, Write, gemm};
 use crate::layer::Shape;
 use crate::real::Real;
 use crate::simd::Isa;
@@ -13,31 +14,32 @@ pub struct Weights<E: Real> {
     pub(crate) hidden: Vec<Hidden<E>>,
 }
 
-/// A hidden weight matrix `W`.
+/// A hidden weight matrix `W`, packed for both directions.
 #[derive(Debug)]
 pub(crate) struct Hidden<E: Real> {
-    w: AlignedVec<E>,
-    width: usize,
+    /// `W^T`
+    forward: Packed<E>,
+    /// `W`
+    backward: Packed<E>,
 }
 
 impl<E: Real> Weights<E> {
     /// Weights of a network of this layout, all zero.
-    pub fn new(_isa: Isa, layout: &Layout) -> Self {
+    pub fn new(isa: Isa, layout: &Layout) -> Self {
+        let pack = || Packed::zeros(isa, layout.width, layout.width);
         Self {
             padded: AlignedVec::zeros(layout.padded_len),
-            hidden: layout
-                .hidden
-                .iter()
-                .map(|_| Hidden { w: AlignedVec::zeros(layout.width * layout.width), width: layout.width })
-                .collect(),
+            hidden: layout.hidden.iter().map(|_| Hidden { forward: pack(), backward: pack() }).collect(),
         }
     }
 
     /// Takes over parameters.
-    pub fn set(&mut self, _isa: Isa, layout: &Layout, theta: &[E]) {
+    pub fn set(&mut self, layout: &Layout, theta: &[E]) {
         layout.pad(theta, &mut self.padded);
         for (hidden, matrix) in self.hidden.iter_mut().zip(&layout.hidden) {
-            hidden.w.copy_from_slice(&self.padded[matrix.padded..matrix.padded_bias]);
+            let w = &self.padded[matrix.padded..matrix.padded_bias];
+            hidden.forward.pack(Left::transposed(w, layout.width), layout.width);
+            hidden.backward.pack(Left::rows(w, layout.width), layout.width);
         }
     }
 
@@ -54,39 +56,31 @@ impl<E: Real> Weights<E> {
 
 impl<E: Real> Hidden<E> {
     /// `out = rows W^T`
-    pub(crate) fn forward(&self, _isa: Isa, rows: usize, ld: usize, input: &[E], out: &mut [E]) {
-        for r in 0..rows {
-            for i in 0..self.width {
-                let mut s = E::ZERO;
-                for j in 0..self.width {
-                    s += self.w[i * self.width + j] * input[r * ld + j];
-                }
-                out[r * ld + i] = s;
-            }
-        }
+    pub(crate) fn forward(&self, isa: Isa, rows: usize, ld: usize, input: &[E], out: &mut [E]) {
+        multiply(isa, rows, ld, input, &self.forward, out);
     }
 
     /// Adjoint of [`Hidden::forward`]: `input_bar = out_bar W`
-    pub(crate) fn backward(&self, _isa: Isa, rows: usize, ld: usize, out_bar: &[E], input_bar: &mut [E]) {
-        for r in 0..rows {
-            for j in 0..self.width {
-                let mut s = E::ZERO;
-                for i in 0..self.width {
-                    s += self.w[i * self.width + j] * out_bar[r * ld + i];
-                }
-                input_bar[r * ld + j] = s;
-            }
-        }
+    pub(crate) fn backward(&self, isa: Isa, rows: usize, ld: usize, out_bar: &[E], input_bar: &mut [E]) {
+        multiply(isa, rows, ld, out_bar, &self.backward, input_bar);
     }
 }
 
+fn multiply<E: Real>(isa: Isa, rows: usize, ld: usize, input: &[E], matrix: &Packed<E>, out: &mut [E]) {
+    let shape = gemm::Shape { rows, columns: matrix.columns(), inner: matrix.inner() };
+    gemm(isa, shape, Left::rows(input, ld), Right::Packed(matrix), out, ld, Write::Set);
+}
+
 /// The other adjoint of [`Hidden::forward`], by the weights: `weights_bar += out_bar^T input`.
-pub(crate) fn add_outer<E: Real>(_isa: Isa, rows: usize, shape: Shape, out_bar: &[E], input: &[E], weights_bar: &mut [E]) {
-    for r in 0..rows {
-        for i in 0..shape.width {
-            for j in 0..shape.width {
-                weights_bar[i * shape.width + j] += out_bar[r * shape.ld + i] * input[r * shape.ld + j];
-            }
-        }
-    }
+pub(crate) fn add_outer<E: Real>(
+    isa: Isa,
+    rows: usize,
+    shape: Shape,
+    out_bar: &[E],
+    input: &[E],
+    weights_bar: &mut [E],
+) {
+    let extents = gemm::Shape { rows: shape.width, columns: shape.width, inner: rows };
+    let right = Right::Rows { elements: input, stride: shape.ld };
+    gemm(isa, extents, Left::transposed(out_bar, shape.ld), right, weights_bar, shape.width, Write::Add);
 }

@@ -96,7 +96,7 @@ fn docs(lines: &[String]) -> Vec<TokenStream> {
 fn camel(parts: &[&str]) -> String {
     parts
         .iter()
-        .flat_map(|part| part.split('_'))
+        .flat_map(|part| part.split(|c: char| !c.is_alphanumeric()))
         .map(|word| {
             let mut letters = word.chars();
             letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())

@@ -1,0 +1,182 @@
+//! From a bound problem to its solution: one call.
+//!
+//! [`recover`] chooses how rows are weighted and which method minimises them, runs it within a budget, and reads the
+//! answer back in the user's units.
+
+mod noise;
+mod settings;
+mod solution;
+mod weigh;
+
+use std::time::Instant;
+
+use thiserror::Error;
+
+pub use settings::{Optimizer, Settings, Width};
+pub use solution::{Estimate, LearnedValue, Solution, TermReport};
+
+use crate::engine::Engine;
+use crate::network::initialise;
+use crate::problem::{BindError, Bound, Problem};
+use crate::solve::adam::{Adam, AdamSettings};
+use crate::solve::broyden::{Broyden, Update};
+use crate::solve::driver::{self, Flow, Limits, Outcome, Progress};
+use crate::solve::empirical_bayes::{EmpiricalBayes, EmpiricalBayesSettings};
+use crate::solve::fault::Fault;
+use crate::solve::lbfgs::Lbfgs;
+use crate::solve::marquardt::Marquardt;
+use crate::solve::prior::WeightPrior;
+
+/// Why there is no solution.
+#[derive(Debug, Error)]
+pub enum RecoverError {
+    /// The problem is not fully or not sensibly bound.
+    #[error(transparent)]
+    Bind(#[from] BindError),
+    /// A term cannot be evaluated where the solver starts.
+    #[error("{0}")]
+    Fault(#[from] Fault),
+    /// A method that does not work in the precision asked for.
+    #[error("optimizer {optimizer} works in f64 only; give --precision f64, or choose adam or lbfgs")]
+    Precision {
+        /// The method.
+        optimizer: &'static str,
+    },
+    /// Threads could not be started.
+    #[error("cannot start {threads} threads: {reason}")]
+    Threads {
+        /// How many.
+        threads: usize,
+        /// What the system said.
+        reason: String,
+    },
+}
+
+/// What the caller sees while the solver runs.
+#[derive(Clone, Copy, Debug)]
+pub struct Report {
+    /// Steps so far.
+    pub iteration: u64,
+    /// Seconds so far.
+    pub elapsed_s: f64,
+    /// Least loss so far.
+    pub loss: f64,
+}
+
+/// Solves a problem. `monitor` sees every step and may stop the run; the best state is kept.
+///
+/// # Errors
+/// A problem that is not fully bound, or that cannot be evaluated at all.
+pub fn recover(
+    problem: &Problem,
+    settings: &Settings,
+    monitor: &mut (dyn FnMut(Report) -> Flow + Send),
+) -> Result<Solution, RecoverError> {
+    let start = Instant::now();
+    let bound = problem.bound()?;
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
+    let pool = pool
+        .map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
+    pool.install(|| match settings.precision {
+        Width::F64 => solve_double(bound, settings, start, monitor),
+        Width::F32 => solve_single(bound, settings, start, monitor),
+    })
+}
+
+fn limits(settings: &Settings, start: Instant) -> Limits {
+    Limits {
+        budget: settings.budget.map(|budget| budget.saturating_sub(start.elapsed())),
+        iterations: settings.iterations.unwrap_or(u64::MAX),
+        ..Limits::default()
+    }
+}
+
+fn forward<'a, E>(monitor: &'a mut (dyn FnMut(Report) -> Flow + Send)) -> impl FnMut(&Progress<'_, E>) -> Flow + 'a {
+    move |progress| {
+        monitor(Report {
+            iteration: progress.iteration,
+            elapsed_s: progress.elapsed.as_secs_f64(),
+            loss: progress.best_loss,
+        })
+    }
+}
+
+fn solve_double(
+    bound: Bound,
+    settings: &Settings,
+    start: Instant,
+    monitor: &mut (dyn FnMut(Report) -> Flow + Send),
+) -> Result<Solution, RecoverError> {
+    let mut engine: Engine<f64> = bound.engine(settings.architecture)?;
+    let noise = noise::estimate(&bound);
+    let optimizer = settings.optimizer.choose(&noise);
+    let theta = initialise(engine.layout(), settings.seed);
+    let monitor = &mut forward(monitor);
+    let len = engine.parameters();
+    let limits = limits(settings, start);
+    let mut used = None;
+    let outcome = match optimizer {
+        Optimizer::Evidence | Optimizer::Marquardt => {
+            weigh::by_noise(&mut engine, &bound, &noise);
+            let prior = WeightPrior::uniform(1e-3, len);
+            if optimizer == Optimizer::Evidence {
+                let mut method = EmpiricalBayes::new(theta, prior, EmpiricalBayesSettings::default());
+                let outcome = driver::run(&mut method, &mut engine, limits, monitor);
+                used = Some(method.prior().clone());
+                outcome
+            } else {
+                used = Some(prior.clone());
+                driver::run(&mut Marquardt::new(theta, prior), &mut engine, limits, monitor)
+            }
+        }
+        Optimizer::Broyden => {
+            weigh::by_size(&mut engine);
+            driver::run(&mut Broyden::new(theta, Update::SelfScaledBroyden), &mut engine, limits, monitor)
+        }
+        Optimizer::Lbfgs => {
+            weigh::by_size(&mut engine);
+            driver::run(&mut Lbfgs::new(theta, 20), &mut engine, limits, monitor)
+        }
+        Optimizer::Auto | Optimizer::Adam => {
+            weigh::by_size(&mut engine);
+            weigh::regress_first(&mut engine, &theta)?;
+            driver::run(&mut Adam::new(theta, AdamSettings::default()), &mut engine, limits, monitor)
+        }
+    };
+    Ok(Solution::new(bound, engine, outcome, settings, optimizer, start, used))
+}
+
+fn solve_single(
+    bound: Bound,
+    settings: &Settings,
+    start: Instant,
+    monitor: &mut (dyn FnMut(Report) -> Flow + Send),
+) -> Result<Solution, RecoverError> {
+    let mut engine: Engine<f32> = bound.engine(settings.architecture)?;
+    let theta: Vec<f32> = initialise(engine.layout(), settings.seed).into_iter().map(|x| x as f32).collect();
+    let monitor = &mut forward(monitor);
+    let limits = limits(settings, start);
+    weigh::by_size(&mut engine);
+    let (optimizer, outcome) = match settings.optimizer {
+        Optimizer::Lbfgs => (Optimizer::Lbfgs, driver::run(&mut Lbfgs::new(theta, 20), &mut engine, limits, monitor)),
+        Optimizer::Auto | Optimizer::Adam => {
+            weigh::regress_first(&mut engine, &theta)?;
+            let mut method = Adam::new(theta, AdamSettings::default());
+            (Optimizer::Adam, driver::run(&mut method, &mut engine, limits, monitor))
+        }
+        other => return Err(RecoverError::Precision { optimizer: other.name() }),
+    };
+    let outcome = Outcome {
+        theta: outcome.theta.iter().map(|&x| f64::from(x)).collect(),
+        status: outcome.status,
+        loss: outcome.loss,
+        iterations: outcome.iterations,
+        evaluations: outcome.evaluations,
+        wall_s: outcome.wall_s,
+        warnings: outcome.warnings,
+    };
+    let mut double: Engine<f64> = bound.engine(settings.architecture)?;
+    weigh::by_size(&mut double);
+    Ok(Solution::new(bound, double, outcome, settings, optimizer, start, None))
+}
+

@@ -1,0 +1,107 @@
+//! What a user may choose about a run.
+
+use std::time::Duration;
+
+use super::noise::Noise;
+use crate::network::Architecture;
+
+/// How a problem is solved.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Settings {
+    /// Element type of the network.
+    pub precision: Width,
+    /// Method of minimisation.
+    pub optimizer: Optimizer,
+    /// Shape of the network.
+    pub architecture: Architecture,
+    /// Seed of the initial weights.
+    pub seed: u64,
+    /// Wall time, from the call to the answer.
+    pub budget: Option<Duration>,
+    /// Steps.
+    pub iterations: Option<u64>,
+    /// Threads; 0 for one per processor.
+    pub threads: usize,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            precision: Width::F64,
+            optimizer: Optimizer::Auto,
+            architecture: Architecture::modified(16, 2),
+            seed: 0,
+            budget: Some(Duration::from_secs(10)),
+            iterations: None,
+            threads: 0,
+        }
+    }
+}
+
+/// Width of the element type.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Width {
+    /// Single precision.
+    F32,
+    /// Double precision.
+    F64,
+}
+
+impl Width {
+    /// `f32` or `f64`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::F32 => "f32",
+            Self::F64 => "f64",
+        }
+    }
+}
+
+/// Methods of minimisation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Optimizer {
+    /// Self-scaled Broyden for exact data, Levenberg-Marquardt with evidence for noisy data.
+    Auto,
+    /// First order, with the paper's schedule and loss weights.
+    Adam,
+    /// Limited-memory BFGS.
+    Lbfgs,
+    /// Self-scaled Broyden, dense.
+    Broyden,
+    /// Levenberg-Marquardt with a fixed weak prior.
+    Marquardt,
+    /// Levenberg-Marquardt with prior and noise chosen by the evidence.
+    Evidence,
+}
+
+impl Optimizer {
+    /// Every method, by name.
+    pub const ALL: [Self; 6] =
+        [Self::Auto, Self::Adam, Self::Lbfgs, Self::Broyden, Self::Marquardt, Self::Evidence];
+
+    /// Name as users write it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Auto => "auto",
+            Self::Adam => "adam",
+            Self::Lbfgs => "lbfgs",
+            Self::Broyden => "broyden",
+            Self::Marquardt => "lm",
+            Self::Evidence => "evidence",
+        }
+    }
+
+    /// The method of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|optimizer| optimizer.name() == name)
+    }
+
+    /// What `Auto` stands for, given the data.
+    pub(super) fn choose(self, noise: &Noise) -> Self {
+        match self {
+            Self::Auto if noise.is_exact() => Self::Broyden,
+            Self::Auto => Self::Evidence,
+            chosen => chosen,
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! How much each term counts.
+
+use crate::engine::Engine;
+use crate::problem::Bound;
+use crate::real::Real;
+use crate::recover::noise::Noise;
+use crate::schema::TermKind;
+use crate::solve::fault::Fault;
+use crate::solve::objective::LeastSquares;
+
+/// Tolerance of equations where data are noisy, as a share of the equation's natural size: so small that the equation
+/// adds nothing to the error, so large that the problem stays well conditioned.
+const EQUATION_TOLERANCE: f64 = 3e-3;
+
+/// Smallest noise that data are credited with, as a share of their natural size.
+const LEAST_NOISE: f64 = 1e-6;
+
+/// Mean squares of rows over their natural sizes, times the user's weights: for exact data.
+pub(super) fn by_size<E: Real>(engine: &mut Engine<E>) {
+    for group in &mut engine.groups {
+        for term in &mut group.terms {
+            let count = if term.schema.kind == TermKind::Integral { 1 } else { group.points };
+            term.factor = (term.schema.weight / count as f64).sqrt();
+        }
+    }
+}
+
+/// Rows over their standard deviations: noise for data, a tolerance for equations.
+pub(super) fn by_noise(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
+    let mut block = 0;
+    for (at, group) in bound.problem.scene().schema.groups.iter().enumerate() {
+        for (term, schema) in group.terms.iter().enumerate() {
+            let size = bound.sizes[at][term];
+            let sigma = match schema.kind {
+                TermKind::Observation => observed(bound, noise, at, term).unwrap_or(size).max(LEAST_NOISE * size),
+                _ => EQUATION_TOLERANCE * size / schema.weight.sqrt(),
+            };
+            engine.set_sigma(block, sigma);
+            block += 1;
+        }
+    }
+}
+
+/// Noise of the column that an observation compares with: the one of its name, or the group's only one.
+fn observed(bound: &Bound, noise: &Noise, group: usize, term: usize) -> Option<f64> {
+    let schema = &bound.problem.scene().schema.groups[group];
+    let name = schema.terms[term].name;
+    let column = schema.columns.iter().position(|c| c.name == name).or((schema.columns.len() == 1).then_some(0))?;
+    noise.of(group, column)
+}
+
+/// The paper's rule: residuals are weighted so that at the start 50 times their gradient is no longer than the
+/// gradient of the regression terms. First the data are regressed, then the source is solved for (paper, section 3.2).
+pub(super) fn regress_first<E: Real>(engine: &mut Engine<E>, theta: &[E]) -> Result<(), Fault> {
+    const RATIO: f64 = 50.0;
+    let mut regression = 0.0;
+    let mut residual = 0.0;
+    for is_regression in [true, false] {
+        let length = gradient_of(engine, theta, is_regression)?;
+        *(if is_regression { &mut regression } else { &mut residual }) = length;
+    }
+    if regression > 0.0 && residual > 0.0 {
+        let weight = (regression / (RATIO * residual)).min(1.0);
+        each_term(engine, |kind, factor| {
+            if !regresses(kind) {
+                *factor *= weight.sqrt();
+            }
+        });
+    }
+    Ok(())
+}
+
+fn regresses(kind: TermKind) -> bool {
+    matches!(kind, TermKind::Observation | TermKind::Chamfer { .. })
+}
+
+fn each_term<E: Real>(engine: &mut Engine<E>, mut change: impl FnMut(TermKind, &mut f64)) {
+    for term in engine.groups.iter_mut().flat_map(|group| &mut group.terms) {
+        change(term.schema.kind, &mut term.factor);
+    }
+}
+
+/// Length of the gradient of the regression terms alone, or of the others.
+fn gradient_of<E: Real>(engine: &mut Engine<E>, theta: &[E], regression: bool) -> Result<f64, Fault> {
+    let kept: Vec<f64> = engine.groups.iter().flat_map(|g| &g.terms).map(|t| t.factor).collect();
+    each_term(engine, |kind, factor| {
+        if regresses(kind) != regression {
+            *factor = 0.0;
+        }
+    });
+    let mut gradient = vec![E::ZERO; theta.len()];
+    let result = engine.loss_and_gradient(theta, &mut gradient);
+    let mut kept = kept.into_iter();
+    each_term(engine, |_, factor| *factor = kept.next().unwrap_or(1.0));
+    result?;
+    Ok(gradient.iter().map(|g| g.to_f64() * g.to_f64()).sum::<f64>().sqrt())
+}
