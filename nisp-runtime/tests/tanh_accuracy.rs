@@ -88,7 +88,7 @@ fn largest_ratios() -> [f64; D] {
 }
 
 fn factor(phi: &[f64; D], n: usize) -> f64 {
-    if n % 2 == 0 { phi[0] * phi[1] } else { phi[1] }
+    if n.is_multiple_of(2) { phi[0] * phi[1] } else { phi[1] }
 }
 
 /// Distance from `x` to the next number of type `E` away from zero, at least that at the least normal number times 64:

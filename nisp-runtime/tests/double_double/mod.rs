@@ -4,9 +4,9 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// `hi + lo` with |lo| at most half a unit in the last place of hi.
 #[derive(Clone, Copy, Debug)]
-pub struct Dd {
-    pub hi: f64,
-    pub lo: f64,
+pub(crate) struct Dd {
+    pub(crate) hi: f64,
+    pub(crate) lo: f64,
 }
 
 /// ln 2, rounded to both parts.
@@ -20,14 +20,14 @@ fn two_sum(a: f64, b: f64) -> Dd {
 }
 
 impl Dd {
-    pub const ZERO: Dd = Dd { hi: 0.0, lo: 0.0 };
+    pub(crate) const ZERO: Dd = Dd { hi: 0.0, lo: 0.0 };
 
-    pub fn abs(self) -> Dd {
+    pub(crate) fn abs(self) -> Dd {
         if self.hi < 0.0 { -self } else { self }
     }
 
     /// `self * 2^n` in two steps, so that 2^n itself need not exist.
-    pub fn scale2(self, n: i32) -> Dd {
+    pub(crate) fn scale2(self, n: i32) -> Dd {
         let (half, rest) = (2.0_f64.powi(n / 2), 2.0_f64.powi(n - n / 2));
         Dd { hi: self.hi * half * rest, lo: self.lo * half * rest }
     }
@@ -83,7 +83,7 @@ impl Div for Dd {
 }
 
 /// `(exp(y), exp(y) - 1)`, both to full relative precision, by reduction to |r| <= ln(2)/2 and the power series.
-pub fn exponential(y: Dd) -> (Dd, Dd) {
+pub(crate) fn exponential(y: Dd) -> (Dd, Dd) {
     let n = (y.hi / LN2.hi).round();
     let r = y - Dd::from(n) * LN2;
     let (mut term, mut less_one) = (r, r);
