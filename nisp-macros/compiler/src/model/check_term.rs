@@ -28,7 +28,7 @@ impl TermInput<'_, '_> {
         let body = match &term.body {
             TermBody::Conditions(conditions) => self.conditions(conditions, term)?,
             TermBody::Observe { value, column, unit } => {
-                self.observation(value, column.as_ref(), unit.as_ref(), term)?
+                self.observation(value, column.as_ref(), unit.as_deref(), term)?
             }
             TermBody::Chamfer { point, symmetric } => self.chamfer(point, *symmetric)?,
         };
@@ -55,11 +55,11 @@ impl TermInput<'_, '_> {
 
     fn conditions(&mut self, conditions: &[Condition], term: &syntax::Term) -> Checked<Body> {
         let relations: Vec<&Comparison> = match conditions {
-            [Condition::Complementarity(a, b)] => return self.complementarity(a, b),
+            [Condition::Complementarity(pair)] => return self.complementarity(&pair[0], &pair[1]),
             _ => conditions
                 .iter()
                 .filter_map(|condition| match condition {
-                    Condition::Relation(comparison) => Some(comparison),
+                    Condition::Relation(comparison) => Some(&**comparison),
                     Condition::Complementarity(..) => None,
                 })
                 .collect(),

@@ -41,7 +41,7 @@ impl<'e> Elaborator<'e> {
     /// Checks an expression and writes it in scalars.
     pub(super) fn value(&mut self, expr: &Expr) -> Checked<Value> {
         let value = match &expr.kind {
-            ExprKind::Number(number, unit) => Ok(self.number(number, unit.as_ref())),
+            ExprKind::Number(number, unit) => Ok(self.number(number, unit.as_deref())),
             ExprKind::Name(name) => self.name(name, expr.place),
             ExprKind::Negate(inner) => {
                 let inner = self.value(inner)?;

@@ -173,6 +173,8 @@ pub struct Term {
 
 /// What a term asks of the expressions in it; each entry of a vector is one scalar row per point.
 #[derive(Clone, Debug)]
+// There are a handful of terms; plain variants read better than boxes.
+#[allow(clippy::large_enum_variant)]
 pub enum TermKind {
     /// `a == b`, as `a - b`.
     Residual(Vec<Expr>),

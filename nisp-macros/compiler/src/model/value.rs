@@ -104,6 +104,8 @@ impl std::fmt::Display for Extent {
 
 /// The dimension of an expression, as far as it is known.
 #[derive(Clone, Debug, PartialEq)]
+// One for each value under construction: a box would cost more than it saves.
+#[allow(clippy::large_enum_variant)]
 pub(super) enum Dim {
     /// A literal zero: fits everywhere.
     Any,

@@ -2,6 +2,38 @@
 //!
 //! - Input: tokens.
 //! - Output: a [`Module`]. A statement that cannot be read is reported and left out; the rest is read all the same.
+//!
+//! The language, `?` for optional, `...` for repeated, `|` between alternatives:
+//!
+//! ```text
+//! module      VIS? mod NAME { statement... }                    doc comments go before any declaration, group, term, scene
+//! statement   coordinates: (NAME (: time)? UNIT?), ... ;
+//!           | fields: declared, ... ;  | sources: declared, ... ;  | parameters: (declared (= EXPR)?), ... ;
+//!           | constants: (NAME UNIT? = EXPR), ... ;
+//!           | units: off;
+//!           | let NAME = EXPR;
+//!           | hard FIELD = EXPR by EXPR;                        value on the boundary, distance that is zero there
+//!           | on NAME pairs? { item... }
+//!           | scene NAME { choice... }
+//! declared    NAME (: vector | : vector(3))? UNIT? (>= EXPR | <= EXPR | in EXPR .. EXPR)?
+//! item        columns: (NAME (: vector)? UNIT?), ... ;
+//!           | let NAME = EXPR;
+//!           | NAME: condition, ... suffix? ;
+//!           | NAME: symmetric? chamfer EXPR suffix? ;
+//!           | observe NAME, ... suffix? ;                       columns named like the fields, in their units
+//!           | observe NAME: EXPR ~ COLUMN UNIT? suffix? ;       a column declared above, or declared here
+//! condition   EXPR (== | >= | <=) EXPR
+//!           | integral(EXPR) == EXPR
+//!           | 0 <= EXPR _|_ EXPR >= 0                           `complements` for `_|_` reads as well
+//! suffix      (with huber(3) | with welsch(3))? (weight 2)?
+//! choice      NAME = EXPR;  | learn NAME, ... ;  | without PATH, ... ;  | only PATH, ... ;  | weight PATH = NUMBER;
+//! PATH        GROUP | GROUP.TERM
+//! EXPR        + - * / ^, sign, parentheses; `a^b^c` is `a^(b^c)`, `-x^2` is `-(x^2)`
+//!           | NUMBER UNIT?  | NAME  | pi  | I  | [EXPR, ...]  | EXPR[INDEX, INDEX?]
+//!           | d(EXPR, x)  | d(EXPR, x, 2)  | d(EXPR, x, 2, y)  | w_xxy
+//!           | FUNCTION(EXPR, ...)
+//! UNIT        [m/s^2]  | [kg m^-3]  | [W/(m K)]  | [m^(1/2)]  | [1]
+//! ```
 
 use proc_macro2::TokenStream;
 use syn::buffer::TokenBuffer;

@@ -87,7 +87,7 @@ fn primary(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Expr> 
     if let Some(literal) = stream.take_literal() {
         let number = parse_number::parse(&literal, context);
         let unit = parse_unit::parse_optional(stream, context).transpose();
-        let kind = ExprKind::Number(number?, unit?);
+        let kind = ExprKind::Number(number?, unit?.map(Box::new));
         return Ok(Expr { kind, place: start.to(stream.previous()) });
     }
     match stream.take_name() {

@@ -22,7 +22,7 @@ fn statement(stream: &mut Stream<'_>, context: &mut Context<'_>, items: &mut Vec
     let word = stream.peek_word().unwrap_or_default();
     if word == "columns" && stream.second_is(':') {
         let columns = parse_declarations::parse(stream, context, Kind::Column, &docs);
-        items.extend(columns.into_iter().map(GroupItem::Column));
+        items.extend(columns.into_iter().map(|column| GroupItem::Column(Box::new(column))));
     } else if word == "let" {
         items.push(GroupItem::Let(definition(stream, context)?));
     } else if word == "observe" && !stream.second_is(':') {

@@ -61,7 +61,7 @@ fn long_observation(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Check
         return Err(context.errors.report(stream.place(), catalogue::expected_tilde(&stream.found())));
     }
     let column = recover::name(stream, context, "a column")?;
-    let unit = parse_unit::parse_optional(stream, context).transpose()?;
+    let unit = parse_unit::parse_optional(stream, context).transpose()?.map(Box::new);
     Ok(TermBody::Observe { value, column: Some(column), unit })
 }
 
@@ -79,8 +79,11 @@ fn finish(
     Ok(GroupItem::Term(Box::new(Term { name, body, loss, weight, docs, place })))
 }
 
+/// What stands after `with` and after `weight`.
+type Suffixes = (Option<(Name, f64)>, Option<f64>);
+
 /// `with huber(3)`, `weight 2`.
-fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<(Option<(Name, f64)>, Option<f64>)> {
+fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffixes> {
     let (mut loss, mut weight) = (None, None);
     loop {
         if stream.take_word("weight") {
@@ -137,12 +140,13 @@ fn starts_expression(stream: &Stream<'_>) -> bool {
 fn condition(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Condition> {
     let first = comparison(stream, context)?;
     if stream.take_word("complements") || take_perpendicular(stream) {
-        return Ok(Condition::Complementarity(first, comparison(stream, context)?));
+        let second = comparison(stream, context)?;
+        return Ok(Condition::Complementarity(Box::new([first, second])));
     }
     if let Some((_, place)) = take_relation(stream) {
         return Err(context.errors.report(place, catalogue::chained_relation()));
     }
-    Ok(Condition::Relation(first))
+    Ok(Condition::Relation(Box::new(first)))
 }
 
 /// `_|_` arrives as a word, an operator and a word.

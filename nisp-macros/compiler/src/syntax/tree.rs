@@ -129,7 +129,7 @@ pub struct Group {
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
 pub enum GroupItem {
-    Column(Declaration),
+    Column(Box<Declaration>),
     Let(Let),
     Term(Box<Term>),
     /// A term that could not be read: its name is taken all the same.
@@ -165,7 +165,7 @@ pub enum TermBody {
         /// The column of measurements; None in the short form, where it is named like the field.
         column: Option<Name>,
         /// The unit written after the column.
-        unit: Option<Unit>,
+        unit: Option<Box<Unit>>,
     },
     /// `chamfer EXPR` or `symmetric chamfer EXPR`
     Chamfer {
@@ -180,9 +180,9 @@ pub enum TermBody {
 #[derive(Clone, Debug)]
 #[allow(missing_docs)]
 pub enum Condition {
-    Relation(Comparison),
+    Relation(Box<Comparison>),
     /// `0 <= a _|_ b >= 0`
-    Complementarity(Comparison, Comparison),
+    Complementarity(Box<[Comparison; 2]>),
 }
 
 /// Two expressions compared.
@@ -255,7 +255,7 @@ pub struct Expr {
 #[derive(Clone, Debug)]
 pub enum ExprKind {
     /// A literal, perhaps with a unit.
-    Number(Number, Option<Unit>),
+    Number(Number, Option<Box<Unit>>),
     /// A name.
     Name(String),
     /// `-a`
