@@ -103,3 +103,16 @@ fn the_same_model_gives_the_same_plan() {
         assert_eq!(text(), text());
     }
 }
+
+#[test]
+fn literals_too_long_for_one_operator_are_read_apart() {
+    let mut m = one_field();
+    let long = |n: i128| Rc::new(Node::Number(ratio(n, 10i128.pow(30) + 57)));
+    let u = field(0);
+    let term = |n: i128, by: &[usize]| mul(&[&long(n), &d(&u, by)]);
+    let big = 10i128.pow(30);
+    let row = add(&[&term(big + 1, &[0, 0, 0, 0]), &term(big + 3, &[0, 0, 1, 1]), &term(big + 7, &[1, 1, 1, 1])]);
+    m.group("g", 0, vec![("r", TermKind::Residual(vec![row]))]);
+    m.scene();
+    assert!(plan::build(&m).is_ok());
+}

@@ -10,7 +10,7 @@ use crate::symbolic::horner;
 use crate::symbolic::polynomial::Polynomial;
 
 /// Divided powers with more monomials than this are not expanded but built by the recursion.
-const EXPANSION_LIMIT: usize = 64;
+const EXPANSION_LIMIT: usize = 300;
 
 /// One channel of a divided power.
 #[derive(Clone, Debug)]

@@ -13,7 +13,7 @@ use crate::model::Model;
 use crate::rational::Rational;
 use crate::symbolic::exact::{self, Exact};
 use crate::symbolic::factor::LONG_SUM;
-use crate::symbolic::graph::{Fault, Graph, Id, Leaf, Node};
+use crate::symbolic::graph::{Graph, Id, Leaf, Node};
 use crate::symbolic::rewrite::rewrite;
 
 /// A network output at a site.
@@ -108,7 +108,7 @@ fn collapse_sum(graph: &mut Graph, id: Id, classes: &[usize]) -> Id {
         let key = ((field, site), signature(&operator, classes));
         *counts.entry(key.clone()).or_default() += 1;
         if groups.entry(key).or_default().add_scaled(coefficient, &operator).is_err() {
-            return graph.fail(Fault::Overflow);
+            return id;
         }
     }
     if counts.values().all(|&count| count == 1) {
@@ -117,7 +117,8 @@ fn collapse_sum(graph: &mut Graph, id: Id, classes: &[usize]) -> Id {
     for (((field, site), _), operator) in groups {
         match normalised(&operator) {
             Ok((content, operator)) => rest.push((content, graph.leaf(Leaf::Jet { field, site, operator }))),
-            Err(exact::Overflow) => return graph.fail(Fault::Overflow),
+            // Too long for one operator: the parts stay apart.
+            Err(exact::Overflow) => return id,
         }
     }
     graph.linear(&rest)

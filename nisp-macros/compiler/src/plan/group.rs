@@ -77,7 +77,11 @@ pub(super) fn draft(
     let name = &model.groups[group].name;
     let collapsed = collapse::collapse(&mut graph, &all, &collapse::dimension_classes(model));
     let read = operators(&graph, &collapsed);
-    let set = ChannelSet::minimal(&read, model.coordinates.len()).map_err(|_| error(Fault::Overflow, scene, name))?;
+    let coordinates = model.coordinates.len();
+    // Literals too long for exact elimination: carry the operators' parts one by one.
+    let set = ChannelSet::minimal(&read, coordinates)
+        .or_else(|_| ChannelSet::minimal(&parts(&read), coordinates))
+        .map_err(|_| error(Fault::Overflow, scene, name))?;
     let expanded = rewrite(&mut graph, &collapsed, |graph, id| expand(graph, id, &set));
     let rows = factor(&mut graph, &expanded);
     if let Some(fault) = graph.fault() {
@@ -130,6 +134,11 @@ fn operators(graph: &Graph, rows: &[Id]) -> BTreeSet<Operator> {
         _ => None,
     };
     reachable.into_iter().filter_map(operator).collect()
+}
+
+/// The plain partial derivatives that operators combine.
+fn parts(operators: &BTreeSet<Operator>) -> BTreeSet<Operator> {
+    operators.iter().flat_map(|operator| operator.terms().map(|(index, _)| Operator::monomial(index.clone()))).collect()
 }
 
 /// An operator as a combination of channels, so that rows share what they read.

@@ -116,8 +116,15 @@ pub(crate) fn check(model: &Model, plan: &Plan) -> Result<(), String> {
                 let inputs = Inputs::new(&raw, scene, group, &mut numbers);
                 let truth = physical(model, index, &raw);
                 let got = inputs.run(&group.residual);
-                let sizes = inputs.run(&group.magnitude);
-                assert_eq!(sizes.len(), got.len());
+                let mut positive = inputs.clone();
+                positive.jets.iter_mut().for_each(|jet| *jet = jet.abs());
+                let pairs = positive.run(&group.residual).into_iter().zip(positive.run(&group.magnitude));
+                for (row, size) in pairs {
+                    // A row is no larger than its terms together.
+                    if row.abs() > size * (1.0 + 1e-10) {
+                        return Err(format!("magnitude {size} of a row that is {row}"));
+                    }
+                }
                 for (row, (expected, got)) in rows(model, index, group).iter().zip(got).enumerate() {
                     let expected = truth.value(expected);
                     if (got - expected).abs() > 1e-10 * expected.abs().max(1.0) {

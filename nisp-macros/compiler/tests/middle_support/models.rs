@@ -233,3 +233,47 @@ pub(crate) fn membrane() -> Model {
     identify.uses[1][1] = false;
     m
 }
+
+/// The RLC circuit, with its source's derivative on the right: `v'' + 7 v' + 10 v = f' + 6 f`.
+pub(crate) fn rlc() -> Model {
+    let mut m = model(&[("t", TIME)]);
+    let (v, f) = (m.field("v", NONE), m.field("f", NONE));
+    let rate = |value: f64| q(value, [0, 0, -1]);
+    let left = add(&[&d(&v, &[0, 0]), &mul(&[&rate(7.0), &d(&v, &[0])]), &mul(&[&q(10.0, [0, 0, -2]), &v])]);
+    let right = mul(&[&rate(1.0), &add(&[&d(&f, &[0]), &mul(&[&rate(6.0), &f])])]);
+    m.group("circuit", 0, vec![("balance", TermKind::Residual(vec![sub(&left, &right)]))]);
+    m.group("samples", 1, vec![("v", TermKind::Observation(vec![sub(&v, &column(0))]))]);
+    m.scene();
+    m
+}
+
+/// Linear elasticity in three dimensions with Lame parameters; equilibrium inside, traction on a face with normals
+/// from columns, the net force as an integral.
+pub(crate) fn elasticity() -> Model {
+    let mut m = model(&[("x", LENGTH), ("y", LENGTH), ("z", LENGTH)]);
+    let u: Vec<Expr> = ["u", "v", "w"].map(|text| m.field(text, LENGTH)).into();
+    let f = m.bounded("f", PRESSURE, Some(0.0), None);
+    let (lambda, mu) = (m.parameter("lambda", PRESSURE), m.parameter("mu", PRESSURE));
+    let strain = |i: usize, j: usize| div(&add(&[&d(&u[i], &[j]), &d(&u[j], &[i])]), &n(2));
+    let trace = add(&[&strain(0, 0), &strain(1, 1), &strain(2, 2)]);
+    let stress = |i: usize, j: usize| {
+        let shear = mul(&[&n(2), &mu, &strain(i, j)]);
+        if i == j { add(&[&mul(&[&lambda, &trace]), &shear]) } else { shear }
+    };
+    let sum = |term: &dyn Fn(usize) -> Expr| add(&[&term(0), &term(1), &term(2)]);
+    let equilibrium = (0..3).map(|i| sum(&|j| d(&stress(i, j), &[j]))).collect();
+    let traction: Vec<Expr> =
+        (0..3).map(|i| add(&[&sum(&|j| mul(&[&stress(i, j), &column(j)])), &mul(&[&f, &column(i)])])).collect();
+    let target = (0..3).map(|i| q(f64::from(i), FORCE)).collect();
+    m.group("inside", 0, vec![("equilibrium", TermKind::Residual(equilibrium))]);
+    m.group(
+        "face",
+        3,
+        vec![
+            ("traction", TermKind::Residual(traction.clone())),
+            ("force", TermKind::Integral { integrand: traction, target }),
+        ],
+    );
+    m.scene().learned = vec![true, true];
+    m
+}

@@ -51,12 +51,14 @@ pub(super) fn valued(flat: &Flat, roots: &[Option<usize>]) -> Vec<bool> {
     valued
 }
 
-/// The most frequent entry that occurs at least twice; the smallest of equals.
-fn most_frequent<T: Ord + Clone>(mut entries: Vec<T>) -> Option<T> {
+/// The entries that occur most often, if that is at least twice, in ascending order.
+fn most_frequent<T: Ord + Clone>(mut entries: Vec<T>) -> Vec<T> {
     entries.sort_unstable();
-    let runs = entries.chunk_by(|a, b| a == b).filter(|run| run.len() > 1);
-    // `max_by_key` keeps the last of equals, so go backwards.
-    runs.rev().max_by_key(|run| run.len()).map(|run| run[0].clone())
+    let most = entries.chunk_by(|a, b| a == b).map(<[T]>::len).max().unwrap_or(0);
+    if most < 2 {
+        return Vec::new();
+    }
+    entries.chunk_by(|a, b| a == b).filter(|run| run.len() == most).map(|run| run[0].clone()).collect()
 }
 
 fn share_factors(flat: &mut Flat, roots: &[Option<usize>], work: &mut usize) {
@@ -70,32 +72,37 @@ fn share_factors(flat: &mut Flat, roots: &[Option<usize>], work: &mut usize) {
             if let Item::Product(factors) = &flat.items[product]
                 && (factors.len() > 2 || valued[product])
             {
-                if factors.len() * factors.len() + pairs.len() > WORK_LIMIT {
-                    return;
-                }
                 factor_pairs(factors, &mut pairs);
             }
         }
         *work += pairs.len();
-        if *work > WORK_LIMIT {
+        let best = most_frequent(pairs);
+        if best.is_empty() || *work > WORK_LIMIT {
             return;
         }
-        let Some((a, b)) = most_frequent(pairs) else { return };
-        let pair = flat.intern(Item::Product(vec![a, b]));
-        valued.resize(flat.items.len(), true);
-        valued[pair] = true;
-        for &product in &products {
-            if let Item::Product(factors) = &mut flat.items[product]
-                && (factors.len() > 2 || valued[product])
-                && product != pair
-            {
-                replace_factors(factors, a, b, pair);
+        for (a, b) in best {
+            // An earlier pair of this round may have taken these factors.
+            let fits = |&p: &usize| (flat.items[p].operands().len() > 2 || valued[p]) && fits(&flat.items[p], a, b);
+            let members: Vec<usize> = products.iter().copied().filter(fits).collect();
+            let pair = flat.intern(Item::Product(vec![a, b]));
+            valued.resize(flat.items.len(), false);
+            valued[pair] = true;
+            for member in members.into_iter().filter(|&member| member != pair) {
+                if let Item::Product(factors) = &mut flat.items[member] {
+                    replace_factors(factors, a, b, pair);
+                }
+            }
+            if !products.contains(&pair) {
+                products.push(pair);
             }
         }
-        if !products.contains(&pair) {
-            products.push(pair);
-        }
     }
+}
+
+fn fits(item: &Item, a: usize, b: usize) -> bool {
+    let Item::Product(factors) = item else { return false };
+    let count = |x| factors.iter().filter(|&&factor| factor == x).count();
+    if a == b { count(a) > 1 } else { count(a) > 0 && count(b) > 0 }
 }
 
 /// Pairs of factors in a sorted list, each as often as it fits in without overlap.
@@ -135,20 +142,26 @@ fn share_terms(flat: &mut Flat, roots: &[Option<usize>], work: &mut usize) {
             }
         }
         *work += 4 * pairs.len();
-        if *work > WORK_LIMIT {
+        let best = most_frequent(pairs);
+        if best.is_empty() || *work > WORK_LIMIT {
             return;
         }
-        let Some((a, b, factor)) = most_frequent(pairs) else { return };
-        let pair = flat.intern(Item::Sum(Rational::zero(), vec![(a, Rational::one()), (b, factor)]));
-        for &sum in &sums {
-            if let Item::Sum(constant, terms) = &mut flat.items[sum]
-                && (terms.len() > 2 || !constant.is_zero() || sum != pair)
-            {
-                replace_terms(terms, a, b, factor, pair);
+        for (a, b, factor) in best {
+            // An earlier pair of this round may have taken these terms.
+            let has = |&sum: &usize| has_terms(&flat.items[sum], a, b, factor);
+            let members: Vec<usize> = sums.iter().copied().filter(has).collect();
+            if members.len() < 2 {
+                continue;
             }
-        }
-        if !sums.contains(&pair) {
-            sums.push(pair);
+            let pair = flat.intern(Item::Sum(Rational::zero(), vec![(a, Rational::one()), (b, factor)]));
+            for member in members.into_iter().filter(|&member| member != pair) {
+                if let Item::Sum(_, terms) = &mut flat.items[member] {
+                    replace_terms(terms, a, b, pair);
+                }
+            }
+            if !sums.contains(&pair) {
+                sums.push(pair);
+            }
         }
     }
 }
@@ -163,16 +176,22 @@ fn term_pairs(terms: &[(usize, Rational)], pairs: &mut Vec<TermPair>) {
     }
 }
 
-fn replace_terms(terms: &mut Vec<(usize, Rational)>, a: usize, b: usize, factor: Rational, pair: usize) {
-    let Some(first) = terms.iter().position(|&(item, _)| item == a) else { return };
-    let Some(second) = terms.iter().position(|&(item, _)| item == b) else { return };
-    let coefficient = terms[first].1;
-    if exact::mul(coefficient, factor) != Ok(terms[second].1) {
-        return;
+fn coefficient(terms: &[(usize, Rational)], item: usize) -> Option<Rational> {
+    terms.binary_search_by_key(&item, |&(other, _)| other).ok().map(|at| terms[at].1)
+}
+
+fn has_terms(item: &Item, a: usize, b: usize, factor: Rational) -> bool {
+    let Item::Sum(_, terms) = item else { return false };
+    match (coefficient(terms, a), coefficient(terms, b)) {
+        (Some(first), Some(second)) => exact::mul(first, factor) == Ok(second),
+        _ => false,
     }
-    terms.remove(first.max(second));
-    terms.remove(first.min(second));
-    terms.push((pair, coefficient));
+}
+
+fn replace_terms(terms: &mut Vec<(usize, Rational)>, a: usize, b: usize, pair: usize) {
+    let Some(size) = coefficient(terms, a) else { return };
+    terms.retain(|&(item, _)| item != a && item != b);
+    terms.push((pair, size));
     terms.sort_unstable();
 }
 
