@@ -5,6 +5,7 @@
 mod solve_common;
 
 use nisp_runtime::solve::curvature::Curvature;
+use nisp_runtime::solve::driver::{Flow, Limits, Status, run};
 use nisp_runtime::solve::empirical_bayes::{EmpiricalBayes, EmpiricalBayesSettings};
 use nisp_runtime::solve::evidence::evidence;
 use nisp_runtime::solve::marquardt::Marquardt;
@@ -12,6 +13,8 @@ use nisp_runtime::solve::method::{Method, Verdict};
 use nisp_runtime::solve::objective::BlockKind;
 use nisp_runtime::solve::posterior::posterior;
 use nisp_runtime::solve::prior::{PriorGroup, WeightPrior};
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
 use solve_common::rows::{Rows, cosine};
 
 const ROWS: usize = 60;
@@ -167,4 +170,46 @@ fn a_direction_that_no_row_sees_is_shown() {
     let found = posterior(&curvature, &twice, 1);
     close(found.directions[0].deviation, 8.0_f64.sqrt(), 1e-9);
     close(found.directions[0].shape[len], unit[0] / 2.0_f64.sqrt(), 1e-8);
+}
+
+/// A hidden layer of tanh fitted to a sine with a reproducible disturbance of standard deviation 0.1.
+fn noisy_network(units: usize, points: usize) -> Rows {
+    let mut random = StdRng::seed_from_u64(7);
+    // Twelve uniform numbers less six: mean 0, variance 1.
+    let mut normal = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+    let data: Vec<f64> =
+        (0..points).map(|i| (3.0 * (-1.0 + 2.0 * i as f64 / points as f64)).sin() + 0.1 * normal()).collect();
+    let mut rows = Rows::new(3 * units, points, move |i, theta, row| {
+        let x = -1.0 + 2.0 * i as f64 / points as f64;
+        let mut y = 0.0;
+        for (unit, d) in theta.chunks_exact(3).zip(row.chunks_exact_mut(3)) {
+            let t = (unit[0] * x + unit[1]).tanh();
+            let slope = unit[2] * (1.0 - t * t);
+            d.copy_from_slice(&[slope * x, slope, t]);
+            y += unit[2] * t;
+        }
+        y - data[i]
+    });
+    rows.blocks[0].kind = BlockKind::ObservationOfUnknownNoise;
+    rows
+}
+
+#[test]
+fn a_network_learns_its_own_noise() {
+    let (units, points) = (15, 200);
+    let mut rows = noisy_network(units, points);
+    let start = (0..3 * units).map(|i| (12.9898 * i as f64).sin()).collect();
+    let prior = WeightPrior::uniform(1.0, 3 * units);
+    let mut method = EmpiricalBayes::new(start, prior, EmpiricalBayesSettings::default());
+    // Losses are in units of log probability: a share of 3e-3 of about 100 is far below one.
+    let limits = Limits { iterations: 800, tolerance: 3e-3, ..Limits::default() };
+    let outcome = run(&mut method, &mut rows, limits, &mut |_| Flow::Continue);
+    assert_eq!(outcome.status, Status::Converged);
+    let sigma = rows.blocks[0].sigma;
+    assert!((0.08..0.12).contains(&sigma), "{sigma}");
+    let evidence = method.evidence().unwrap();
+    assert!((0.9..1.1).contains(&evidence.blocks[0].chi_square));
+    // A sine takes a handful of directions, not all 45.
+    assert!((3.0..15.0).contains(&evidence.effective_parameters), "{}", evidence.effective_parameters);
+    println!("{} steps, {:.1} directions", outcome.iterations, evidence.effective_parameters);
 }

@@ -16,7 +16,8 @@ pub struct EmpiricalBayesSettings {
     pub warm_up: u64,
     /// Accepted steps between two times.
     pub every: u64,
-    /// Relative change of precisions and sigmas below which they are left alone.
+    /// Relative change of precisions and sigmas below which they are left alone; a few per cent have no consequences,
+    /// and every change begins the judgement of convergence anew.
     pub tolerance: f64,
 }
 
@@ -25,7 +26,7 @@ impl Default for EmpiricalBayesSettings {
         Self {
             warm_up: 15,
             every: 4,
-            tolerance: 0.02,
+            tolerance: 0.05,
         }
     }
 }
