@@ -42,7 +42,7 @@ impl Span {
         Ok(true)
     }
 
-    /// Adds a polynomial and all its derivatives; pushes those that enlarged the span to `found`.
+    /// Adds a polynomial and all its derivatives.
     pub(super) fn close(&mut self, polynomial: &Polynomial, variables: usize) -> Exact<()> {
         let mut open = vec![polynomial.clone()];
         while let Some(next) = open.pop() {

@@ -6,7 +6,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use num_traits::{One, Zero};
+use num_traits::Zero;
 
 use super::exact;
 use super::function::{self, Parity};
@@ -133,16 +133,6 @@ impl Graph {
     /// The node behind an index.
     pub fn node(&self, id: Id) -> &Node {
         &self.nodes[id]
-    }
-
-    /// Number of nodes so far.
-    pub fn len(&self) -> usize {
-        self.nodes.len()
-    }
-
-    /// Never: the constant zero is always there.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 
     pub(super) fn intern(&mut self, node: Node) -> Id {
@@ -282,10 +272,5 @@ impl Graph {
             }
         }
         found
-    }
-
-    /// True for the exact number one.
-    pub fn is_one(&self, id: Id) -> bool {
-        self.exact_constant(id).is_some_and(|value| value.is_one())
     }
 }
