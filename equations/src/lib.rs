@@ -1,6 +1,8 @@
-//! The equations that NISP ships.
+//! The equations that NISP ships, and how each is bound to tables of measurements.
 
 pub mod pendulum;
 pub mod rivals;
 pub mod rlc;
+pub mod series;
 
+pub use series::{Entry, PrepareError, Prepared, Request, catalogue};
