@@ -171,9 +171,9 @@ impl Entry {
             let points: Vec<f64> = match (group.columns.is_empty(), group.name) {
                 (false, _) => times.clone(),
                 (true, "start") => vec![first],
-                (true, _) => (0..COLLOCATION)
-                    .map(|i| first + (last - first) * i as f64 / (COLLOCATION - 1) as f64)
-                    .collect(),
+                (true, _) => {
+                    (0..COLLOCATION).map(|i| first + (last - first) * i as f64 / (COLLOCATION - 1) as f64).collect()
+                }
             };
             problem.set_group(group.name, points.into(), columns)?;
         }

@@ -8,7 +8,13 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>) -> Result<ExitCode, S
     let schema = entry.scene(scene).map_err(|error| error.to_string())?.schema;
     println!("{} / {}: {}", schema.module, schema.name, schema.docs.lines().next().unwrap_or_default());
     for head in schema.heads {
-        println!("  {} {} [{}]  {}", if head.source { "source" } else { "field " }, head.name, head.unit.text, head.docs);
+        println!(
+            "  {} {} [{}]  {}",
+            if head.source { "source" } else { "field " },
+            head.name,
+            head.unit.text,
+            head.docs
+        );
     }
     for group in schema.groups {
         println!("group {}", group.name);

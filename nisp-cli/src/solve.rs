@@ -8,8 +8,8 @@ use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Estimate, Optimizer, Settings, Solution, Width, recover};
 use nisp_data::OutDir;
-use nisp_data::picture::{Curve, LinePanel, LinePlot, Quantity, line_plot};
 use nisp_data::Table;
+use nisp_data::picture::{Curve, LinePanel, LinePlot, Quantity, line_plot};
 use nisp_equations::{Prepared, Request};
 
 use crate::args::Options;

@@ -88,6 +88,10 @@ pub trait Scene: Copy + Send + Sync + 'static {
 
 /// The erased form of a group: hidden rules `H`, rules of the last layer `L`, residuals `R`.
 #[derive(Debug)]
+#[expect(
+    clippy::type_complexity,
+    reason = "a function type that makes the marker Send and Sync whatever the rules are"
+)]
 pub struct Compiled<H, L, R, const K: usize, const D: usize, const S: usize>(PhantomData<fn() -> (H, L, R)>);
 
 impl<H, L, R, const K: usize, const D: usize, const S: usize> Default for Compiled<H, L, R, K, D, S> {

@@ -244,7 +244,17 @@ impl<E> GateAdjoint<'_, E> {
 }
 
 /// `C` composes, `P` multiplies by the gate. Without `COMPOSE` the argument already is the activation's output.
-pub(crate) struct LayerKernel<'a, E, C, P, const K: usize, const D: usize, const S: usize, const COMPOSE: bool, const GATE: bool> {
+pub(crate) struct LayerKernel<
+    'a,
+    E,
+    C,
+    P,
+    const K: usize,
+    const D: usize,
+    const S: usize,
+    const COMPOSE: bool,
+    const GATE: bool,
+> {
     pub(crate) layer: Layer<'a, E>,
     pub(crate) gate: Gate<'a, E>,
     pub(crate) rules: PhantomData<(C, P)>,
@@ -313,7 +323,17 @@ where
 }
 
 /// Adjoint of [`LayerKernel`].
-pub(crate) struct LayerAdjointKernel<'a, E, C, P, const K: usize, const D: usize, const S: usize, const COMPOSE: bool, const GATE: bool> {
+pub(crate) struct LayerAdjointKernel<
+    'a,
+    E,
+    C,
+    P,
+    const K: usize,
+    const D: usize,
+    const S: usize,
+    const COMPOSE: bool,
+    const GATE: bool,
+> {
     pub(crate) layer: LayerAdjoint<'a, E>,
     pub(crate) gate: GateAdjoint<'a, E>,
     pub(crate) rules: PhantomData<(C, P)>,

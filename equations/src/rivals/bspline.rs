@@ -65,10 +65,10 @@ impl Basis {
         values[0] = 1.0;
         for current in 1..=degree {
             let mut carried = 0.0;
-            for i in 0..current {
+            for (i, value) in values.iter_mut().enumerate().take(current) {
                 let (left, right) = (self.knots[span + 1 + i - current], self.knots[span + 1 + i]);
-                let share = values[i] / (right - left);
-                values[i] = carried + (right - t) * share;
+                let share = *value / (right - left);
+                *value = carried + (right - t) * share;
                 carried = (t - left) * share;
             }
             values[current] = carried;

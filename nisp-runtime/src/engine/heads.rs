@@ -74,7 +74,8 @@ impl<E: Real> Kernel<E> for HeadsRowsAdjoint<'_, E> {
                     for (i, output) in of_channel.iter().enumerate() {
                         let seed = V::splat(seeds[(first + i) * stride + p]);
                         // SAFETY: lengths were checked above.
-                        sum = unsafe { V::load(weights.as_ptr().add(output.head * shape.width + u)) }.mul_add(seed, sum);
+                        sum =
+                            unsafe { V::load(weights.as_ptr().add(output.head * shape.width + u)) }.mul_add(seed, sum);
                     }
                     // SAFETY: lengths were checked above.
                     unsafe { sum.store(rows_bar.as_mut_ptr().add(row + u)) };

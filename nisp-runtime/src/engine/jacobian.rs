@@ -68,8 +68,8 @@ impl Engine<f64> {
                 let mut starts = vec![0; group.schema.rows];
                 for term in &group.terms {
                     let points = if term.schema.kind == TermKind::Integral { 1 } else { group.points };
-                    for row in term.schema.first..term.schema.first + term.schema.rows {
-                        starts[row] = next;
+                    for start in &mut starts[term.schema.first..][..term.schema.rows] {
+                        *start = next;
                         next += points;
                     }
                 }
@@ -165,9 +165,7 @@ impl Engine<f64> {
                 network.adjoint(&tile, buffers, &mut gradient, false);
             }
         });
-        for (i, (slope, by_target)) in
-            self.learned_slopes(theta).iter().zip(self.target_slopes(integral)).enumerate()
-        {
+        for (i, (slope, by_target)) in self.learned_slopes(theta).iter().zip(self.target_slopes(integral)).enumerate() {
             let at = self.layout.learned_at + i;
             gradient[at] = (gradient[at] - scale * by_target) * slope;
         }

@@ -14,8 +14,8 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 
-pub use group::{BoundGroup, Scaling};
 pub(crate) use group::BoundTerm;
+pub use group::{BoundGroup, Scaling};
 use tile::{Buffers, Extent, Network, Tile};
 
 use crate::aligned::AlignedVec;
@@ -110,12 +110,7 @@ struct Integral {
 
 impl<E: Real> Engine<E> {
     /// An engine for `groups`, whose kernels, points and data are bound. `scalars` are in the engine's units.
-    pub(crate) fn new(
-        layout: Layout,
-        mut groups: Vec<BoundGroup<E>>,
-        scalars: Vec<E>,
-        learned: Vec<Learned>,
-    ) -> Self {
+    pub(crate) fn new(layout: Layout, mut groups: Vec<BoundGroup<E>>, scalars: Vec<E>, learned: Vec<Learned>) -> Self {
         let isa = Isa::detect();
         for group in &mut groups {
             group.tile = tile_points::<E>(&layout, group.kernel.channels(), group.points);
@@ -213,8 +208,7 @@ impl<E: Real> Engine<E> {
 
     /// Runs all chunks, forward only or with the adjoint.
     fn run(&mut self, adjoint: bool) {
-        let network =
-            Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
+        let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         let (groups, buffers, integrals) = (&self.groups, &self.buffers, &self.integrals);
         let first_term: &[usize] = &first_terms(groups);
         self.chunks.par_iter_mut().for_each(|chunk| {
@@ -388,15 +382,8 @@ fn weigh<E: Real>(
 ) -> Option<(usize, usize)> {
     let stride = tile.stride();
     let Buffers { jets, points, columns, rows, seeds, row_slopes, .. } = buffers;
-    let inputs = Points {
-        count: tile.count,
-        stride,
-        jets,
-        coordinates: points,
-        columns,
-        scalars: network.scalars,
-        seeds: &[],
-    };
+    let inputs =
+        Points { count: tile.count, stride, jets, coordinates: points, columns, scalars: network.scalars, seeds: &[] };
     tile.group.kernel.residual(network.isa, inputs, rows);
     let mut fault = None;
     for ((index, term), share) in tile.group.terms.iter().enumerate().zip(shares) {
@@ -419,7 +406,15 @@ fn weigh<E: Real>(
 
 impl<E: Real> BoundTerm<E> {
     /// Replaces the raw rows of a tile by what counts, and gives half the sum of their squares.
-    fn weigh(&self, row: usize, first: usize, count: usize, values: &mut [E], seeds: &mut [E], slopes: &mut [E]) -> f64 {
+    fn weigh(
+        &self,
+        row: usize,
+        first: usize,
+        count: usize,
+        values: &mut [E],
+        seeds: &mut [E],
+        slopes: &mut [E],
+    ) -> f64 {
         let local = row - self.schema.first;
         let mut sum = 0.0;
         for p in 0..count {

@@ -44,19 +44,4 @@ impl<E: Real> Engine<E> {
         });
         all
     }
-
-    /// Jets of a group at `theta`, `[jet][point]`, in the engine's units.
-    pub(crate) fn jets(&mut self, group: usize, theta: &[E]) -> Vec<f64> {
-        self.set(theta);
-        let bound = &self.groups[group];
-        let mut all = vec![0.0; bound.jets.len() * bound.points];
-        self.each_tile(group, |tile, buffers| {
-            for jet in 0..tile.group.jets.len() {
-                for p in 0..tile.count {
-                    all[jet * tile.group.points + tile.first + p] = buffers.jets[jet * tile.stride() + p].to_f64();
-                }
-            }
-        });
-        all
-    }
 }

@@ -67,7 +67,7 @@ impl Extent {
 
 /// Distance between rows: whole cache lines, and no power of two, where rows would share few cache sets.
 pub(crate) fn row_distance(width: usize) -> usize {
-    if width % 64 == 0 { width + 16 } else { width }
+    if width.is_multiple_of(64) { width + 16 } else { width }
 }
 
 impl<E: Real> Buffers<E> {
@@ -155,8 +155,7 @@ impl<E: Real> Network<'_, E> {
         let layers = self.layout.architecture.layers;
         match gates {
             Some(gate) => {
-                let layer =
-                    Layer { shape, argument: first, bias: &[], slope: &mut [], output: &mut buffers.output };
+                let layer = Layer { shape, argument: first, bias: &[], slope: &mut [], output: &mut buffers.output };
                 kernel.gate(self.isa, layer, gate, layers == 1);
             }
             None => buffers.output[..first.len()].copy_from_slice(first),
@@ -300,7 +299,8 @@ impl<E: Real> Network<'_, E> {
         let learned = &buffers.bars[group.jets.len() * stride..];
         for (first, count, at) in parts.ranges() {
             for i in 0..self.layout.learned.len() {
-                gradient[at + self.layout.learned_at + i] += learned[i * stride + first..][..count].iter().copied().sum();
+                gradient[at + self.layout.learned_at + i] +=
+                    learned[i * stride + first..][..count].iter().copied().sum();
             }
             for (output, bar) in group.outputs.iter().zip(buffers.output_bars.chunks_exact(stride)) {
                 if output.channel == 0 {
@@ -355,7 +355,14 @@ impl<E: Real> Network<'_, E> {
     }
 
     /// The first layer and the gates.
-    fn affine_adjoint(&self, tile: &Tile<'_, E>, shape: Shape, buffers: &mut Buffers<E>, gradient: &mut [E], parts: Parts) {
+    fn affine_adjoint(
+        &self,
+        tile: &Tile<'_, E>,
+        shape: Shape,
+        buffers: &mut Buffers<E>,
+        gradient: &mut [E],
+        parts: Parts,
+    ) {
         let kernel = &*tile.group.kernel;
         let gated = self.layout.affine.len() > 1;
         if gated {
@@ -386,7 +393,8 @@ impl<E: Real> Network<'_, E> {
         let channels = kernel.channels();
         for (j, matrix) in self.layout.affine.iter().enumerate() {
             for (first, count, at) in parts.ranges() {
-                let (weights_bar, rest) = gradient[at + matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
+                let (weights_bar, rest) =
+                    gradient[at + matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
                 let layer = AffineAdjoint {
                     shape: Shape { points: count, ..shape },
                     weights: self.weights.matrix(matrix),
@@ -415,7 +423,9 @@ impl Parts {
     /// First point, number of points, and where their gradient begins.
     fn ranges(self) -> impl Iterator<Item = (usize, usize, usize)> {
         let size = if self.per_point { 1 } else { self.count };
-        (0..self.count).step_by(size).map(move |first| (first, size, if self.per_point { first * self.distance } else { 0 }))
+        (0..self.count)
+            .step_by(size)
+            .map(move |first| (first, size, if self.per_point { first * self.distance } else { 0 }))
     }
 }
 

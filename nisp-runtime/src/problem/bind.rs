@@ -145,7 +145,11 @@ impl Problem {
             };
             let numbers = binding.points.coordinates.len();
             let length = |what: String, found: usize, expected: usize| {
-                if found == expected { Ok(()) } else { Err(BindError::Length { group: group.name, what, found, expected }) }
+                if found == expected {
+                    Ok(())
+                } else {
+                    Err(BindError::Length { group: group.name, what, found, expected })
+                }
             };
             length("the point list".into(), numbers, numbers.div_ceil(inputs) * inputs)?;
             let points = numbers / inputs;

@@ -75,8 +75,7 @@ pub fn recover(
     let start = Instant::now();
     let bound = problem.bound()?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-    let pool = pool
-        .map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
+    let pool = pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
     pool.install(|| match settings.precision {
         Width::F64 => solve_double(bound, settings, start, monitor),
         Width::F32 => solve_single(bound, settings, start, monitor),
@@ -179,4 +178,3 @@ fn solve_single(
     weigh::by_size(&mut double);
     Ok(Solution::new(bound, double, outcome, settings, optimizer, start, None))
 }
-

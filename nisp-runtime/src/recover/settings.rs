@@ -76,8 +76,7 @@ pub enum Optimizer {
 
 impl Optimizer {
     /// Every method, by name.
-    pub const ALL: [Self; 6] =
-        [Self::Auto, Self::Adam, Self::Lbfgs, Self::Broyden, Self::Marquardt, Self::Evidence];
+    pub const ALL: [Self; 6] = [Self::Auto, Self::Adam, Self::Lbfgs, Self::Broyden, Self::Marquardt, Self::Evidence];
 
     /// Name as users write it.
     pub fn name(self) -> &'static str {

@@ -161,8 +161,7 @@ impl Solution {
 
     /// Learned scalars.
     pub fn learned(&mut self) -> Vec<LearnedValue> {
-        let curvature =
-            self.prior.as_ref().and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
+        let curvature = self.prior.as_ref().and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
         let first = self.engine.layout().learned.start;
         let values = self.engine.learned_values(&self.theta);
         let learned = self.engine.learned.iter().zip(values).enumerate();

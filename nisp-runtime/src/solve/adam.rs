@@ -30,14 +30,7 @@ pub struct AdamSettings {
 
 impl Default for AdamSettings {
     fn default() -> Self {
-        Self {
-            rate: 1e-3,
-            decay: 0.9,
-            decay_steps: 5000,
-            beta_1: 0.9,
-            beta_2: 0.999,
-            epsilon: 1e-8,
-        }
+        Self { rate: 1e-3, decay: 0.9, decay_steps: 5000, beta_1: 0.9, beta_2: 0.999, epsilon: 1e-8 }
     }
 }
 
@@ -83,18 +76,10 @@ impl<E: Real> Adam<E> {
         let zeros = || vec![E::ZERO; theta.len()];
         Self {
             settings,
-            trial: Moments {
-                theta: zeros(),
-                mean: zeros(),
-                square: zeros(),
-            },
+            trial: Moments { theta: zeros(), mean: zeros(), square: zeros() },
             gradient: zeros(),
             trial_gradient: zeros(),
-            now: Moments {
-                mean: zeros(),
-                square: zeros(),
-                theta,
-            },
+            now: Moments { mean: zeros(), square: zeros(), theta },
             loss: None,
             steps: 0,
             caution: 1.0,
@@ -160,15 +145,9 @@ fn update<E: Real>(now: &Moments<E>, gradient: &[E], trial: &mut Moments<E>, c: 
             gradient.par_chunks(chunk),
         )
             .into_par_iter()
-            .for_each(
-                |(theta, mean, square, theta_0, mean_0, square_0, gradient)| {
-                    update_chunk(
-                        [theta, mean, square],
-                        [theta_0, mean_0, square_0, gradient],
-                        c,
-                    );
-                },
-            );
+            .for_each(|(theta, mean, square, theta_0, mean_0, square_0, gradient)| {
+                update_chunk([theta, mean, square], [theta_0, mean_0, square_0, gradient], c);
+            });
     }
 }
 
@@ -261,9 +240,5 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Adam<E> {
 
 /// Euclidean distance.
 fn distance<E: Real>(a: &[E], b: &[E]) -> f64 {
-    a.iter()
-        .zip(b)
-        .map(|(a, b)| (*a - *b).to_f64().powi(2))
-        .sum::<f64>()
-        .sqrt()
+    a.iter().zip(b).map(|(a, b)| (*a - *b).to_f64().powi(2)).sum::<f64>().sqrt()
 }

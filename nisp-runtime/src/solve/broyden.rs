@@ -97,10 +97,7 @@ impl Broyden {
     fn reset(&mut self) {
         self.inverse.set_identity(1.0);
         self.updates = 0;
-        self.direction
-            .iter_mut()
-            .zip(&self.gradient)
-            .for_each(|(d, g)| *d = -g);
+        self.direction.iter_mut().zip(&self.gradient).for_each(|(d, g)| *d = -g);
     }
 
     /// Loss, gradient and first direction at theta, unless they are known.
@@ -114,10 +111,7 @@ impl Broyden {
         } else {
             // The function has changed a little, and the curvature is still worth having.
             let (_, hg) = self.inverse.products(&self.gradient, &self.gradient);
-            self.direction
-                .iter_mut()
-                .zip(hg)
-                .for_each(|(d, hg)| *d = -hg);
+            self.direction.iter_mut().zip(hg).for_each(|(d, hg)| *d = -hg);
             self.decrease = 0.0;
         }
         Ok(*self.loss.insert(loss))
@@ -160,18 +154,10 @@ impl Broyden {
         let norms = vector::norm(&self.s) * vector::norm(&self.y);
         let usable = sy > 1e-14 * norms && yw > 0.0 && sbs > 0.0;
         if !usable {
-            self.direction
-                .iter_mut()
-                .zip(hg)
-                .for_each(|(d, hg)| *d = -hg);
+            self.direction.iter_mut().zip(hg).for_each(|(d, hg)| *d = -hg);
             return;
         }
-        let quotients = Quotients {
-            sy,
-            yw,
-            h: yw / sy,
-            b: sbs / sy,
-        };
+        let quotients = Quotients { sy, yw, h: yw / sy, b: sbs / sy };
         let (theta, tau) = choose(self.update, &quotients, self.updates == 0, self.s.len());
         let update = rank_two(&quotients, theta, tau);
         let (sg, wg) = (vector::dot(&self.s, g), vector::dot(hy, g));
@@ -192,11 +178,7 @@ impl Broyden {
         match fault {
             Some(fault) => {
                 self.faults += 1;
-                if self.faults >= FAULTS_IN_A_ROW {
-                    Err(fault)
-                } else {
-                    Ok(Verdict::Faulty(fault))
-                }
+                if self.faults >= FAULTS_IN_A_ROW { Err(fault) } else { Ok(Verdict::Faulty(fault)) }
             }
             None if fresh => Ok(Verdict::Exhausted),
             None => Ok(Verdict::Refused),
@@ -242,11 +224,7 @@ fn choose(update: Update, q: &Quotients, first: bool, len: usize) -> (f64, f64) 
         Update::SelfScaledBroyden => {
             // Keeps the determinant: the geometric mean of the eigenvalues that the update leaves alone.
             let mean = sigma.powf(-1.0 / (len.max(2) - 1) as f64);
-            if theta <= 0.0 {
-                (rho * mean).min(sigma)
-            } else {
-                rho * mean.min(1.0 / theta)
-            }
+            if theta <= 0.0 { (rho * mean).min(sigma) } else { rho * mean.min(1.0 / theta) }
         }
     };
     (theta, tau)
@@ -291,22 +269,11 @@ impl<O: Objective<f64> + ?Sized> Method<f64, O> for Broyden {
         }
         let norm = vector::norm(&self.direction);
         let first = self.first_trial(norm, slope);
-        let found = self.search.run(
-            objective,
-            &self.theta,
-            &self.direction,
-            (loss, slope),
-            first,
-        );
+        let found = self.search.run(objective, &self.theta, &self.direction, (loss, slope), first);
         match found {
-            Found::Better {
-                step,
-                loss,
-                evaluations,
-            } => {
+            Found::Better { step, loss, evaluations } => {
                 self.accept(loss, step);
-                let mut report =
-                    self.report(-0.5 * slope, step * norm, evaluations, Verdict::Moved);
+                let mut report = self.report(-0.5 * slope, step * norm, evaluations, Verdict::Moved);
                 if objective.accepted(&self.theta) {
                     self.loss = None;
                     report.verdict = Verdict::Changed;

@@ -23,11 +23,7 @@ impl Curvature {
     ///
     /// # Errors
     /// A fault of the objective; or `H` is singular: some parameter has neither a prior nor rows that depend on it.
-    pub fn at<O: LeastSquares + ?Sized>(
-        objective: &mut O,
-        theta: &[f64],
-        prior: &WeightPrior,
-    ) -> Result<Self, Fault> {
+    pub fn at<O: LeastSquares + ?Sized>(objective: &mut O, theta: &[f64], prior: &WeightPrior) -> Result<Self, Fault> {
         let (len, count) = (theta.len(), objective.rows());
         let mut rows = vec![0.0; count];
         let mut jacobian = vec![0.0; count * len];
@@ -35,10 +31,7 @@ impl Curvature {
         let mut precision = vec![0.0; len];
         prior.write_diagonal(&mut precision);
         let mut normal = vec![0.0; len * len];
-        dense::gram(
-            dense::row_major(&jacobian, count, len).transpose(),
-            &mut normal,
-        );
+        dense::gram(dense::row_major(&jacobian, count, len).transpose(), &mut normal);
         for (i, a) in precision.iter().enumerate() {
             normal[i * (len + 1)] += a;
         }
@@ -47,30 +40,16 @@ impl Curvature {
         let mut factorise = |jitter: f64| {
             cholesky.factorise(|factor| {
                 factor.copy_from_slice(&normal);
-                factor
-                    .iter_mut()
-                    .step_by(len + 1)
-                    .for_each(|d| *d *= 1.0 + jitter);
+                factor.iter_mut().step_by(len + 1).for_each(|d| *d *= 1.0 + jitter);
             })
         };
         while !factorise(jitter) {
             jitter = if jitter == 0.0 { 1e-14 } else { 10.0 * jitter };
             if jitter > 1e-8 {
-                return Err(Fault {
-                    term: "curvature".into(),
-                    point: None,
-                    what: Kind::Factorisation,
-                });
+                return Err(Fault { term: "curvature".into(), point: None, what: Kind::Factorisation });
             }
         }
-        Ok(Self {
-            len,
-            rows,
-            jacobian,
-            cholesky,
-            precision,
-            jitter,
-        })
+        Ok(Self { len, rows, jacobian, cholesky, precision, jitter })
     }
 
     /// Number of parameters.
@@ -83,9 +62,6 @@ impl Curvature {
     pub(crate) fn variances(&self, vectors: &mut [f64]) -> Vec<f64> {
         let count = vectors.len() / self.len.max(1);
         self.cholesky.solve_lower(vectors, count);
-        vectors
-            .chunks_exact(self.len)
-            .map(|x| super::vector::dot(x, x))
-            .collect()
+        vectors.chunks_exact(self.len).map(|x| super::vector::dot(x, x)).collect()
     }
 }

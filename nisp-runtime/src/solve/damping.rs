@@ -16,10 +16,7 @@ pub(crate) struct Damping {
 
 impl Damping {
     pub(crate) fn new(factor: f64) -> Self {
-        Self {
-            factor,
-            growth: 2.0,
-        }
+        Self { factor, growth: 2.0 }
     }
 
     pub(crate) fn factor(self) -> f64 {

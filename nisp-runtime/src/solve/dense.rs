@@ -24,35 +24,25 @@ pub(crate) fn row_major(data: &[f64], rows: usize, cols: usize) -> MatRef<'_, f6
 /// The lower triangle of `a a^T`, for `a` of `n x k`, into `out` of `n x n`.
 pub(crate) fn gram(a: MatRef<'_, f64>, out: &mut [f64]) {
     let n = a.nrows();
-    out[..n * n]
-        .par_chunks_mut(n * WIDTH)
-        .enumerate()
-        .for_each(|(task, columns)| {
-            let (first, width) = (task * WIDTH, columns.len() / n);
-            let block = MatMut::from_column_major_slice_mut(columns, n, width);
-            let (diagonal, below) = block.split_at_row_mut(first).1.split_at_row_mut(width);
-            let mine = a.subrows(first, width);
-            triangular::matmul(
-                diagonal,
-                triangular::BlockStructure::TriangularLower,
-                Accum::Replace,
-                mine,
-                triangular::BlockStructure::Rectangular,
-                mine.transpose(),
-                triangular::BlockStructure::Rectangular,
-                1.0,
-                Par::Seq,
-            );
-            let others = a.subrows(first + width, n - first - width);
-            matmul::matmul(
-                below,
-                Accum::Replace,
-                others,
-                mine.transpose(),
-                1.0,
-                Par::Seq,
-            );
-        });
+    out[..n * n].par_chunks_mut(n * WIDTH).enumerate().for_each(|(task, columns)| {
+        let (first, width) = (task * WIDTH, columns.len() / n);
+        let block = MatMut::from_column_major_slice_mut(columns, n, width);
+        let (diagonal, below) = block.split_at_row_mut(first).1.split_at_row_mut(width);
+        let mine = a.subrows(first, width);
+        triangular::matmul(
+            diagonal,
+            triangular::BlockStructure::TriangularLower,
+            Accum::Replace,
+            mine,
+            triangular::BlockStructure::Rectangular,
+            mine.transpose(),
+            triangular::BlockStructure::Rectangular,
+            1.0,
+            Par::Seq,
+        );
+        let others = a.subrows(first + width, n - first - width);
+        matmul::matmul(below, Accum::Replace, others, mine.transpose(), 1.0, Par::Seq);
+    });
 }
 
 /// `out = j v`, for `j` row-major with `v.len()` columns.
@@ -80,11 +70,7 @@ pub(crate) struct Cholesky {
 impl Cholesky {
     pub(crate) fn new(n: usize) -> Self {
         let scratch = factor::cholesky_in_place_scratch::<f64>(n, Par::Seq, Default::default());
-        Self {
-            n,
-            factor: vec![0.0; n * n],
-            scratch: MemBuffer::new(scratch),
-        }
+        Self { n, factor: vec![0.0; n * n], scratch: MemBuffer::new(scratch) }
     }
 
     /// Factorises the matrix that `fill` writes into the lower triangle of its argument; false where the matrix is
@@ -93,13 +79,7 @@ impl Cholesky {
         fill(&mut self.factor);
         let matrix = MatMut::from_column_major_slice_mut(&mut self.factor, self.n, self.n);
         let stack = MemStack::new(&mut self.scratch);
-        let done = factor::cholesky_in_place(
-            matrix,
-            Default::default(),
-            Par::Seq,
-            stack,
-            Default::default(),
-        );
+        let done = factor::cholesky_in_place(matrix, Default::default(), Par::Seq, stack, Default::default());
         done.is_ok() && (0..self.n).all(|i| self.factor[i * (self.n + 1)].is_finite())
     }
 
@@ -117,20 +97,16 @@ impl Cholesky {
     /// Solves `L x = b` in place for `count` right-hand sides, one after the other in memory.
     pub(crate) fn solve_lower(&self, b: &mut [f64], count: usize) {
         let n = self.n;
-        b[..n * count]
-            .par_chunks_mut(n * WIDTH)
-            .for_each(|columns| {
-                let width = columns.len() / n;
-                let x = MatMut::from_column_major_slice_mut(columns, n, width);
-                triangular_solve::solve_lower_triangular_in_place(self.lower(), x, Par::Seq);
-            });
+        b[..n * count].par_chunks_mut(n * WIDTH).for_each(|columns| {
+            let width = columns.len() / n;
+            let x = MatMut::from_column_major_slice_mut(columns, n, width);
+            triangular_solve::solve_lower_triangular_in_place(self.lower(), x, Par::Seq);
+        });
     }
 
     /// Logarithm of the determinant of `L L^T`.
     pub(crate) fn log_determinant(&self) -> f64 {
-        2.0 * (0..self.n)
-            .map(|i| self.factor[i * (self.n + 1)].ln())
-            .sum::<f64>()
+        2.0 * (0..self.n).map(|i| self.factor[i * (self.n + 1)].ln()).sum::<f64>()
     }
 
     /// Diagonal of the inverse of `L L^T`.
@@ -140,10 +116,7 @@ impl Cholesky {
         (0..n).for_each(|i| inverse[i * (n + 1)] = 1.0);
         self.solve_lower(&mut inverse, n);
         // (L L^T)^-1 = L^-T L^-1: its diagonal holds the squared norms of the columns of L^-1.
-        inverse
-            .chunks_exact(n)
-            .map(|column| super::vector::dot(column, column))
-            .collect()
+        inverse.chunks_exact(n).map(|column| super::vector::dot(column, column)).collect()
     }
 }
 
@@ -153,8 +126,7 @@ pub(crate) fn eigen(matrix: &[f64], n: usize) -> Option<(Vec<f64>, Vec<f64>)> {
     let mut values = vec![0.0; n];
     let mut vectors = vec![0.0; n * n];
     let params = Default::default();
-    let scratch =
-        evd::self_adjoint_evd_scratch::<f64>(n, evd::ComputeEigenvectors::Yes, Par::Seq, params);
+    let scratch = evd::self_adjoint_evd_scratch::<f64>(n, evd::ComputeEigenvectors::Yes, Par::Seq, params);
     evd::self_adjoint_evd(
         MatRef::from_column_major_slice(&matrix[..n * n], n, n),
         DiagMut::from_slice_mut(&mut values),

@@ -25,13 +25,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self {
-            budget: None,
-            iterations: u64::MAX,
-            tolerance: 1e-6,
-            floor: 0.0,
-            patience: 100,
-        }
+        Self { budget: None, iterations: u64::MAX, tolerance: 1e-6, floor: 0.0, patience: 100 }
     }
 }
 
@@ -214,10 +208,7 @@ fn warn_of(warnings: &mut Vec<Warning>, fault: Fault) {
         _ => false,
     });
     if !known {
-        warnings.push(Warning {
-            message: fault.to_string(),
-            kind: WarningKind::Fault(fault),
-        });
+        warnings.push(Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) });
     }
 }
 
@@ -231,11 +222,7 @@ struct Clock {
 
 impl Clock {
     fn new(budget: Option<Duration>) -> Self {
-        Self {
-            budget,
-            last: Duration::ZERO,
-            longest: Duration::ZERO,
-        }
+        Self { budget, last: Duration::ZERO, longest: Duration::ZERO }
     }
 
     fn tick(&mut self, elapsed: Duration) {
@@ -246,8 +233,6 @@ impl Clock {
 
     /// True where the next step would probably end later than 3 % after the budget.
     fn is_spent(&self, elapsed: Duration) -> bool {
-        self.budget.is_some_and(|budget| {
-            elapsed >= budget || elapsed + self.longest > budget.mul_f64(1.03)
-        })
+        self.budget.is_some_and(|budget| elapsed >= budget || elapsed + self.longest > budget.mul_f64(1.03))
     }
 }

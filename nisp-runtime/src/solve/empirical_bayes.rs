@@ -23,11 +23,7 @@ pub struct EmpiricalBayesSettings {
 
 impl Default for EmpiricalBayesSettings {
     fn default() -> Self {
-        Self {
-            warm_up: 15,
-            every: 4,
-            tolerance: 0.05,
-        }
+        Self { warm_up: 15, every: 4, tolerance: 0.05 }
     }
 }
 
@@ -140,10 +136,7 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for EmpiricalBayes {
             self.since += 1;
         }
         let due = self.accepted >= self.settings.warm_up && self.since >= self.settings.every;
-        let still = step
-            .decrement
-            .is_some_and(|decrement| decrement < 1e-4 * step.loss)
-            && self.since > 0;
+        let still = step.decrement.is_some_and(|decrement| decrement < 1e-4 * step.loss) && self.since > 0;
         if due || still || step.verdict == Verdict::Exhausted {
             match self.choose(objective) {
                 Ok(changed) => {
@@ -163,11 +156,7 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for EmpiricalBayes {
     fn save(&self) -> State {
         let mut state = Method::<f64, O>::save(&self.inner);
         state.method = "lm-evidence".into();
-        let flat: Vec<f64> = self
-            .sigmas
-            .iter()
-            .flat_map(|(index, sigma)| [*index as f64, *sigma])
-            .collect();
+        let flat: Vec<f64> = self.sigmas.iter().flat_map(|(index, sigma)| [*index as f64, *sigma]).collect();
         state
             .with("sigmas", &flat)
             .with_counter("accepted", self.accepted)
@@ -183,16 +172,10 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for EmpiricalBayes {
         if !rest.is_empty() || sigmas.iter().any(|[_, sigma]| *sigma <= 0.0) {
             return Err(Fault::state("sigmas"));
         }
-        let inner = State {
-            method: "lm".into(),
-            ..state.clone()
-        };
+        let inner = State { method: "lm".into(), ..state.clone() };
         Method::<f64, O>::restore(&mut self.inner, &inner)?;
         (self.accepted, self.since, self.faults) = (accepted, since, faults);
-        self.sigmas = sigmas
-            .iter()
-            .map(|[index, sigma]| (*index as usize, *sigma))
-            .collect();
+        self.sigmas = sigmas.iter().map(|[index, sigma]| (*index as usize, *sigma)).collect();
         self.restored = true;
         Ok(())
     }

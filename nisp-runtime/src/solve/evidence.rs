@@ -46,12 +46,7 @@ pub struct BlockEvidence {
 }
 
 /// Reads the evidence from the curvature at a minimum `theta` under `prior`, with the rows in `blocks`.
-pub fn evidence(
-    curvature: &Curvature,
-    prior: &WeightPrior,
-    theta: &[f64],
-    blocks: &[Block],
-) -> Evidence {
+pub fn evidence(curvature: &Curvature, prior: &WeightPrior, theta: &[f64], blocks: &[Block]) -> Evidence {
     let blocks = block_evidence(curvature, blocks);
     let inverse = curvature.cholesky.inverse_diagonal();
     let groups: Vec<_> = prior
@@ -62,54 +57,27 @@ pub fn evidence(
             let trace: f64 = inverse[group.range.clone()].iter().sum();
             let effective = (size - group.precision * trace).clamp(0.0, size);
             let precision = effective / group.square(theta).max(f64::MIN_POSITIVE);
-            GroupEvidence {
-                name: group.name.clone(),
-                effective,
-                precision,
-            }
+            GroupEvidence { name: group.name.clone(), effective, precision }
         })
         .collect();
     let effective_parameters = blocks.iter().map(|(_, block)| block.effective).sum();
-    let log_evidence = log_evidence(
-        curvature,
-        prior,
-        theta,
-        blocks.iter().map(|(block, _)| *block),
-    );
+    let log_evidence = log_evidence(curvature, prior, theta, blocks.iter().map(|(block, _)| *block));
     let blocks = blocks.into_iter().map(|(_, evidence)| evidence).collect();
-    Evidence {
-        groups,
-        blocks,
-        effective_parameters,
-        log_evidence,
-    }
+    Evidence { groups, blocks, effective_parameters, log_evidence }
 }
 
 /// Blocks beside their evidence.
-fn block_evidence<'a>(
-    curvature: &Curvature,
-    blocks: &'a [Block],
-) -> Vec<(&'a Block, BlockEvidence)> {
+fn block_evidence<'a>(curvature: &Curvature, blocks: &'a [Block]) -> Vec<(&'a Block, BlockEvidence)> {
     // Row i determines j_i^T H^-1 j_i directions.
     let leverages = curvature.variances(&mut curvature.jacobian.clone());
     let of = |block: &'a Block| {
         let rows = &curvature.rows[block.rows.clone()];
         let effective = leverages[block.rows.clone()].iter().sum::<f64>();
         // A block that is fitted exactly has no free datum left, and says nothing about its sigma.
-        let free = (block.count - effective)
-            .max(1e-3 * block.count)
-            .max(f64::MIN_POSITIVE);
+        let free = (block.count - effective).max(1e-3 * block.count).max(f64::MIN_POSITIVE);
         let chi_square = vector::dot(rows, rows) / free;
         let sigma = block.sigma * chi_square.sqrt();
-        (
-            block,
-            BlockEvidence {
-                term: block.term.clone(),
-                effective,
-                chi_square,
-                sigma,
-            },
-        )
+        (block, BlockEvidence { term: block.term.clone(), effective, chi_square, sigma })
     };
     blocks.iter().map(of).collect()
 }
@@ -128,9 +96,7 @@ fn log_evidence<'a>(
         .filter(|group| group.precision > 0.0)
         .map(|group| 0.5 * group.range.len() as f64 * group.precision.ln())
         .sum();
-    let noise: f64 = blocks
-        .map(|block| block.count * (block.sigma * TAU.sqrt()).ln())
-        .sum();
+    let noise: f64 = blocks.map(|block| block.count * (block.sigma * TAU.sqrt()).ln()).sum();
     prior_volume - fit - volume - noise
 }
 

@@ -38,9 +38,7 @@ impl Kind {
                 "; check the equation there for a division by zero, a logarithm or a root of a negative number"
             }
             Self::Gradient => "; check the equation there for a root or a power at zero",
-            Self::Factorisation => {
-                "; give every trained parameter a prior or a term that depends on it"
-            }
+            Self::Factorisation => "; give every trained parameter a prior or a term that depends on it",
             Self::State => "; start afresh, or give the settings that the state was saved with",
         }
     }
@@ -49,29 +47,17 @@ impl Kind {
 impl Fault {
     /// A non-finite residual of `term` at `point`.
     pub fn residual(term: impl Into<String>, point: Option<usize>) -> Self {
-        Self {
-            term: term.into(),
-            point,
-            what: Kind::Residual,
-        }
+        Self { term: term.into(), point, what: Kind::Residual }
     }
 
     /// A non-finite derivative of `term` at `point`.
     pub fn gradient(term: impl Into<String>, point: Option<usize>) -> Self {
-        Self {
-            term: term.into(),
-            point,
-            what: Kind::Gradient,
-        }
+        Self { term: term.into(), point, what: Kind::Gradient }
     }
 
     /// A saved state that does not fit; `entry` names the part that is missing or has the wrong size.
     pub fn state(entry: impl Into<String>) -> Self {
-        Self {
-            term: entry.into(),
-            point: None,
-            what: Kind::State,
-        }
+        Self { term: entry.into(), point: None, what: Kind::State }
     }
 }
 
@@ -79,7 +65,6 @@ struct Place<'a>(&'a Option<usize>);
 
 impl std::fmt::Display for Place<'_> {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.0
-            .map_or(Ok(()), |point| write!(f, " at point {point}"))
+        self.0.map_or(Ok(()), |point| write!(f, " at point {point}"))
     }
 }

@@ -53,13 +53,8 @@ impl GaussNewton {
         let zeros = || vec![0.0; theta.len()];
         let mut precision = zeros();
         prior.write_diagonal(&mut precision);
-        let inner = Inner {
-            residual: zeros(),
-            search: zeros(),
-            product: zeros(),
-            rows: Vec::new(),
-            models: [0.0; WINDOW],
-        };
+        let inner =
+            Inner { residual: zeros(), search: zeros(), product: zeros(), rows: Vec::new(), models: [0.0; WINDOW] };
         Self {
             trial: zeros(),
             rows: Vec::new(),
@@ -86,32 +81,23 @@ impl GaussNewton {
         for rows in [&mut self.rows, &mut self.trial_rows, &mut self.inner.rows] {
             rows.resize(objective.rows(), 0.0);
         }
-        let loss =
-            objective.residuals(&self.theta, &mut self.rows)? + self.prior.value(&self.theta);
+        let loss = objective.residuals(&self.theta, &mut self.rows)? + self.prior.value(&self.theta);
         objective.vector_jacobian(&self.theta, &self.rows, &mut self.gradient)?;
         self.prior.add_gradient(&self.theta, &mut self.gradient);
         if !objective.diagonal(&self.theta, &mut self.scale)? {
             // The curvature along the gradient, for all parameters alike.
             objective.jacobian_vector(&self.theta, &self.gradient, &mut self.inner.rows)?;
             let square = vector::dot(&self.inner.rows, &self.inner.rows);
-            self.scale
-                .fill(square / vector::dot(&self.gradient, &self.gradient));
+            self.scale.fill(square / vector::dot(&self.gradient, &self.gradient));
         }
         let largest = self.scale.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        self.scale
-            .iter_mut()
-            .for_each(|d| *d = d.max(1e-12 * largest));
+        self.scale.iter_mut().for_each(|d| *d = d.max(1e-12 * largest));
         Ok(*self.loss.insert(loss))
     }
 
     /// `product = (J^T J + A + lambda D) search`
     fn multiply<O: LeastSquares + ?Sized>(&mut self, objective: &mut O) -> Result<(), Fault> {
-        let Inner {
-            search,
-            product,
-            rows,
-            ..
-        } = &mut self.inner;
+        let Inner { search, product, rows, .. } = &mut self.inner;
         objective.jacobian_vector(&self.theta, search, rows)?;
         objective.vector_jacobian(&self.theta, rows, product)?;
         let factor = self.damping.factor();
@@ -125,45 +111,27 @@ impl GaussNewton {
     /// self.
     fn turn(&mut self, before: Option<f64>) -> f64 {
         let factor = 1.0 + self.damping.factor();
-        let Inner {
-            residual,
-            search,
-            product,
-            ..
-        } = &mut self.inner;
+        let Inner { residual, search, product, .. } = &mut self.inner;
         // The product is not needed any more and lends its memory.
         for (i, z) in product.iter_mut().enumerate() {
             *z = residual[i] / (factor * self.scale[i] + self.precision[i]);
         }
         let now = vector::dot(residual, product);
         let beta = before.map_or(0.0, |before| now / before);
-        search
-            .iter_mut()
-            .zip(product)
-            .for_each(|(d, z)| *d = *z + beta * *d);
+        search.iter_mut().zip(product).for_each(|(d, z)| *d = *z + beta * *d);
         now
     }
 
     /// Conjugate gradients for the direction; gives the decrease of the damped model.
     fn aim<O: LeastSquares + ?Sized>(&mut self, objective: &mut O) -> Result<f64, Fault> {
         self.direction.fill(0.0);
-        self.inner
-            .residual
-            .iter_mut()
-            .zip(&self.gradient)
-            .for_each(|(r, g)| *r = -g);
+        self.inner.residual.iter_mut().zip(&self.gradient).for_each(|(r, g)| *r = -g);
         self.inner.search.fill(0.0);
         let mut weight = self.turn(None);
         let mut model = 0.0;
         for iteration in 0..self.most {
             self.multiply(objective)?;
-            let Inner {
-                residual,
-                search,
-                product,
-                models,
-                ..
-            } = &mut self.inner;
+            let Inner { residual, search, product, models, .. } = &mut self.inner;
             let curvature = vector::dot(search, product);
             if curvature <= 0.0 || weight <= 0.0 {
                 break;
@@ -171,9 +139,7 @@ impl GaussNewton {
             let step = weight / curvature;
             vector::add_scaled(&mut self.direction, step, search);
             vector::add_scaled(residual, -step, product);
-            model = 0.5
-                * (vector::dot(residual, &self.direction)
-                    - vector::dot(&self.gradient, &self.direction));
+            model = 0.5 * (vector::dot(residual, &self.direction) - vector::dot(&self.gradient, &self.direction));
             let earlier = std::mem::replace(&mut models[iteration % WINDOW], model);
             if iteration >= WINDOW && model - earlier < PROGRESS * model {
                 break;
@@ -210,12 +176,7 @@ impl GaussNewton {
             return Ok(self.report(0.0, 0.0, Verdict::Exhausted));
         }
         let model = self.aim(objective)?;
-        let square: f64 = self
-            .direction
-            .iter()
-            .zip(&self.scale)
-            .map(|(p, d)| p * p * d)
-            .sum();
+        let square: f64 = self.direction.iter().zip(&self.scale).map(|(p, d)| p * p * d).sum();
         let predicted = model + 0.5 * self.damping.factor() * square;
         vector::along(&mut self.trial, &self.theta, 1.0, &self.direction);
         let rows = objective.residuals(&self.trial, &mut self.trial_rows)?;
@@ -225,22 +186,14 @@ impl GaussNewton {
         if trial_loss >= loss || ratio < 1e-4 {
             let lost = predicted <= f64::EPSILON * loss || self.damping.is_exhausted();
             self.damping.raise();
-            let verdict = if lost {
-                Verdict::Exhausted
-            } else {
-                Verdict::Refused
-            };
+            let verdict = if lost { Verdict::Exhausted } else { Verdict::Refused };
             return Ok(self.report(model, 0.0, verdict));
         }
         self.damping.reward(ratio);
         std::mem::swap(&mut self.theta, &mut self.trial);
         self.loss = None;
         let changed = objective.accepted(&self.theta);
-        let verdict = if changed {
-            Verdict::Changed
-        } else {
-            Verdict::Moved
-        };
+        let verdict = if changed { Verdict::Changed } else { Verdict::Moved };
         let mut step = self.report(model, vector::norm(&self.direction), verdict);
         step.loss = trial_loss;
         Ok(step)

@@ -59,11 +59,7 @@ impl Judge {
             Verdict::Faulty(_) | Verdict::Refused => self.stuck += 1,
             Verdict::Moved => return self.moved(step),
         }
-        if self.stuck > self.limits.patience {
-            self.give_up()
-        } else {
-            Judgement::GoOn
-        }
+        if self.stuck > self.limits.patience { self.give_up() } else { Judgement::GoOn }
     }
 
     /// The function has changed: what was seen is of no use.
@@ -77,11 +73,7 @@ impl Judge {
     fn exhausted(&mut self, step: &Step) -> Judgement {
         self.stuck += 1;
         // In single precision rounding is no answer: double precision would go on.
-        let rounding = if self.precision == "f32" {
-            0.0
-        } else {
-            1e3 * self.epsilon
-        };
+        let rounding = if self.precision == "f32" { 0.0 } else { 1e3 * self.epsilon };
         let left = self.decrement.or(step.decrement).unwrap_or(0.0);
         if left <= self.limits.tolerance.max(rounding) * step.loss {
             Judgement::Converged
@@ -96,11 +88,7 @@ impl Judge {
         self.stuck = 0;
         self.decrement = step.decrement;
         let tolerance = self.limits.tolerance;
-        let window = if step.decrement.is_some() {
-            WINDOW
-        } else {
-            LONG_WINDOW
-        };
+        let window = if step.decrement.is_some() { WINDOW } else { LONG_WINDOW };
         self.losses.resize(window, f64::INFINITY);
         let earlier = std::mem::replace(&mut self.losses[self.seen % window], step.loss);
         self.seen += 1;
@@ -120,15 +108,8 @@ impl Judge {
         } else {
             self.since_best += 1;
         }
-        let patience = self
-            .limits
-            .patience
-            .saturating_mul(if step.decrement.is_some() { 1 } else { 10 });
-        if self.since_best > patience {
-            self.give_up()
-        } else {
-            Judgement::GoOn
-        }
+        let patience = self.limits.patience.saturating_mul(if step.decrement.is_some() { 1 } else { 10 });
+        if self.since_best > patience { self.give_up() } else { Judgement::GoOn }
     }
 
     fn give_up(&self) -> Judgement {
@@ -140,9 +121,6 @@ impl Judge {
                 a wider network, or weights of the terms closer to each other";
             (WarningKind::Stagnation, message)
         };
-        Judgement::GiveUp(Warning {
-            kind,
-            message: message.into(),
-        })
+        Judgement::GiveUp(Warning { kind, message: message.into() })
     }
 }

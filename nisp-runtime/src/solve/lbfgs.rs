@@ -107,11 +107,7 @@ impl<E: Real> Lbfgs<E> {
         match fault {
             Some(fault) => {
                 self.faults += 1;
-                if self.faults >= FAULTS_IN_A_ROW {
-                    Err(fault)
-                } else {
-                    Ok(Verdict::Faulty(fault))
-                }
+                if self.faults >= FAULTS_IN_A_ROW { Err(fault) } else { Ok(Verdict::Faulty(fault)) }
             }
             None if fresh => Ok(Verdict::Exhausted),
             None => Ok(Verdict::Refused),
@@ -159,27 +155,12 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Lbfgs<E> {
             return Ok(self.report(0.0, 0.0, 0, Verdict::Exhausted));
         }
         let norm = vector::norm(&self.direction);
-        let first = if self.used == 0 {
-            (1.0 / norm).min(1.0)
-        } else {
-            1.0
-        };
-        let found = self.search.run(
-            objective,
-            &self.theta,
-            &self.direction,
-            (loss, slope),
-            first,
-        );
+        let first = if self.used == 0 { (1.0 / norm).min(1.0) } else { 1.0 };
+        let found = self.search.run(objective, &self.theta, &self.direction, (loss, slope), first);
         match found {
-            Found::Better {
-                step,
-                loss,
-                evaluations,
-            } => {
+            Found::Better { step, loss, evaluations } => {
                 self.accept(loss);
-                let mut report =
-                    self.report(-0.5 * slope, step * norm, evaluations, Verdict::Moved);
+                let mut report = self.report(-0.5 * slope, step * norm, evaluations, Verdict::Moved);
                 if objective.accepted(&self.theta) {
                     self.loss = None;
                     report.verdict = Verdict::Changed;
@@ -203,9 +184,7 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Lbfgs<E> {
             .with_counter("used", self.used as u64)
             .with_counter("faults", self.faults);
         for (slot, (s, y)) in self.pairs.iter().enumerate() {
-            state = state
-                .with(&format!("s{slot}"), s)
-                .with(&format!("y{slot}"), y);
+            state = state.with(&format!("s{slot}"), s).with(&format!("y{slot}"), y);
         }
         state
     }
@@ -218,17 +197,9 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Lbfgs<E> {
         let inverse = state.sized("inverse", memory)?;
         let loss = state.vector("loss")?.first().copied();
         let pairs = (0..memory)
-            .map(|slot| {
-                Ok((
-                    state.sized(&format!("s{slot}"), len)?,
-                    state.sized(&format!("y{slot}"), len)?,
-                ))
-            })
+            .map(|slot| Ok((state.sized(&format!("s{slot}"), len)?, state.sized(&format!("y{slot}"), len)?)))
             .collect::<Result<Vec<_>, Fault>>()?;
-        let (taken, used) = (
-            state.counter("taken")? as usize,
-            state.counter("used")? as usize,
-        );
+        let (taken, used) = (state.counter("taken")? as usize, state.counter("used")? as usize);
         let faults = state.counter("faults")?;
         if used > memory || used > taken {
             return Err(Fault::state("used"));

@@ -72,12 +72,7 @@ struct Line<'a, E: Real, O: ?Sized> {
 impl<E: Real> LineSearch<E> {
     pub(crate) fn new(len: usize) -> Self {
         let zeros = || vec![E::ZERO; len];
-        Self {
-            theta: zeros(),
-            gradient: zeros(),
-            trial_theta: zeros(),
-            trial_gradient: zeros(),
-        }
+        Self { theta: zeros(), gradient: zeros(), trial_theta: zeros(), trial_gradient: zeros() }
     }
 
     /// Searches from `origin`, where the objective is `loss` and its derivative along `direction` is `slope < 0`,
@@ -90,29 +85,13 @@ impl<E: Real> LineSearch<E> {
         (loss, slope): (f64, f64),
         first: f64,
     ) -> Found {
-        let start = Point {
-            step: 0.0,
-            loss,
-            slope,
-        };
-        let mut line = Line {
-            origin,
-            direction,
-            start,
-            objective,
-            buffers: self,
-            best: None,
-            evaluations: 0,
-            fault: None,
-        };
+        let start = Point { step: 0.0, loss, slope };
+        let mut line =
+            Line { origin, direction, start, objective, buffers: self, best: None, evaluations: 0, fault: None };
         line.bracket(first);
         let (evaluations, fault) = (line.evaluations, line.fault);
         match line.best {
-            Some(Point { step, loss, .. }) => Found::Better {
-                step,
-                loss,
-                evaluations,
-            },
+            Some(Point { step, loss, .. }) => Found::Better { step, loss, evaluations },
             None => Found::Nothing { fault, evaluations },
         }
     }
@@ -172,22 +151,11 @@ impl<E: Real, O: Objective<E> + ?Sized> Line<'_, E, O> {
         self.evaluations += 1;
         let buffers = &mut *self.buffers;
         vector::along(&mut buffers.trial_theta, self.origin, step, self.direction);
-        let point = match self
-            .objective
-            .gradient(&buffers.trial_theta, &mut buffers.trial_gradient)
-        {
-            Ok(loss) => Point {
-                step,
-                loss,
-                slope: vector::dot(&buffers.trial_gradient, self.direction),
-            },
+        let point = match self.objective.gradient(&buffers.trial_theta, &mut buffers.trial_gradient) {
+            Ok(loss) => Point { step, loss, slope: vector::dot(&buffers.trial_gradient, self.direction) },
             Err(fault) => {
                 self.fault = Some(fault);
-                Point {
-                    step,
-                    loss: f64::INFINITY,
-                    slope: f64::INFINITY,
-                }
+                Point { step, loss: f64::INFINITY, slope: f64::INFINITY }
             }
         };
         let done = self.satisfies(point);
@@ -200,8 +168,7 @@ impl<E: Real, O: Objective<E> + ?Sized> Line<'_, E, O> {
     }
 
     fn decreases(&self, point: Point) -> bool {
-        point.loss <= self.start.loss + DECREASE * point.step * self.start.slope
-            && point.loss < self.start.loss
+        point.loss <= self.start.loss + DECREASE * point.step * self.start.slope && point.loss < self.start.loss
     }
 
     fn satisfies(&self, point: Point) -> bool {
@@ -230,9 +197,5 @@ fn interpolate(low: Point, high: Point) -> f64 {
     let d2 = square.sqrt() * width.signum();
     let step = high.step - width * (high.slope + d2 - d1) / (high.slope - low.slope + 2.0 * d2);
     let share = (step - low.step) / width;
-    if share.is_finite() {
-        low.step + share.clamp(0.1, 0.9) * width
-    } else {
-        middle
-    }
+    if share.is_finite() { low.step + share.clamp(0.1, 0.9) * width } else { middle }
 }

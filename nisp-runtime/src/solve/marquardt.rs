@@ -87,19 +87,10 @@ impl Marquardt {
 
     /// Computes the direction with the present damping, raising it until the matrix is positive definite.
     fn aim(&mut self) -> Result<(), Fault> {
-        while !self.normal.solve(
-            self.damping.factor(),
-            &self.prior,
-            &self.theta,
-            &mut self.direction,
-        ) {
+        while !self.normal.solve(self.damping.factor(), &self.prior, &self.theta, &mut self.direction) {
             self.damping.raise();
             if self.damping.is_exhausted() {
-                return Err(Fault {
-                    term: "normal equations".into(),
-                    point: None,
-                    what: Kind::Factorisation,
-                });
+                return Err(Fault { term: "normal equations".into(), point: None, what: Kind::Factorisation });
             }
         }
         Ok(())
@@ -118,11 +109,7 @@ impl Marquardt {
             // Where the promised gain is below rounding, refusal says nothing about the model.
             let lost = predicted <= f64::EPSILON * loss || self.damping.is_exhausted();
             self.damping.raise();
-            let verdict = if lost {
-                Verdict::Exhausted
-            } else {
-                Verdict::Refused
-            };
+            let verdict = if lost { Verdict::Exhausted } else { Verdict::Refused };
             return self.report(decrement, 0.0, verdict);
         }
         self.damping.reward(ratio);
@@ -183,12 +170,7 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for Marquardt {
     }
 
     fn save(&self) -> State {
-        let precisions: Vec<f64> = self
-            .prior
-            .groups()
-            .iter()
-            .map(|group| group.precision)
-            .collect();
+        let precisions: Vec<f64> = self.prior.groups().iter().map(|group| group.precision).collect();
         State::new("lm")
             .with("theta", &self.theta)
             .with("damping", &self.damping.save())

@@ -88,23 +88,15 @@ impl Normal {
             let j = dense::row_major(&self.j, self.rows, self.len);
             dense::gram(j.transpose(), matrix);
             let diagonal = matrix.iter().step_by(self.len + 1);
-            self.scale
-                .iter_mut()
-                .zip(diagonal)
-                .for_each(|(d, x)| *d = *x);
+            self.scale.iter_mut().zip(diagonal).for_each(|(d, x)| *d = *x);
         } else {
             self.scale.fill(0.0);
             for row in self.j.chunks_exact(self.len) {
-                self.scale
-                    .iter_mut()
-                    .zip(row)
-                    .for_each(|(d, x)| *d += x * x);
+                self.scale.iter_mut().zip(row).for_each(|(d, x)| *d += x * x);
             }
         }
         let largest = self.scale.iter().copied().fold(f64::MIN_POSITIVE, f64::max);
-        self.scale
-            .iter_mut()
-            .for_each(|d| *d = d.max(FLOOR * largest));
+        self.scale.iter_mut().for_each(|d| *d = d.max(FLOOR * largest));
         Ok(loss)
     }
 
@@ -117,10 +109,7 @@ impl Normal {
         self.r = vec![0.0; rows];
         self.j = vec![0.0; rows * len];
         self.space = if rows >= len {
-            Space::Parameters {
-                matrix: vec![0.0; len * len],
-                cholesky: Cholesky::new(len),
-            }
+            Space::Parameters { matrix: vec![0.0; len * len], cholesky: Cholesky::new(len) }
         } else {
             Space::Rows(RowSpace {
                 k: vec![0.0; rows * len],
@@ -134,13 +123,7 @@ impl Normal {
     }
 
     /// Solves for `p` with the given damping; false where the matrix is not positive definite in this precision.
-    pub(crate) fn solve(
-        &mut self,
-        damping: f64,
-        prior: &WeightPrior,
-        theta: &[f64],
-        p: &mut [f64],
-    ) -> bool {
+    pub(crate) fn solve(&mut self, damping: f64, prior: &WeightPrior, theta: &[f64], p: &mut [f64]) -> bool {
         let len = self.len;
         match &mut self.space {
             Space::Unknown => false,
@@ -160,11 +143,7 @@ impl Normal {
             Space::Rows(space) => {
                 let diagonals = self.precision.iter().zip(&self.scale);
                 let roots = diagonals.map(|(a, d)| 1.0 / (a + damping * d).sqrt());
-                space
-                    .root
-                    .iter_mut()
-                    .zip(roots)
-                    .for_each(|(root, x)| *root = x);
+                space.root.iter_mut().zip(roots).for_each(|(root, x)| *root = x);
                 space.c.fill(0.0);
                 prior.add_gradient(theta, &mut space.c);
                 space.solve(&self.j, &self.r, p)
@@ -177,19 +156,9 @@ impl RowSpace {
     /// Solves with `root` set and `c = A theta`.
     fn solve(&mut self, j: &[f64], r: &[f64], p: &mut [f64]) -> bool {
         let (len, rows) = (p.len(), r.len());
-        let Self {
-            k,
-            matrix,
-            cholesky,
-            root,
-            c,
-            u,
-        } = self;
+        let Self { k, matrix, cholesky, root, c, u } = self;
         for (k, j) in k.chunks_exact_mut(len).zip(j.chunks_exact(len)) {
-            k.iter_mut()
-                .zip(j)
-                .zip(root.iter())
-                .for_each(|((k, j), root)| *k = j * root);
+            k.iter_mut().zip(j).zip(root.iter()).for_each(|((k, j), root)| *k = j * root);
         }
         dense::gram(dense::row_major(k, rows, len), matrix);
         let solvable = cholesky.factorise(|factor| {
@@ -199,9 +168,7 @@ impl RowSpace {
         if !solvable {
             return false;
         }
-        c.iter_mut()
-            .zip(root.iter())
-            .for_each(|(c, root)| *c *= root);
+        c.iter_mut().zip(root.iter()).for_each(|(c, root)| *c *= root);
         dense::times(k, c, u);
         u.iter_mut().zip(r).for_each(|(u, r)| *u = r - *u);
         cholesky.solve(u);

@@ -9,10 +9,7 @@ use std::ops::Range;
 /// Implementations check their own results: every value that is returned as `Ok` is finite, and the fault names the
 /// term and point otherwise. Calls with the same `theta` give the same bits, whatever was called before, until
 /// [`Objective::accepted`] is called.
-#[expect(
-    clippy::len_without_is_empty,
-    reason = "a problem without parameters is no problem"
-)]
+#[expect(clippy::len_without_is_empty, reason = "a problem without parameters is no problem")]
 pub trait Objective<E: Real> {
     /// Number of parameters.
     fn len(&self) -> usize;

@@ -40,15 +40,11 @@ pub fn posterior(curvature: &Curvature, derivatives: &[f64], most: usize) -> Pos
         .map(|(variance, shape)| Direction {
             deviation: variance.sqrt(),
             share: variance / total,
-            learned: prior_variance(curvature, derivatives, &shape)
-                .map(|prior| 1.0 - variance / prior),
+            learned: prior_variance(curvature, derivatives, &shape).map(|prior| 1.0 - variance / prior),
             shape,
         })
         .collect();
-    Posterior {
-        deviations: variances.iter().map(|v| v.sqrt()).collect(),
-        directions,
-    }
+    Posterior { deviations: variances.iter().map(|v| v.sqrt()).collect(), directions }
 }
 
 /// Largest eigenvalues of `X X^T` with their eigenvectors, for `X` row-major of `count x len`, from the smaller of
@@ -57,17 +53,11 @@ fn leading(x: &[f64], count: usize, len: usize, most: usize) -> Vec<(f64, Vec<f6
     let view = dense::row_major(x, count, len);
     let small = count.min(len);
     let mut gram = vec![0.0; small * small];
-    dense::gram(
-        if count <= len { view } else { view.transpose() },
-        &mut gram,
-    );
+    dense::gram(if count <= len { view } else { view.transpose() }, &mut gram);
     let Some((values, vectors)) = dense::eigen(&gram, small) else {
         return Vec::new();
     };
-    let positive = values
-        .into_iter()
-        .zip(vectors.chunks_exact(small.max(1)))
-        .filter(|(value, _)| *value > 0.0);
+    let positive = values.into_iter().zip(vectors.chunks_exact(small.max(1))).filter(|(value, _)| *value > 0.0);
     positive
         .take(most)
         .map(|(value, vector)| {
@@ -77,10 +67,7 @@ fn leading(x: &[f64], count: usize, len: usize, most: usize) -> Vec<(f64, Vec<f6
             } else {
                 dense::times(x, vector, &mut shape);
             }
-            let peak = shape.iter().copied().fold(
-                0.0,
-                |peak: f64, x| if x.abs() > peak.abs() { x } else { peak },
-            );
+            let peak = shape.iter().copied().fold(0.0, |peak: f64, x| if x.abs() > peak.abs() { x } else { peak });
             let scale = peak.signum() / vector::norm(&shape);
             shape.iter_mut().for_each(|x| *x *= scale);
             (value, shape)

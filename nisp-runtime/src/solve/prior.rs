@@ -31,9 +31,7 @@ impl WeightPrior {
         let mut taken = vec![false; len];
         for group in &groups {
             let valid = group.precision >= 0.0 && group.precision.is_finite();
-            let free = taken
-                .get(group.range.clone())
-                .is_some_and(|range| !range.contains(&true));
+            let free = taken.get(group.range.clone()).is_some_and(|range| !range.contains(&true));
             if !valid || !free {
                 return Err(Fault::state(format!("prior group {}", group.name)));
             }
@@ -44,13 +42,7 @@ impl WeightPrior {
 
     /// One precision for all of `len` parameters.
     pub fn uniform(precision: f64, len: usize) -> Self {
-        Self {
-            groups: vec![PriorGroup {
-                name: "weights".into(),
-                range: 0..len,
-                precision,
-            }],
-        }
+        Self { groups: vec![PriorGroup { name: "weights".into(), range: 0..len, precision }] }
     }
 
     /// The groups.
@@ -64,10 +56,7 @@ impl WeightPrior {
 
     /// `sum precision |theta_group|^2 / 2`
     pub fn value(&self, theta: &[f64]) -> f64 {
-        self.groups
-            .iter()
-            .map(|group| 0.5 * group.precision * group.square(theta))
-            .sum()
+        self.groups.iter().map(|group| 0.5 * group.precision * group.square(theta)).sum()
     }
 
     /// Adds the gradient of [`Self::value`].

@@ -16,15 +16,11 @@ pub struct State {
 
 impl State {
     pub(crate) fn new(method: impl Into<String>) -> Self {
-        Self {
-            method: method.into(),
-            ..Self::default()
-        }
+        Self { method: method.into(), ..Self::default() }
     }
 
     pub(crate) fn with<E: Real>(mut self, name: &str, vector: &[E]) -> Self {
-        self.vectors
-            .push((name.into(), vector.iter().map(|x| x.to_f64()).collect()));
+        self.vectors.push((name.into(), vector.iter().map(|x| x.to_f64()).collect()));
         self
     }
 
@@ -34,11 +30,7 @@ impl State {
     }
 
     pub(crate) fn check_method(&self, method: &str) -> Result<(), Fault> {
-        if self.method == method {
-            Ok(())
-        } else {
-            Err(Fault::state(format!("method {}", self.method)))
-        }
+        if self.method == method { Ok(()) } else { Err(Fault::state(format!("method {}", self.method))) }
     }
 
     /// The vector `name` of any length; every element is finite.
@@ -54,25 +46,15 @@ impl State {
     /// The vector `name`, which must have `len` elements, rounded to `E`.
     pub(crate) fn sized<E: Real>(&self, name: &str, len: usize) -> Result<Vec<E>, Fault> {
         let vector = self.vector(name)?;
-        if vector.len() == len {
-            Ok(vector.iter().map(|x| E::from_f64(*x)).collect())
-        } else {
-            Err(Fault::state(name))
-        }
+        if vector.len() == len { Ok(vector.iter().map(|x| E::from_f64(*x)).collect()) } else { Err(Fault::state(name)) }
     }
 
     /// The vector `name`, which must have `N` elements.
     pub(crate) fn scalars<const N: usize>(&self, name: &str) -> Result<[f64; N], Fault> {
-        self.vector(name)?
-            .try_into()
-            .map_err(|_| Fault::state(name))
+        self.vector(name)?.try_into().map_err(|_| Fault::state(name))
     }
 
     pub(crate) fn counter(&self, name: &str) -> Result<u64, Fault> {
-        self.counters
-            .iter()
-            .find(|(key, _)| key == name)
-            .map(|(_, value)| *value)
-            .ok_or_else(|| Fault::state(name))
+        self.counters.iter().find(|(key, _)| key == name).map(|(_, value)| *value).ok_or_else(|| Fault::state(name))
     }
 }

@@ -30,12 +30,7 @@ pub(crate) struct RankTwo {
 
 impl RankTwo {
     /// Changes nothing.
-    pub(crate) const NONE: Self = Self {
-        scale: 1.0,
-        a: 0.0,
-        b: 0.0,
-        c: 0.0,
-    };
+    pub(crate) const NONE: Self = Self { scale: 1.0, a: 0.0, b: 0.0, c: 0.0 };
 }
 
 /// The matrix, an update that waits, and the products of the last pass. All vectors are padded with zeros to whole
@@ -112,11 +107,7 @@ impl Symmetric {
                 let Some(tile) = tiles.nth(group) else { return };
                 for (i, row) in tile.iter_mut().enumerate() {
                     // The padding stays zero.
-                    row[i] = if group * TILE + i < self.len {
-                        factor
-                    } else {
-                        0.0
-                    };
+                    row[i] = if group * TILE + i < self.len { factor } else { 0.0 };
                 }
             }
         }
@@ -126,13 +117,7 @@ impl Symmetric {
     pub(crate) fn products(&mut self, y: &[f64], g: &[f64]) -> (&[f64], &[f64]) {
         self.y.as_flattened_mut()[..self.len].copy_from_slice(y);
         self.g.as_flattened_mut()[..self.len].copy_from_slice(g);
-        let input = Input {
-            update: self.pending,
-            s: &self.s,
-            w: &self.w,
-            y: &self.y,
-            g: &self.g,
-        };
+        let input = Input { update: self.pending, s: &self.s, w: &self.w, y: &self.y, g: &self.g };
         match self.chunks.as_mut_slice() {
             [chunk] => {
                 pass(chunk, input);
@@ -144,18 +129,14 @@ impl Symmetric {
                     product.as_flattened_mut().fill(0.0);
                     for chunk in chunks.iter() {
                         let sum = product.as_flattened_mut().iter_mut();
-                        sum.zip(chunk.products[k].as_flattened())
-                            .for_each(|(sum, part)| *sum += part);
+                        sum.zip(chunk.products[k].as_flattened()).for_each(|(sum, part)| *sum += part);
                     }
                 }
             }
         }
         self.pending = RankTwo::NONE;
         let [hy, hg] = &self.products;
-        (
-            &hy.as_flattened()[..self.len],
-            &hg.as_flattened()[..self.len],
-        )
+        (&hy.as_flattened()[..self.len], &hg.as_flattened()[..self.len])
     }
 
     /// Updates the matrix, where `w` is the first product of the last call of [`Self::products`].
@@ -187,12 +168,7 @@ impl Symmetric {
         let (head, rest) = data.split_at(4);
         let (s, rest) = rest.split_at(padded);
         let (w, mut rest) = rest.split_at(padded);
-        self.pending = RankTwo {
-            scale: head[0],
-            a: head[1],
-            b: head[2],
-            c: head[3],
-        };
+        self.pending = RankTwo { scale: head[0], a: head[1], b: head[2], c: head[3] };
         self.s.as_flattened_mut().copy_from_slice(s);
         self.w.as_flattened_mut().copy_from_slice(w);
         for chunk in &mut self.chunks {
@@ -209,11 +185,7 @@ widest! { fn pass(chunk: &mut Chunk, input: Input<'_>) = pass_loop }
 
 #[inline(always)]
 fn pass_loop(chunk: &mut Chunk, input: Input<'_>) {
-    let Chunk {
-        groups,
-        tiles,
-        products: [hy, hg],
-    } = chunk;
+    let Chunk { groups, tiles, products: [hy, hg] } = chunk;
     hy.as_flattened_mut().fill(0.0);
     hg.as_flattened_mut().fill(0.0);
     let mut rest = tiles.as_mut_slice();
@@ -251,12 +223,7 @@ fn pass_rows<const FIRST: usize>(
     let mut sum_y = [[0.0; TILE]; ROWS];
     let mut sum_g = [[0.0; TILE]; ROWS];
     for (column, tile) in tiles.iter_mut().enumerate() {
-        let (s, w, yc, gc) = (
-            input.s[column],
-            input.w[column],
-            input.y[column],
-            input.g[column],
-        );
+        let (s, w, yc, gc) = (input.s[column], input.w[column], input.y[column], input.g[column]);
         // The tile on the diagonal is whole: it must not count again as its own transpose.
         let mirror = if column < group { 1.0 } else { 0.0 };
         let (mut column_y, mut column_g) = (hy[column], hg[column]);
@@ -289,10 +256,7 @@ mod tests {
         let RankTwo { scale, a, b, c } = update;
         for (i, row) in h.iter_mut().enumerate() {
             for (j, x) in row.iter_mut().enumerate() {
-                *x = scale * *x
-                    + a * s[i] * s[j]
-                    + b * (s[i] * w[j] + w[i] * s[j])
-                    + c * w[i] * w[j];
+                *x = scale * *x + a * s[i] * s[j] + b * (s[i] * w[j] + w[i] * s[j]) + c * w[i] * w[j];
             }
         }
     }
@@ -313,21 +277,12 @@ mod tests {
                 let (hy, hg) = matrix.products(&y, &g);
                 for (i, row) in full.iter().enumerate() {
                     let expected: f64 = row.iter().zip(&y).map(|(h, y)| h * y).sum();
-                    assert!(
-                        (hy[i] - expected).abs() < 1e-11 * len as f64,
-                        "{len} {i}: {} {expected}",
-                        hy[i]
-                    );
+                    assert!((hy[i] - expected).abs() < 1e-11 * len as f64, "{len} {i}: {} {expected}", hy[i]);
                     let expected: f64 = row.iter().zip(&g).map(|(h, g)| h * g).sum();
                     assert!((hg[i] - expected).abs() < 1e-11 * len as f64);
                 }
                 let (s, w) = (wave(len, 5.0), hy.to_vec());
-                let update = RankTwo {
-                    scale: 0.9,
-                    a: 0.3,
-                    b: -0.02,
-                    c: 0.01 / len as f64,
-                };
+                let update = RankTwo { scale: 0.9, a: 0.3, b: -0.02, c: 0.01 / len as f64 };
                 matrix.update(update, &s);
                 dense_update(&mut full, update, &s, &w);
             }
@@ -337,22 +292,11 @@ mod tests {
     #[test]
     fn threads_do_not_change_a_bit() {
         let run = |threads| {
-            let pool = rayon::ThreadPoolBuilder::new()
-                .num_threads(threads)
-                .build()
-                .unwrap();
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
             pool.install(|| {
                 let mut matrix = Symmetric::new(900);
                 matrix.products(&wave(900, 0.0), &wave(900, 1.0));
-                matrix.update(
-                    RankTwo {
-                        scale: 0.5,
-                        a: 0.1,
-                        b: 0.2,
-                        c: 0.3,
-                    },
-                    &wave(900, 2.0),
-                );
+                matrix.update(RankTwo { scale: 0.5, a: 0.1, b: 0.2, c: 0.3 }, &wave(900, 2.0));
                 let (hy, hg) = matrix.products(&wave(900, 3.0), &wave(900, 4.0));
                 (hy.to_vec(), hg.to_vec())
             })

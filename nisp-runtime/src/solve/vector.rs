@@ -17,19 +17,14 @@ pub(crate) fn dot<E: Real>(a: &[E], b: &[E]) -> f64 {
             lanes[lane] += x[lane].to_f64() * y[lane].to_f64();
         }
     }
-    let rest: f64 = a_rest
-        .iter()
-        .zip(b_rest)
-        .map(|(x, y)| x.to_f64() * y.to_f64())
-        .sum();
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x.to_f64() * y.to_f64()).sum();
     sum_lanes(&lanes) + rest
 }
 
 /// Sum of eight lanes, pairwise by halves.
 #[inline(always)]
 pub(crate) fn sum_lanes(lanes: &[f64; LANES]) -> f64 {
-    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6]))
-        + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
+    ((lanes[0] + lanes[4]) + (lanes[2] + lanes[6])) + ((lanes[1] + lanes[5]) + (lanes[3] + lanes[7]))
 }
 
 /// Euclidean norm.
@@ -56,8 +51,5 @@ pub(crate) fn along<E: Real>(out: &mut [E], origin: &[E], factor: f64, direction
 /// True where every element is finite.
 pub(crate) fn all_finite<E: Real>(a: &[E]) -> bool {
     // A sum of zeros or NaNs instead of a branch per element.
-    a.iter()
-        .map(|x| *x * E::ZERO)
-        .fold(E::ZERO, |sum, x| sum + x)
-        == E::ZERO
+    a.iter().map(|x| *x * E::ZERO).fold(E::ZERO, |sum, x| sum + x) == E::ZERO
 }

@@ -14,8 +14,7 @@ pub(super) fn emit(model: &Model, scene: &ScenePlan, declared: &model::Scene) ->
     let groups = public(scene);
     let count = groups.len();
     let steps = groups.iter().enumerate().map(|(at, group)| step(model, at, group));
-    let list: Vec<String> =
-        groups.iter().map(|group| format!("`{}`", model.groups[group.group].name.text)).collect();
+    let list: Vec<String> = groups.iter().map(|group| format!("`{}`", model.groups[group.group].name.text)).collect();
     let doc = format!(" Begins to bind the scene: give its parameters, then its groups in order: {}.", list.join(", "));
     let first = format_ident!("Needs0");
     let last = format_ident!("Needs{count}");
@@ -84,7 +83,11 @@ fn step(model: &Model, at: usize, group: &GroupPlan) -> TokenStream {
         let name = ident(&column.name);
         quote!(#name.into())
     });
-    let clouds = group.terms.iter().map(|term| &declared.terms[term.term]).filter(|term| matches!(term.kind, TermKind::Chamfer { .. }));
+    let clouds = group
+        .terms
+        .iter()
+        .map(|term| &declared.terms[term.term])
+        .filter(|term| matches!(term.kind, TermKind::Chamfer { .. }));
     let clouds: Vec<_> = clouds.map(|term| (format_ident!("{}", term.name.text), &term.name.text)).collect();
     let cloud_arguments = clouds.iter().map(|(name, _)| quote!(#name: impl Into<Vec<f64>>));
     let cloud_calls = clouds.iter().map(|(name, text)| quote!(.with_cloud(#at, #text, #name.into())));

@@ -38,13 +38,12 @@ pub(super) fn lower(program: &Program, frame: &Frame<'_>) -> (TokenStream, Vec<T
 
 /// One `let` per operation.
 fn short(program: &Program, frame: &Frame<'_>) -> (TokenStream, Vec<TokenStream>) {
-    let operand = |value: Value| local(value);
     let lets = program.ops.iter().enumerate().map(|(at, op)| {
         let name = local(at);
-        let value = operation(op, frame, &operand);
+        let value = operation(op, frame, &local);
         quote!(let #name = #value;)
     });
-    let outputs = program.outputs.iter().map(|output| output.map_or_else(|| zero(frame), |value| local(value)));
+    let outputs = program.outputs.iter().map(|output| output.map_or_else(|| zero(frame), local));
     (quote!(#(#lets)*), outputs.collect())
 }
 

@@ -31,10 +31,13 @@ pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
     let visibility = &model.visibility;
     let docs = docs(&model.docs);
     let sets = plan.sets.iter().enumerate().map(|(at, set)| rules::emit(at, set, model));
-    let groups = plan.scenes.iter().zip(&model.scenes).flat_map(|(plan, scene)| {
-        plan.groups.iter().map(move |group| residuals::emit(model, scene, group))
-    });
-    let scenes = plan.scenes.iter().zip(&model.scenes).map(|(scene, declared)| scene::emit(model, plan, scene, declared));
+    let groups = plan
+        .scenes
+        .iter()
+        .zip(&model.scenes)
+        .flat_map(|(plan, scene)| plan.groups.iter().map(move |group| residuals::emit(model, scene, group)));
+    let scenes =
+        plan.scenes.iter().zip(&model.scenes).map(|(scene, declared)| scene::emit(model, plan, scene, declared));
     let warnings = model.warnings.iter().enumerate().map(|(at, (message, span))| warning(at, message, *span));
     quote! {
         #(#docs)*
@@ -82,10 +85,13 @@ fn ident(name: &Name) -> Ident {
 
 /// An identifier, raw if the text is a keyword.
 fn raw(text: &str, span: Span) -> Ident {
-    syn::parse_str::<Ident>(text).map_or_else(|_| Ident::new_raw(text, span), |mut ident| {
-        ident.set_span(span);
-        ident
-    })
+    syn::parse_str::<Ident>(text).map_or_else(
+        |_| Ident::new_raw(text, span),
+        |mut ident| {
+            ident.set_span(span);
+            ident
+        },
+    )
 }
 
 fn docs(lines: &[String]) -> Vec<TokenStream> {

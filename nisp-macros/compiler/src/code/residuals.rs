@@ -48,12 +48,8 @@ fn points(program: &Program) -> TokenStream {
         Slot::Column => quote!(at.column(#index)),
         _ => quote!(at.seed(#index)),
     };
-    let frame = Frame {
-        read: &read,
-        parameters: quote!(at: &Lane<'_, V>),
-        arguments: quote!(at),
-        dialect: Dialect::Vector,
-    };
+    let frame =
+        Frame { read: &read, parameters: quote!(at: &Lane<'_, V>), arguments: quote!(at), dialect: Dialect::Vector };
     let (statements, outputs) = lower(program, &frame);
     let indices = 0..outputs.len();
     quote!(#statements #(out.put::<V>(#indices, #outputs);)*)
@@ -67,8 +63,7 @@ fn target(group: &GroupPlan) -> TokenStream {
         _ => None,
     });
     let blocks = terms.map(|(term, program)| {
-        let frame =
-            Frame { read: &read, parameters: quote!(), arguments: quote!(), dialect: Dialect::Scalar };
+        let frame = Frame { read: &read, parameters: quote!(), arguments: quote!(), dialect: Dialect::Scalar };
         let (statements, outputs) = lower(program, &frame);
         let indices = term.first..term.first + outputs.len();
         quote!({ #statements #(rows[#indices] = #outputs;)* })

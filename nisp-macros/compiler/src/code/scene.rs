@@ -54,7 +54,10 @@ fn equations(model: &Model, scene: &ScenePlan) -> Vec<TokenStream> {
         for term in &group.terms {
             let term = &declared.terms[term.term];
             let unit = if term.unit.text.is_empty() { "1" } else { &term.unit.text };
-            lines.push(format!(" - on `{}`, `{}`: `{}` \\[{unit}\\]", declared.name.text, term.name.text, term.equation));
+            lines.push(format!(
+                " - on `{}`, `{}`: `{}` \\[{unit}\\]",
+                declared.name.text, term.name.text, term.equation
+            ));
         }
     }
     docs(&lines)

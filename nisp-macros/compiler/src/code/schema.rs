@@ -141,7 +141,11 @@ fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {
     let head = jet.head;
     let field = &model.fields[scene.heads[head]].name.text;
     let operator = operator_name(&jet.operator, model);
-    let name = if operator == "1" { field.clone() } else { format!("{field}_{}", operator.replace(" + ", &format!(" + {field}_"))) };
+    let name = if operator == "1" {
+        field.clone()
+    } else {
+        format!("{field}_{}", operator.replace(" + ", &format!(" + {field}_")))
+    };
     let degree = degree(&jet.operator, model.coordinates.len());
     let site = jet.site;
     let combination = jet.combination.iter().map(|(channel, coefficient)| {
