@@ -140,11 +140,11 @@ pub struct Column {
 pub struct Group {
     /// Its name.
     pub name: Name,
-    /// Per-point data, declared in the group or implied by observations; indices of [`Expr::Column`].
+    /// Per-point data, declared in the group or implied by observations; indices of [`Node::Column`].
     pub columns: Vec<Column>,
     /// What must hold.
     pub terms: Vec<Term>,
-    /// True if every point has a partner (periodic pairs): [`Expr::Partner`] may occur.
+    /// True if every point has a partner (periodic pairs): [`Node::Partner`] may occur.
     pub paired: bool,
     /// Doc comment.
     pub docs: Vec<String>,

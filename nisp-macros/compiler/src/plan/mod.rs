@@ -1,6 +1,6 @@
 //! Compiler stage 5: what every scene and group needs, as straight-line programs.
 //!
-//! - Input: a [`Model`](crate::model::Model).
+//! - Input: a [`Model`].
 //! - Output: a [`Plan`].
 
 mod collapse;
