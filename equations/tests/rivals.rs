@@ -72,23 +72,3 @@ fn senseless_input_is_refused() {
     assert!(smoothing_spline(&Pendulum::default(), &data, &times).is_err());
     assert!(collocation(&system, &data, 0.0, 1.0, &times).is_err());
 }
-
-/// The table for the record: `cargo test --release -p nisp-equations --test rivals -- --ignored --nocapture`.
-#[test]
-#[ignore = "prints a table over all runs"]
-fn table_over_all_runs() {
-    let system = Pendulum::default();
-    let runs: Vec<String> = (1..24).step_by(2).map(|run| format!("run_{run:02}")).collect();
-    println!("noise  f=0      collocation  smoothing spline  Savitzky-Golay (oracle window)");
-    for (noise, sigma, tolerance) in [("0", 1e-8, 1e-3), ("0.01", 0.01, 1e-2), ("0.03", 0.03, 1e-2)] {
-        let mut sums = [0.0; 4];
-        for run in &runs {
-            let (direct, zero) = score(run, noise, |data, at, _| collocation(&system, data, sigma, tolerance, at));
-            let (spline, _) = score(run, noise, |data, at, _| smoothing_spline(&system, data, at));
-            let (golay, _) = score(run, noise, |data, at, f| savitzky_golay_oracle(&system, data, 6, at, f));
-            sums.iter_mut().zip([zero, direct, spline, golay]).for_each(|(sum, error)| *sum += error);
-        }
-        let [zero, direct, spline, golay] = sums.map(|sum| sum / runs.len() as f64);
-        println!("{noise:<6} {zero:.1e}   {direct:.1e}       {spline:.1e}            {golay:.1e}");
-    }
-}

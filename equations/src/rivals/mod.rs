@@ -7,16 +7,20 @@
 //! - [`savitzky_golay`]: local polynomials instead; [`savitzky_golay_oracle`] picks the window that scores best against
 //!   the truth, which nobody could do in earnest.
 //! - [`zero_error`]: the error of answering "no source at all".
+//!
+//! [`contest`] asks all of them at once.
 
 mod band;
 mod bspline;
 mod collocation;
+mod contest;
 mod savitzky_golay;
 mod search;
 mod smoothing;
 mod systems;
 
 pub use collocation::collocation;
+pub use contest::{Answer, contest};
 pub use savitzky_golay::{savitzky_golay, savitzky_golay_oracle};
 pub use smoothing::smoothing_spline;
 pub use systems::{Pendulum, Rlc};

@@ -1,5 +1,7 @@
-//! Timings, to be run by hand: `cargo test --release --test solve_timing -- --ignored --nocapture --test-threads 1`.
+//! What a step of each method costs, and how the methods compare on a small network:
+//! `cargo run --release -p nisp-runtime --example solver_timing`.
 
+#[path = "../tests/solve_common/mod.rs"]
 mod solve_common;
 
 use nisp_runtime::solve::adam::{Adam, AdamSettings};
@@ -45,8 +47,13 @@ fn weights(len: usize) -> Vec<f64> {
     (0..len).map(|i| 1e6_f64.powf(i as f64 / len as f64)).collect()
 }
 
-#[test]
-#[ignore = "a timing"]
+fn main() {
+    broyden_update();
+    adam_update();
+    marquardt_step();
+    methods_on_a_network();
+}
+
 fn broyden_update() {
     for len in [436, 844, 1380, 2000, 2836] {
         let mut method = Broyden::new(vec![0.0; len], Update::SelfScaledBroyden);
@@ -62,8 +69,6 @@ fn broyden_update() {
     }
 }
 
-#[test]
-#[ignore = "a timing"]
 fn adam_update() {
     for len in [436, 330_000] {
         let mut method = Adam::new(vec![0.0_f32; len], AdamSettings::default());
@@ -75,8 +80,6 @@ fn adam_update() {
     }
 }
 
-#[test]
-#[ignore = "a timing"]
 fn marquardt_step() {
     for (rows, len) in [(1500, 436), (1500, 844), (1500, 1380), (1500, 2836), (300, 436)] {
         let mut problem = TanhRows { rows, len };
@@ -168,8 +171,6 @@ fn network(units: usize) -> Rows {
     })
 }
 
-#[test]
-#[ignore = "a comparison"]
 fn methods_on_a_network() {
     let units = 20;
     for seed in [1.0, 2.0, 3.0] {
