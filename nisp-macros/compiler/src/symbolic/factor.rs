@@ -32,8 +32,7 @@ fn factor_sum(graph: &mut Graph, id: Id) -> Id {
     let common = exponents.min_by_key(Signed::abs).unwrap_or_else(Rational::one);
     let mut inner = Vec::new();
     for (term, coefficient) in with {
-        let rest = graph.product(&[(term, Rational::one()), (base, -common)]);
-        inner.push((coefficient, rest));
+        inner.push((coefficient, divided(graph, term, base, common)));
     }
     let inner = graph.linear(&inner);
     let inner = factor_sum(graph, inner);
@@ -46,6 +45,21 @@ fn factor_sum(graph: &mut Graph, id: Id) -> Id {
     let rest = graph.linear(&rest);
     let rest = factor_sum(graph, rest);
     graph.add(&[pulled, rest])
+}
+
+/// `term / base^exponent` for a factor of the term. The factor is taken away, never multiplied by its inverse: `r * (1/r)`
+/// of an inexact number need not be one, and the quotient would go on having a common factor.
+fn divided(graph: &mut Graph, term: Id, base: Id, exponent: Rational) -> Id {
+    let mut factors = match graph.node(term) {
+        Node::Product(factors) => factors.clone(),
+        _ => vec![(term, Rational::one())],
+    };
+    for (factor, power) in &mut factors {
+        if *factor == base {
+            *power -= exponent;
+        }
+    }
+    graph.product(&factors)
 }
 
 fn exponent_of(graph: &Graph, term: Id, base: Id) -> Option<Rational> {
@@ -68,4 +82,24 @@ fn most_frequent(graph: &Graph, terms: &[(Id, Rational)]) -> Option<Key> {
     }
     let shared = counts.into_iter().filter(|&(_, count)| count > 1);
     shared.max_by_key(|&((base, _), count)| (count, usize::MAX - base)).map(|(key, _)| key)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::program::Slot;
+    use crate::symbolic::graph::Leaf;
+
+    #[test]
+    fn an_inexact_factor_is_pulled_out_once() {
+        assert_ne!(49.0 * (1.0 / 49.0), 1.0, "otherwise this proves nothing");
+        let mut graph = Graph::default();
+        let [a, b] = [0, 1].map(|i| graph.leaf(Leaf::Input(Slot::Parameter, i)));
+        let r = graph.real(49.0);
+        let (left, right) = (graph.multiply(&[a, b, r]), graph.multiply(&[a, a, r]));
+        let sum = graph.add(&[left, right]);
+        let inner = graph.add(&[a, b]);
+        let expected = graph.multiply(&[a, r, inner]);
+        assert_eq!(factor(&mut graph, &[sum]), [expected]);
+    }
 }
