@@ -3,12 +3,12 @@
 //! Write the equation in [`pde!`]; bind points and data to one of its scenes; solve; read the source back.
 
 pub use nisp_macros::pde;
-pub use nisp_runtime::kernel::{Scene, SceneRef, scene};
+pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
     Estimate, LearnedValue, Optimizer, RecoverError, Report, Settings, Solution, TermReport, Width, recover,
 };
-pub use nisp_runtime::{network, real, schema, simd, solve};
+pub use nisp_runtime::{engine, network, real, schema, simd, solve};
 
 /// What emitted code refers to; not for direct use.
 #[doc(hidden)]

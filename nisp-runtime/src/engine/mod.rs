@@ -109,9 +109,14 @@ struct Integral {
 }
 
 impl<E: Real> Engine<E> {
-    /// An engine for `groups`, whose kernels, points and data are bound. `scalars` are in the engine's units.
-    pub(crate) fn new(layout: Layout, mut groups: Vec<BoundGroup<E>>, scalars: Vec<E>, learned: Vec<Learned>) -> Self {
-        let isa = Isa::detect();
+    /// An engine for `groups`, whose kernels, points and data are bound; the layout is padded for `isa`. `scalars` are in the engine's units.
+    pub(crate) fn new(
+        isa: Isa,
+        layout: Layout,
+        mut groups: Vec<BoundGroup<E>>,
+        scalars: Vec<E>,
+        learned: Vec<Learned>,
+    ) -> Self {
         for group in &mut groups {
             group.tile = tile_points::<E>(&layout, group.kernel.channels(), group.points);
         }

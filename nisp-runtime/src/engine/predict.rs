@@ -30,8 +30,9 @@ impl<E: Real> Engine<E> {
         });
     }
 
-    /// Raw rows of a group at `theta`, `[row][point]`, in the engine's units.
-    pub(crate) fn raw_rows(&mut self, group: usize, theta: &[E]) -> Vec<f64> {
+    /// Raw rows of a group at `theta`, `[row][point]`: neither divided by their natural size nor weighted, in the
+    /// engine's units.
+    pub fn raw_rows(&mut self, group: usize, theta: &[E]) -> Vec<f64> {
         self.set(theta);
         let bound = &self.groups[group];
         let mut all = vec![0.0; bound.schema.rows * bound.points];

@@ -233,12 +233,17 @@ fn learned(schema: &schema::Scene, system: &UnitSystem, scalars: &[f64]) -> Vec<
 impl Bound {
     /// The engine of this problem in precision `E`, for a network of the given shape.
     pub(crate) fn engine<E: Precision>(&self, architecture: Architecture) -> Result<Engine<E>, BindError> {
+        self.engine_on(Isa::detect(), architecture)
+    }
+
+    /// The same with vectors of `isa`.
+    pub(crate) fn engine_on<E: Precision>(&self, isa: Isa, architecture: Architecture) -> Result<Engine<E>, BindError> {
         if architecture.width == 0 || architecture.layers == 0 {
             return Err(BindError::Architecture { layers: architecture.layers, width: architecture.width });
         }
         let scene = self.problem.scene;
         let inputs = scene.schema.coordinates.len();
-        let lanes = Isa::detect().lanes::<E>();
+        let lanes = isa.lanes::<E>();
         let layout = Layout::new(architecture, inputs, scene.schema.heads.len(), self.learned.len(), lanes);
         let mut groups = Vec::new();
         for (at, kernel) in E::kernels(&scene).into_iter().enumerate().take(scene.schema.groups.len()) {
@@ -254,7 +259,7 @@ impl Bound {
             groups.push(group);
         }
         let scalars = self.scalars.iter().map(|&x| E::from_f64(x)).collect();
-        Ok(Engine::new(layout, groups, scalars, self.learned.clone()))
+        Ok(Engine::new(isa, layout, groups, scalars, self.learned.clone()))
     }
 
     /// The outputs group at points given in declared units, as an engine with no terms that count.
@@ -263,11 +268,12 @@ impl Bound {
         let coordinates = scene.schema.coordinates;
         let factors: Vec<f64> = coordinates.iter().map(|c| self.system.inward(&c.unit)).collect();
         let points: Vec<f64> = points.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect();
-        let lanes = Isa::detect().lanes::<E>();
+        let isa = Isa::detect();
+        let lanes = isa.lanes::<E>();
         let layout = Layout::new(architecture, coordinates.len(), scene.schema.heads.len(), self.learned.len(), lanes);
         let kernel = E::kernels(&scene).pop();
         let groups = kernel.map(|kernel| BoundGroup::new(kernel, &scene.schema.outputs, &self.scaling, &points, &[]));
         let scalars = self.scalars.iter().map(|&x| E::from_f64(x)).collect();
-        Engine::new(layout, groups.into_iter().collect(), scalars, self.learned.clone())
+        Engine::new(isa, layout, groups.into_iter().collect(), scalars, self.learned.clone())
     }
 }

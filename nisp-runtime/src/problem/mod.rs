@@ -1,6 +1,7 @@
 //! A scene bound to parameters, points and data; numbers cross this boundary in their declared units.
 
 mod bind;
+mod evaluate;
 mod scale;
 mod system;
 

@@ -6,7 +6,7 @@
 mod noise;
 mod settings;
 mod solution;
-mod weigh;
+pub(crate) mod weigh;
 
 use std::time::Instant;
 

@@ -16,7 +16,7 @@ const EQUATION_TOLERANCE: f64 = 3e-3;
 const LEAST_NOISE: f64 = 1e-6;
 
 /// Mean squares of rows over their natural sizes, times the user's weights: for exact data.
-pub(super) fn by_size<E: Real>(engine: &mut Engine<E>) {
+pub(crate) fn by_size<E: Real>(engine: &mut Engine<E>) {
     for group in &mut engine.groups {
         for term in &mut group.terms {
             let count = if term.schema.kind == TermKind::Integral { 1 } else { group.points };

@@ -41,6 +41,7 @@ pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
     let warnings = model.warnings.iter().enumerate().map(|(at, (message, span))| warning(at, message, *span));
     quote! {
         #(#docs)*
+        #[allow(non_snake_case, reason = "users name moduli and temperatures by capitals")]
         #visibility mod #name {
             #(#warnings)*
             #[doc(hidden)]

@@ -1,0 +1,54 @@
+//! The adjoint is the transpose of the derivative: `u . (J v) = (J^T u) . v`.
+
+use nisp::network::Architecture;
+use nisp::solve::objective::LeastSquares;
+
+use crate::models::each_model;
+use crate::number::Dual;
+use crate::reference::{Model, Reference, engine};
+
+fn dot_products_agree<M: Model>(model: &M) {
+    for architecture in [Architecture::modified(10, 4), Architecture::plain(12, 2)] {
+        let reference = Reference::new(model, architecture);
+        let theta = reference.theta(19);
+        let mut engine = engine::<f64>(&reference.problem, architecture);
+        // One group and one row at a time: rows before weighting are the reference's, those of square loss.
+        let v: Vec<f64> = (0..theta.len()).map(|i| (i as f64 * 0.77).cos()).collect();
+        let moving: Vec<Dual> = theta.iter().zip(&v).map(|(&value, &slope)| Dual { value, slope }).collect();
+        let schema = model.scene().schema;
+        let mut first = 0;
+        let mut block = 0;
+        for (data, group) in model.groups().iter().zip(schema.groups) {
+            let tangents = reference.rows(&moving, data);
+            for term in group.terms {
+                let (size, points) = (reference.sizes[block], tangents.len());
+                block += 1;
+                if term.kind == nisp::schema::TermKind::Integral {
+                    first += term.rows;
+                    continue;
+                }
+                let count = term.rows * points;
+                if term.loss == nisp::schema::Loss::Square {
+                    let mut u = vec![0.0; engine.rows()];
+                    u[first..first + count].iter_mut().enumerate().for_each(|(i, u)| *u = (i as f64 * 0.31).sin());
+                    let scale = (term.weight / points as f64).sqrt() / size;
+                    let products =
+                        (0..count).map(|i| u[first + i] * scale * tangents[i % points][term.first + i / points].slope);
+                    let (forward, size): (f64, f64) = (products.clone().sum(), products.map(f64::abs).sum());
+                    let mut transposed = vec![0.0; theta.len()];
+                    engine.vector_jacobian(&theta, &u, &mut transposed).expect("finite");
+                    let backward: f64 = transposed.iter().zip(&v).map(|(a, b)| a * b).sum();
+                    let size = transposed.iter().zip(&v).map(|(a, b)| (a * b).abs()).sum::<f64>().max(size);
+                    let error = (forward - backward).abs() / size;
+                    assert!(error <= 1e-13, "{}.{} {architecture:?}: {error:e}", group.name, term.name);
+                }
+                first += count;
+            }
+        }
+    }
+}
+
+#[test]
+fn dot_products_with_tangents_and_adjoints_agree() {
+    each_model!(dot_products_agree);
+}

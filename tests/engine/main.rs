@@ -1,0 +1,11 @@
+//! The whole engine, from `pde!` to gradients and Jacobian rows, against plain dense Taylor arithmetic.
+
+mod adjoint;
+mod dense_jet;
+mod determinism;
+mod gradients;
+mod models;
+mod number;
+mod reference;
+mod rows;
+mod values;

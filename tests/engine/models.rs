@@ -1,0 +1,314 @@
+//! Scenes, each beside its equations written by hand.
+
+use nisp::scene;
+
+use crate::number::Number;
+use crate::reference::{Data, Model, Point};
+
+nisp::pde! {
+    mod cart {
+        units: off;
+        coordinates: t;
+        fields: q, psi;
+        sources: f;
+        parameters: m = 0.7, h = 0.4, g = 9.81;
+        on motion {
+            cart: m * d(q, t, 2) - h * (d(psi, t, 2) * cos(psi) - d(psi, t)^2 * sin(psi)) == f;
+            link: h * d(psi, t, 2) - m * d(q, t, 2) * cos(psi) == h * g * sin(psi);
+        }
+        on samples { columns: late; observe q, psi; observe later: q + psi ~ late; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    mod poisson {
+        units: off;
+        coordinates: x, y;
+        fields: u;
+        sources: s;
+        on inside { balance: laplacian(u) == s; }
+        on rim { held: u == x * y; }
+        scene solve { }
+    }
+}
+
+nisp::pde! {
+    mod karman {
+        units: off;
+        coordinates: a, b;
+        fields: u, v, w;
+        sources: f;
+        parameters: D = 0.3, C = 1.4, nu = 0.4, p = 2;
+        let E_aa = d(u, a) + d(w, a)^2 / 2;
+        let E_bb = d(v, b) + d(w, b)^2 / 2;
+        let E_ab = (d(u, b) + d(v, a) + d(w, a) * d(w, b)) / 2;
+        let N_a = C * (E_aa + nu * E_bb);
+        let N_b = C * (E_bb + nu * E_aa);
+        let N_ab = C * (1 - nu) * E_ab;
+        on interior {
+            balance: D * biharmonic(w)
+                - (N_a * d(w, a, 2) + 2 * N_ab * d(w, a, b) + N_b * d(w, b, 2)) == p - f;
+            inplane_a: d(N_a, a) + d(N_ab, b) == 0;
+            inplane_b: d(N_ab, a) + d(N_b, b) == 0;
+        }
+        on rim { clamp: u == 0, v == 0, w == 0; no_contact: f == 0; }
+        scene contact { }
+    }
+}
+
+nisp::pde! {
+    mod sponge {
+        units: off;
+        coordinates: x, y, z;
+        fields: u: vector;
+        sources: f in -1 .. 4;
+        parameters: E in 0.5 .. 5 = 2, nu in 0.1 .. 0.45 = 0.3;
+        let mu = E / (2 * (1 + nu));
+        let lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+        let eps = sym(grad(u));
+        let sigma = lambda * tr(eps) * I + 2 * mu * eps;
+        on volume { balance: div(sigma) + [0, 0, -1] == 0; }
+        on surface {
+            columns: n: vector;
+            traction: sigma * n == -f * n with huber(0.4) weight 3;
+            total: integral(f * dot(n, n)) == E * nu;
+        }
+        scene identify { learn E, nu; }
+    }
+}
+
+nisp::pde! {
+    mod triharmonic {
+        units: off;
+        coordinates: x, y;
+        fields: w;
+        on inside { balance: laplacian(laplacian(laplacian(w))) == sin(x); }
+        on rim { held: w == 0; slope: d(w, x) == 0; bent: laplacian(w) == 0; }
+        scene solve { }
+    }
+}
+
+nisp::pde! {
+    mod heat {
+        units: off;
+        coordinates: x, t;
+        fields: T;
+        sources: q;
+        parameters: k = 0.7;
+        on inside { balance: d(T, t) == d(k * d(T, x) * (1 + T^2), x) + q; }
+        on probes { observe T with welsch(0.8) weight 2; }
+        on whole { energy: integral(T * q) == 1.5 * k; }
+        scene recover { learn k; }
+    }
+}
+
+/// Points that fill a box evenly: multiples of the golden ratio's generalisation (Roberts).
+fn scatter(count: usize, dimension: usize, low: f64, high: f64) -> Vec<f64> {
+    let ratio = (0..60).fold(2.0_f64, |g, _| (1.0 + g).powf(1.0 / (dimension as f64 + 1.0)));
+    let step = |i: usize| ratio.powi(-(i as i32 + 1));
+    (1..=count).flat_map(|n| (0..dimension).map(move |i| low + (high - low) * (n as f64 * step(i)).fract())).collect()
+}
+
+fn wave(count: usize, rate: f64) -> Vec<f64> {
+    (0..count).map(|i| (i as f64 * rate).sin()).collect()
+}
+
+fn group(name: &'static str, points: Vec<f64>) -> Data {
+    Data { name, points, ..Data::default() }
+}
+
+pub(crate) struct Cart;
+
+impl Model for Cart {
+    const ORDER: usize = 2;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<cart::recover::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        let columns = vec![wave(37, 0.3), wave(37, 0.2), wave(37, 0.5)];
+        vec![group("motion", scatter(101, 1, 0.5, 3.5)), Data { columns, ..group("samples", scatter(37, 1, 0.5, 3.5)) }]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        let [q, psi, f] = [0, 1, 2].map(|head| at.heads[head].value());
+        if group == "samples" {
+            // Columns in the scene's order: declared, then observed.
+            return vec![q - T::of(at.columns[1]), psi - T::of(at.columns[2]), q + psi - T::of(at.columns[0])];
+        }
+        let [m, h, g] = [0.7, 0.4, 9.81].map(T::of);
+        let (q_tt, psi_t, psi_tt) = (at.d(0, &[2]), at.d(1, &[1]), at.d(1, &[2]));
+        vec![
+            m * q_tt - h * (psi_tt * psi.cos() - psi_t * psi_t * psi.sin()) - f,
+            h * psi_tt - m * q_tt * psi.cos() - h * g * psi.sin(),
+        ]
+    }
+}
+
+pub(crate) struct Poisson;
+
+impl Model for Poisson {
+    const ORDER: usize = 2;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<poisson::solve::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        vec![group("inside", scatter(75, 2, -2.0, 3.0)), group("rim", scatter(22, 2, -2.0, 3.0))]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        match group {
+            "rim" => vec![at.heads[0].value() - T::of(at.x[0] * at.x[1])],
+            _ => vec![at.heads[0].laplacian(2).value() - at.heads[1].value()],
+        }
+    }
+}
+
+pub(crate) struct Karman;
+
+impl Model for Karman {
+    const ORDER: usize = 4;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<karman::contact::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        vec![group("interior", scatter(70, 2, -1.0, 1.5)), group("rim", scatter(19, 2, -1.0, 1.5))]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        if group == "rim" {
+            return at.heads.iter().map(|head| head.value()).collect();
+        }
+        let [d, c, nu] = [0.3, 1.4, 0.4].map(T::of);
+        let [u, v, w, f] = [0, 1, 2, 3].map(|head| at.heads[head].clone());
+        let half = T::of(0.5);
+        let e_aa = u.by(0) + (w.by(0) * w.by(0)).scale(half);
+        let e_bb = v.by(1) + (w.by(1) * w.by(1)).scale(half);
+        let e_ab = (u.by(1) + v.by(0) + w.by(0) * w.by(1)).scale(half);
+        let n_a = (e_aa.clone() + e_bb.clone().scale(nu)).scale(c);
+        let n_b = (e_bb + e_aa.scale(nu)).scale(c);
+        let n_ab = e_ab.scale(c * (T::of(1.0) - nu));
+        let tension = n_a.value() * at.d(2, &[2, 0])
+            + T::of(2.0) * n_ab.value() * at.d(2, &[1, 1])
+            + n_b.value() * at.d(2, &[0, 2]);
+        vec![
+            d * w.laplacian(2).laplacian(2).value() - tension - T::of(2.0) + f.value(),
+            n_a.by(0).value() + n_ab.by(1).value(),
+            n_ab.by(0).value() + n_b.by(1).value(),
+        ]
+    }
+}
+
+pub(crate) struct Sponge;
+
+impl Model for Sponge {
+    const ORDER: usize = 2;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<sponge::identify::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        let normals = vec![wave(29, 0.3), wave(29, 0.7), wave(29, 1.1)];
+        let surface = group("surface", scatter(29, 3, 0.0, 2.0));
+        let weights = (0..29).map(|i| 0.02 + 0.001 * f64::from(i)).collect();
+        vec![group("volume", scatter(53, 3, 0.0, 2.0)), Data { columns: normals, weights, ..surface }]
+    }
+    fn learned<T: Number>(&self, theta: &[T]) -> Vec<T> {
+        let between = |theta: T, low: f64, start: f64, high: f64| {
+            let shift = ((start - low) / (high - start)).ln();
+            T::of(low) + T::of(high - low) / ((-(theta + T::of(shift))).exp() + T::of(1.0))
+        };
+        vec![between(theta[0], 0.5, 2.0, 5.0), between(theta[1], 0.1, 0.3, 0.45)]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        let (one, two) = (T::of(1.0), T::of(2.0));
+        let [e, nu] = [at.learned[0], at.learned[1]];
+        let mu = e / (two * (one + nu));
+        let lambda = e * nu / ((one + nu) * (one - two * nu));
+        let u = &at.heads[..3];
+        let trace = u[0].by(0) + u[1].by(1) + u[2].by(2);
+        let sigma = |i: usize, j: usize| {
+            let shear = (u[i].by(j) + u[j].by(i)).scale(mu);
+            if i == j { shear + trace.clone().scale(lambda) } else { shear }
+        };
+        if group == "volume" {
+            let load = [0.0, 0.0, -1.0];
+            let balance = |i: usize| (0..3).fold(T::of(load[i]), |sum, j| sum + sigma(i, j).by(j).value());
+            return (0..3).map(balance).collect();
+        }
+        let n: Vec<T> = at.columns.iter().map(|&n| T::of(n)).collect();
+        let f = T::of(-1.0) + T::of(5.0) / ((-at.heads[3].value()).exp() + one);
+        let traction = |i: usize| (0..3).fold(f * n[i], |sum, j| sum + sigma(i, j).value() * n[j]);
+        let square = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+        vec![traction(0), traction(1), traction(2), f * square]
+    }
+    fn target<T: Number>(&self, _: usize, learned: &[T]) -> T {
+        learned[0] * learned[1]
+    }
+}
+
+pub(crate) struct Triharmonic;
+
+impl Model for Triharmonic {
+    const ORDER: usize = 6;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<triharmonic::solve::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        vec![group("inside", scatter(45, 2, -1.0, 1.0)), group("rim", scatter(9, 2, -1.0, 1.0))]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        if group == "rim" {
+            let w = &at.heads[0];
+            return vec![w.value(), w.by(0).value(), w.laplacian(2).value()];
+        }
+        vec![at.heads[0].laplacian(2).laplacian(2).laplacian(2).value() - T::of(at.x[0].sin())]
+    }
+}
+
+pub(crate) struct Heat;
+
+impl Model for Heat {
+    const ORDER: usize = 2;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<heat::recover::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        let probes = group("probes", scatter(31, 2, 0.0, 1.0));
+        let whole = group("whole", scatter(40, 2, 0.0, 1.0));
+        vec![
+            group("inside", scatter(60, 2, 0.0, 1.0)),
+            Data { columns: vec![wave(31, 0.9)], ..probes },
+            Data { weights: vec![0.025; 40], ..whole },
+        ]
+    }
+    fn learned<T: Number>(&self, theta: &[T]) -> Vec<T> {
+        vec![T::of(0.7) * theta[0].exp()]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        let (temperature, q) = (at.heads[0].clone(), at.heads[1].value());
+        match group {
+            "probes" => vec![temperature.value() - T::of(at.columns[0])],
+            "whole" => vec![temperature.value() * q],
+            _ => {
+                let slope = temperature.by(0);
+                let rising = temperature.clone() * temperature.clone();
+                let flux = (slope * rising.shift(T::of(1.0))).scale(at.learned[0]);
+                vec![temperature.by(1).value() - flux.by(0).value() - q]
+            }
+        }
+    }
+    fn target<T: Number>(&self, _: usize, learned: &[T]) -> T {
+        T::of(1.5) * learned[0]
+    }
+}
+
+/// Runs a generic check on every model.
+macro_rules! each_model {
+    ($check:ident) => {
+        $check(&crate::models::Cart);
+        $check(&crate::models::Poisson);
+        $check(&crate::models::Karman);
+        $check(&crate::models::Sponge);
+        $check(&crate::models::Triharmonic);
+        $check(&crate::models::Heat);
+    };
+}
+
+pub(crate) use each_model;

@@ -1,0 +1,213 @@
+//! The network and the loss in plain loops over dense jets: what the engine is compared with.
+
+use nisp::engine::{Engine, Scaling};
+use nisp::network::{Architecture, Kind, Layout, Matrix, initialise};
+use nisp::schema::{self, Loss, TermKind};
+use nisp::simd::Isa;
+use nisp::solve::objective::LeastSquares;
+use nisp::{Points, Problem};
+
+use crate::dense_jet::{Jet, Space};
+use crate::number::Number;
+
+/// A scene together with its equations written by hand.
+pub(crate) trait Model {
+    /// Highest derivative in the equations.
+    const ORDER: usize;
+    /// The scene, bound.
+    fn problem(&self) -> Problem {
+        self.groups().into_iter().fold(Problem::new(self.scene()), |mut problem, data| {
+            let points = Points { coordinates: data.points, weights: data.weights, ..Points::default() };
+            problem.set_group(data.name, points, data.columns).expect("a group of the scene");
+            problem
+        })
+    }
+    /// The scene.
+    fn scene(&self) -> nisp::SceneRef;
+    /// Points and columns, in the scene's order of groups.
+    fn groups(&self) -> Vec<Data>;
+    /// Values of the learned scalars, given their parameters.
+    fn learned<T: Number>(&self, _theta: &[T]) -> Vec<T> {
+        Vec::new()
+    }
+    /// Rows of a group at a point; heads come as series in the user's coordinates.
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T>;
+    /// What the integral in this row should be.
+    fn target<T: Number>(&self, _row: usize, _learned: &[T]) -> T {
+        T::of(0.0)
+    }
+}
+
+/// What is bound to a group.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Data {
+    pub(crate) name: &'static str,
+    pub(crate) points: Vec<f64>,
+    pub(crate) columns: Vec<Vec<f64>>,
+    pub(crate) weights: Vec<f64>,
+}
+
+/// What equations read at a point.
+pub(crate) struct Point<'a, 's, T> {
+    pub(crate) x: &'a [f64],
+    pub(crate) heads: &'a [Jet<'s, T>],
+    pub(crate) columns: &'a [f64],
+    pub(crate) learned: &'a [T],
+}
+
+impl<T: Number> Point<'_, '_, T> {
+    /// A derivative of a head.
+    pub(crate) fn d(&self, head: usize, orders: &[usize]) -> T {
+        self.heads[head].derivative(orders)
+    }
+}
+
+/// A model with a network of some shape.
+pub(crate) struct Reference<'m, M> {
+    pub(crate) model: &'m M,
+    pub(crate) problem: Problem,
+    pub(crate) layout: Layout,
+    pub(crate) scaling: Scaling,
+    /// Natural size of each term's rows.
+    pub(crate) sizes: Vec<f64>,
+    space: Space,
+}
+
+impl<'m, M: Model> Reference<'m, M> {
+    pub(crate) fn new(model: &'m M, architecture: Architecture) -> Self {
+        let problem = model.problem();
+        let engine = engine::<f64>(&problem, architecture);
+        let scaling = problem.scaling().expect("a bound problem");
+        Self {
+            model,
+            layout: engine.layout().clone(),
+            sizes: engine.blocks().iter().map(|block| block.sigma).collect(),
+            space: Space::new(scaling.half.len(), M::ORDER),
+            scaling,
+            problem,
+        }
+    }
+
+    /// Ordinary weights with biases, and learned scalars away from their start.
+    pub(crate) fn theta(&self, seed: u64) -> Vec<f64> {
+        let mut theta = initialise(&self.layout, seed);
+        let biases: Vec<usize> = self.layout.matrices().flat_map(|m| m.bias..m.bias + m.rows).collect();
+        for at in biases.into_iter().chain(self.layout.learned.clone()) {
+            theta[at] = 0.3 * (at as f64 * 0.7 + seed as f64).sin();
+        }
+        theta
+    }
+
+    /// Series of all heads at a point, in the engine's units, which are the user's where units are off.
+    fn heads<'s, T: Number>(&'s self, theta: &[T], x: &[f64]) -> Vec<Jet<'s, T>> {
+        let layout = &self.layout;
+        let inputs: Vec<Jet<'s, T>> = x
+            .iter()
+            .zip(self.scaling.centre.iter().zip(&self.scaling.half))
+            .enumerate()
+            .map(|(i, (x, (centre, half)))| Jet::variable(&self.space, i, (x - centre) / half, 1.0 / half))
+            .collect();
+        let lifted: Vec<Vec<Jet<'s, T>>> = layout.affine.iter().map(|m| activate(affine(m, theta, &inputs))).collect();
+        let gate = |z: Vec<Jet<'s, T>>| -> Vec<Jet<'s, T>> {
+            match layout.architecture.kind {
+                Kind::Plain => z,
+                Kind::Modified => z
+                    .into_iter()
+                    .zip(lifted[1].iter().zip(&lifted[2]))
+                    .map(|(z, (c, d))| c.clone() * z.clone() + d.clone() * (-z).shift(T::of(1.0)))
+                    .collect(),
+            }
+        };
+        let first = gate(lifted[0].clone());
+        let last = layout.hidden.iter().fold(first, |z, m| gate(activate(affine(m, theta, &z))));
+        let heads = affine(&layout.head, theta, &last).into_iter();
+        heads
+            .zip(self.scaling.scale.iter().zip(&self.scaling.offset))
+            .map(|(y, (&scale, &offset))| y.scale(T::of(scale)).shift(T::of(offset)))
+            .collect()
+    }
+
+    /// Rows of a group before any weighting, `[point][row]`.
+    pub(crate) fn rows<T: Number>(&self, theta: &[T], data: &Data) -> Vec<Vec<T>> {
+        let learned = self.model.learned(&theta[self.layout.learned.clone()]);
+        let at = |(p, x): (usize, &[f64])| {
+            let columns: Vec<f64> = data.columns.iter().map(|column| column[p]).collect();
+            let heads = self.heads(theta, x);
+            self.model.rows(data.name, &Point { x, heads: &heads, columns: &columns, learned: &learned })
+        };
+        data.points.chunks_exact(self.scaling.half.len()).enumerate().map(at).collect()
+    }
+
+    /// The loss by definition.
+    pub(crate) fn loss<T: Number>(&self, theta: &[T]) -> T {
+        let learned = self.model.learned(&theta[self.layout.learned.clone()]);
+        let mut sizes = self.sizes.iter();
+        let mut loss = T::of(0.0);
+        for (data, group) in self.model.groups().iter().zip(self.problem.scene().schema.groups) {
+            let rows = self.rows(theta, data);
+            for (term, &size) in group.terms.iter().zip(&mut sizes) {
+                let each = term.first..term.first + term.rows;
+                let mut misfits: Vec<T> = Vec::new();
+                if term.kind == TermKind::Integral {
+                    misfits.extend(each.map(|row| {
+                        let weight = |p: usize| T::of(data.weights.get(p).copied().unwrap_or(1.0));
+                        let sum = rows.iter().enumerate().fold(T::of(0.0), |sum, (p, r)| sum + weight(p) * r[row]);
+                        sum - self.model.target(row, &learned)
+                    }));
+                } else {
+                    misfits.extend(rows.iter().flat_map(|r| each.clone().map(|row| r[row])));
+                }
+                let count = if term.kind == TermKind::Integral { 1 } else { rows.len() };
+                let weight = T::of(term.weight / count as f64);
+                loss = misfits.iter().fold(loss, |loss, &r| loss + weight * cost(term, r * T::of(1.0 / size)));
+            }
+        }
+        loss
+    }
+}
+
+/// What a misfit costs.
+fn cost<T: Number>(term: &schema::Term, u: T) -> T {
+    match term.loss {
+        Loss::Huber(delta) if u.value().abs() > delta => {
+            let sign = T::of(u.value().signum());
+            T::of(delta) * (sign * u - T::of(delta / 2.0))
+        }
+        Loss::Welsch(delta) => {
+            let x = u * T::of(1.0 / delta);
+            T::of(delta * delta) * (T::of(1.0) - (-(x * x) * T::of(0.5)).exp())
+        }
+        _ => u * u * T::of(0.5),
+    }
+}
+
+fn affine<'s, T: Number>(m: &Matrix, theta: &[T], input: &[Jet<'s, T>]) -> Vec<Jet<'s, T>> {
+    let row = |i: usize| {
+        let scale = m.scales.map_or(T::of(1.0), |at| theta[at + i].exp());
+        let products =
+            input.iter().enumerate().map(|(j, x)| x.clone().scale(scale * theta[m.weights + i * m.columns + j]));
+        products.reduce(|a, b| a + b).expect("a layer has inputs").shift(theta[m.bias + i])
+    };
+    (0..m.rows).map(row).collect()
+}
+
+fn activate<T: Number>(arguments: Vec<Jet<'_, T>>) -> Vec<Jet<'_, T>> {
+    arguments.iter().map(Jet::tanh).collect()
+}
+
+/// The engine of a problem, on this machine's best vectors.
+pub(crate) fn engine<E: nisp::Precision>(problem: &Problem, architecture: Architecture) -> Engine<E> {
+    problem.engine(Isa::detect(), architecture).expect("a bound problem")
+}
+
+/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, widths that need padding.
+pub(crate) fn architectures() -> Vec<Architecture> {
+    (1..=5)
+        .flat_map(|layers| {
+            let width = 9 + layers;
+            [Architecture::modified(width, layers), Architecture::plain(width, layers)]
+        })
+        .enumerate()
+        .map(|(at, architecture)| Architecture { factorised: at % 3 == 1, ..architecture })
+        .collect()
+}

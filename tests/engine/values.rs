@@ -1,0 +1,66 @@
+//! Rows and losses against the reference.
+
+use nisp::Precision;
+use nisp::network::Architecture;
+
+use crate::models::{Heat, Karman, Triharmonic, each_model};
+use crate::reference::{Model, Reference, architectures, engine};
+
+/// Largest distance of the engine's rows from the reference, over the largest row of their kind.
+fn distance<E: Precision, M: Model>(model: &M, architecture: Architecture) -> f64 {
+    let reference = Reference::new(model, architecture);
+    let theta = reference.theta(3);
+    let rounded: Vec<E> = theta.iter().map(|&x| E::from_f64(x)).collect();
+    let mut engine = engine::<E>(&reference.problem, architecture);
+    let mut worst = 0.0_f64;
+    for (at, data) in model.groups().iter().enumerate() {
+        let expected = reference.rows(&theta, data);
+        let found = engine.raw_rows(at, &rounded);
+        for row in 0..expected[0].len() {
+            let largest = expected.iter().map(|rows| rows[row].abs()).fold(0.0, f64::max);
+            for (p, rows) in expected.iter().enumerate() {
+                worst = worst.max((rows[row] - found[row * expected.len() + p]).abs() / largest);
+            }
+        }
+    }
+    worst
+}
+
+fn rows_agree<M: Model>(model: &M) {
+    for architecture in architectures() {
+        let error = distance::<f64, M>(model, architecture);
+        assert!(error <= 1e-12, "{} {architecture:?}: {error:e}", model.scene().schema.module);
+    }
+}
+
+#[test]
+fn rows_are_those_of_dense_jets() {
+    each_model!(rows_agree);
+}
+
+#[test]
+fn single_precision_rows_are_those_of_dense_jets() {
+    for architecture in architectures().into_iter().filter(|a| a.layers >= 2) {
+        let errors = [distance::<f32, _>(&Karman, architecture), distance::<f32, _>(&Heat, architecture)];
+        assert!(errors.iter().all(|&error| error <= 2e-6), "{architecture:?}: {errors:?}");
+        // Sixth derivatives amplify the rounding of every layer.
+        let error = distance::<f32, _>(&Triharmonic, architecture);
+        assert!(error <= 1e-5, "{architecture:?}: {error:e}");
+    }
+}
+
+fn loss_agrees<M: Model>(model: &M) {
+    for architecture in architectures() {
+        let reference = Reference::new(model, architecture);
+        let theta = reference.theta(5);
+        let expected = reference.loss(&theta);
+        let found = engine::<f64>(&reference.problem, architecture).loss(&theta).expect("a finite loss");
+        let error = (found - expected).abs() / expected;
+        assert!(error <= 1e-12, "{} {architecture:?}: {error:e}", model.scene().schema.module);
+    }
+}
+
+#[test]
+fn losses_are_those_of_their_definition() {
+    each_model!(loss_agrees);
+}
