@@ -7,6 +7,7 @@
 
 use std::marker::PhantomData;
 
+use crate::features::{Features, FeaturesKernel};
 use crate::layer::{
     Affine, AffineAdjoint, AffineAdjointKernel, AffineKernel, Gate, GateAdjoint, Layer, LayerAdjoint,
     LayerAdjointKernel, LayerKernel,
@@ -60,6 +61,8 @@ pub trait GroupKernel<E: Real>: Send + Sync {
     fn affine(&self, isa: Isa, layer: Affine<'_, E>);
     /// Adjoint of [`GroupKernel::affine`].
     fn affine_adjoint(&self, isa: Isa, layer: AffineAdjoint<'_, E>);
+    /// Channels of Fourier features.
+    fn features(&self, isa: Isa, features: Features<'_, E>);
     /// A hidden layer after its matrix product; `last` delivers only the channels that heads read.
     fn layer(&self, isa: Isa, layer: Layer<'_, E>, gate: Option<Gate<'_, E>>, last: bool);
     /// Adjoint of [`GroupKernel::layer`].
@@ -121,6 +124,10 @@ where
 
     fn affine_adjoint(&self, isa: Isa, layer: AffineAdjoint<'_, E>) {
         dispatch(isa, AffineAdjointKernel::<E, H, K, D, S>(layer, PhantomData));
+    }
+
+    fn features(&self, isa: Isa, features: Features<'_, E>) {
+        dispatch(isa, FeaturesKernel::<E, H, K, D, S>(features, PhantomData));
     }
 
     fn layer(&self, isa: Isa, layer: Layer<'_, E>, gate: Option<Gate<'_, E>>, last: bool) {

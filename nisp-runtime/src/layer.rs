@@ -21,10 +21,15 @@ pub struct Shape {
     pub ld: usize,
 }
 
+/// Distance between rows: whole cache lines, and no power of two, where rows would share few cache sets.
+pub(crate) fn row_distance(width: usize) -> usize {
+    if width.is_multiple_of(64) { width + 16 } else { width }
+}
+
 impl Shape {
     /// Checks that a buffer holds rows for `channels` channels.
     #[inline(always)]
-    fn holds<E>(&self, rows: &[E], channels: usize) {
+    pub(crate) fn holds<E>(&self, rows: &[E], channels: usize) {
         assert!(self.width <= self.ld && rows.len() >= self.points * channels * self.ld, "tile buffer too small");
     }
 }

@@ -4,6 +4,7 @@
 
 pub mod aligned;
 pub mod engine;
+pub mod features;
 pub mod functions;
 pub mod gemm;
 pub mod kernel;

@@ -110,6 +110,14 @@ impl<'s, T: Number> Jet<'s, T> {
         self.compose(&derivatives)
     }
 
+    /// Sine and cosine.
+    pub(crate) fn sin_cos(&self) -> (Self, Self) {
+        let (sin, cos) = (self.coefficients[0].sin(), self.coefficients[0].cos());
+        let turn = [sin, cos, -sin, -cos];
+        let series = |quarter: usize| (0..=self.space.order).map(|n| turn[(n + quarter) % 4]).collect::<Vec<T>>();
+        (self.compose(&series(0)), self.compose(&series(1)))
+    }
+
     /// The value.
     pub(crate) fn value(&self) -> T {
         self.coefficients[0]

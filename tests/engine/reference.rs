@@ -1,7 +1,7 @@
 //! The network and the loss in plain loops over dense jets: what the engine is compared with.
 
 use nisp::engine::{Engine, Scaling};
-use nisp::network::{Architecture, Kind, Layout, Matrix, initialise};
+use nisp::network::{Architecture, Fourier, Kind, Layout, Matrix, initialise};
 use nisp::schema::{self, Loss, TermKind};
 use nisp::simd::Isa;
 use nisp::solve::objective::LeastSquares;
@@ -107,6 +107,10 @@ impl<'m, M: Model> Reference<'m, M> {
             .enumerate()
             .map(|(i, (x, (centre, half)))| Jet::variable(&self.space, i, (x - centre) / half, 1.0 / half))
             .collect();
+        let inputs = match layout.architecture.fourier {
+            None => inputs,
+            Some(fourier) => features(&fourier.projections(x.len()), &inputs),
+        };
         let lifted: Vec<Vec<Jet<'s, T>>> = layout.affine.iter().map(|m| activate(affine(m, theta, &inputs))).collect();
         let gate = |z: Vec<Jet<'s, T>>| -> Vec<Jet<'s, T>> {
             match layout.architecture.kind {
@@ -191,6 +195,16 @@ fn affine<'s, T: Number>(m: &Matrix, theta: &[T], input: &[Jet<'s, T>]) -> Vec<J
     (0..m.rows).map(row).collect()
 }
 
+/// Cosines, then sines, of the projections of the coordinates.
+fn features<'s, T: Number>(projections: &[f64], inputs: &[Jet<'s, T>]) -> Vec<Jet<'s, T>> {
+    let angles = projections.chunks_exact(inputs.len()).map(|b| {
+        let products = inputs.iter().zip(b).map(|(x, &b)| x.clone().scale(T::of(b)));
+        products.reduce(|a, b| a + b).expect("a coordinate")
+    });
+    let (sines, cosines): (Vec<_>, Vec<_>) = angles.map(|angle| angle.sin_cos()).unzip();
+    cosines.into_iter().chain(sines).collect()
+}
+
 fn activate<T: Number>(arguments: Vec<Jet<'_, T>>) -> Vec<Jet<'_, T>> {
     arguments.iter().map(Jet::tanh).collect()
 }
@@ -200,7 +214,7 @@ pub(crate) fn engine<E: nisp::Precision>(problem: &Problem, architecture: Archit
     problem.engine(Isa::detect(), architecture).expect("a bound problem")
 }
 
-/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, widths that need padding.
+/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, with and without Fourier mapping, widths that need padding.
 pub(crate) fn architectures() -> Vec<Architecture> {
     (1..=5)
         .flat_map(|layers| {
@@ -208,6 +222,10 @@ pub(crate) fn architectures() -> Vec<Architecture> {
             [Architecture::modified(width, layers), Architecture::plain(width, layers)]
         })
         .enumerate()
-        .map(|(at, architecture)| Architecture { factorised: at % 3 == 1, ..architecture })
+        .map(|(at, architecture)| Architecture {
+            factorised: at % 3 == 1,
+            fourier: (at % 4 == 2).then_some(Fourier { frequencies: 5, deviation: 1.0 }),
+            ..architecture
+        })
         .collect()
 }

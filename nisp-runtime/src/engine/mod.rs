@@ -6,6 +6,7 @@
 mod group;
 mod heads;
 mod jacobian;
+mod lift;
 mod objective;
 mod predict;
 mod tile;
@@ -19,6 +20,7 @@ pub use group::{BoundGroup, Scaling};
 use tile::{Buffers, Extent, Network, Tile};
 
 use crate::aligned::AlignedVec;
+use crate::layer::row_distance;
 use crate::network::{Layout, Weights};
 use crate::real::Real;
 use crate::residual::Points;
@@ -465,7 +467,7 @@ fn integrals<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Integral> {
 /// Points of a tile: as many as keep its rows in cache, and enough tiles to share out.
 fn tile_points<E: Real>(layout: &Layout, channels: usize, points: usize) -> usize {
     let buffers = layout.affine.len() + layout.hidden.len() + 6;
-    let bytes = channels * tile::row_distance(layout.width) * size_of::<E>() * buffers;
+    let bytes = channels * row_distance(layout.width) * size_of::<E>() * buffers;
     let fit = (TILE_BYTES / bytes).clamp(4, 64);
     let share = points.div_ceil(CHUNKS).next_multiple_of(4);
     fit.min(share).max(4).min(points.max(1))

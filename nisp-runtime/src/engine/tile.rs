@@ -5,8 +5,8 @@
 use super::group::BoundGroup;
 use super::heads::{Heads, HeadsRowsAdjoint, HeadsWeightsAdjoint};
 use crate::aligned::AlignedVec;
-use crate::layer::{Affine, AffineAdjoint, Gate, GateAdjoint, Layer, LayerAdjoint, Shape};
-use crate::network::{Layout, Weights, add_outer};
+use crate::layer::{Gate, GateAdjoint, Layer, LayerAdjoint, Shape, row_distance};
+use crate::network::{Layout, ProductAdjoint, Weights};
 use crate::real::Real;
 use crate::residual::Points;
 use crate::simd::{Isa, dispatch};
@@ -16,20 +16,22 @@ pub(crate) const POINT_LANES: usize = 16;
 
 /// Scratch of one worker, large enough for a tile of any group.
 pub(crate) struct Buffers<E: Real> {
-    coordinates: AlignedVec<E>,
-    /// `tanh` of the first layer and the gates, and its slope.
-    values: Vec<AlignedVec<E>>,
-    slopes: Vec<AlignedVec<E>>,
+    pub(super) coordinates: AlignedVec<E>,
+    /// Channels of the Fourier features, if there are any.
+    pub(super) features: AlignedVec<E>,
+    /// `tanh` of the first layer and the gates (after a Fourier mapping, their arguments), and its slope.
+    pub(super) values: Vec<AlignedVec<E>>,
+    pub(super) slopes: Vec<AlignedVec<E>>,
     /// Channels of the first layer, of `c - d`, and of `d`.
-    lifted: Vec<AlignedVec<E>>,
+    pub(super) lifted: Vec<AlignedVec<E>>,
     arguments: Vec<AlignedVec<E>>,
     hidden_slopes: Vec<AlignedVec<E>>,
-    output: AlignedVec<E>,
+    pub(super) output: AlignedVec<E>,
     seed: AlignedVec<E>,
-    bar: AlignedVec<E>,
-    next_bar: AlignedVec<E>,
-    difference_bar: AlignedVec<E>,
-    floor_bar: AlignedVec<E>,
+    pub(super) bar: AlignedVec<E>,
+    pub(super) next_bar: AlignedVec<E>,
+    pub(super) difference_bar: AlignedVec<E>,
+    pub(super) floor_bar: AlignedVec<E>,
     pub(crate) outputs: AlignedVec<E>,
     pub(crate) jets: AlignedVec<E>,
     pub(crate) points: AlignedVec<E>,
@@ -65,11 +67,6 @@ impl Extent {
     }
 }
 
-/// Distance between rows: whole cache lines, and no power of two, where rows would share few cache sets.
-pub(crate) fn row_distance(width: usize) -> usize {
-    if width.is_multiple_of(64) { width + 16 } else { width }
-}
-
 impl<E: Real> Buffers<E> {
     pub(crate) fn new(layout: &Layout, extent: Extent) -> Self {
         let ld = row_distance(layout.width);
@@ -77,9 +74,14 @@ impl<E: Real> Buffers<E> {
         let rows = || AlignedVec::zeros(extent.rows * ld);
         let values = || AlignedVec::zeros(extent.points * ld);
         let quantities = |count: usize| AlignedVec::zeros(count * stride);
+        let features = match layout.architecture.fourier {
+            None => 0,
+            Some(_) => extent.rows * row_distance(layout.affine[0].padded_row),
+        };
         Self {
             coordinates: AlignedVec::zeros(extent.points * layout.inputs),
-            values: layout.affine.iter().map(|_| values()).collect(),
+            features: AlignedVec::zeros(features),
+            values: layout.affine.iter().map(|_| if features == 0 { values() } else { rows() }).collect(),
             slopes: layout.affine.iter().map(|_| values()).collect(),
             lifted: layout.affine.iter().map(|_| rows()).collect(),
             arguments: layout.hidden.iter().map(|_| rows()).collect(),
@@ -138,18 +140,7 @@ impl<E: Real> Network<'_, E> {
         let shape = tile.shape(self.layout);
         let group = tile.group;
         let kernel = &*group.kernel;
-        for (j, matrix) in self.layout.affine.iter().enumerate() {
-            let layer = Affine {
-                shape,
-                weights: self.weights.matrix(matrix),
-                bias: self.weights.bias(matrix),
-                coordinates: &buffers.coordinates,
-                value: &mut buffers.values[j],
-                slope: &mut buffers.slopes[j],
-                output: &mut buffers.lifted[j],
-            };
-            kernel.affine(self.isa, layer);
-        }
+        self.lift(tile, shape, buffers);
         let rows = shape.points * kernel.channels();
         let (first, gates) = split_gates(&mut buffers.lifted, rows * shape.ld);
         let layers = self.layout.architecture.layers;
@@ -271,7 +262,7 @@ impl<E: Real> Network<'_, E> {
             self.weights.hidden[l].backward(self.isa, rows, shape.ld, &buffers.bar, &mut buffers.seed);
             std::mem::swap(&mut buffers.bar, &mut buffers.next_bar);
         }
-        self.affine_adjoint(tile, shape, buffers, gradient, parts);
+        self.first_adjoint(tile, shape, buffers, gradient, parts);
     }
 
     /// Adjoint of the group's programs and of the map from head channels to jets.
@@ -341,21 +332,21 @@ impl<E: Real> Network<'_, E> {
                     dispatch(self.isa, heads);
                 }
                 Some(matrix) => {
-                    let bar = &buffers.next_bar[start..];
-                    let bias_bar = &mut gradient[at + matrix.padded_bias..][..shape.width];
-                    for row in bar.chunks(channels * shape.ld).take(count) {
-                        bias_bar.iter_mut().zip(row).for_each(|(sum, &x)| *sum += x);
-                    }
-                    let weights_bar = &mut gradient[at + matrix.padded..][..shape.width * shape.width];
-                    let rows = count * channels;
-                    add_outer(self.isa, rows, shape, bar, &buffers.output[start..], weights_bar);
+                    let product = ProductAdjoint {
+                        shape: Shape { points: count, ..shape },
+                        channels,
+                        bar: &buffers.next_bar[start..],
+                        input: &buffers.output[start..],
+                        input_ld: shape.ld,
+                    };
+                    product.add(self.isa, matrix, &mut gradient[at..]);
                 }
             }
         }
     }
 
     /// The first layer and the gates.
-    fn affine_adjoint(
+    fn first_adjoint(
         &self,
         tile: &Tile<'_, E>,
         shape: Shape,
@@ -389,31 +380,13 @@ impl<E: Real> Network<'_, E> {
             buffers.output.copy_from_slice(&buffers.lifted[0]);
         }
         self.output_used(tile, shape, buffers, gradient, parts, 0);
-        let seeds = [&buffers.bar, &buffers.difference_bar, &buffers.floor_bar];
-        let channels = kernel.channels();
-        for (j, matrix) in self.layout.affine.iter().enumerate() {
-            for (first, count, at) in parts.ranges() {
-                let (weights_bar, rest) =
-                    gradient[at + matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
-                let layer = AffineAdjoint {
-                    shape: Shape { points: count, ..shape },
-                    weights: self.weights.matrix(matrix),
-                    coordinates: &buffers.coordinates[first * self.layout.inputs..],
-                    value: &buffers.values[j][first * shape.ld..],
-                    slope: &buffers.slopes[j][first * shape.ld..],
-                    seed: &seeds[j][first * channels * shape.ld..],
-                    weights_bar,
-                    bias_bar: rest,
-                };
-                kernel.affine_adjoint(self.isa, layer);
-            }
-        }
+        self.lift_adjoint(tile, shape, buffers, gradient, parts);
     }
 }
 
 /// How a tile's gradient is split: as a whole, or point by point.
 #[derive(Clone, Copy)]
-struct Parts {
+pub(super) struct Parts {
     count: usize,
     per_point: bool,
     distance: usize,
@@ -421,7 +394,7 @@ struct Parts {
 
 impl Parts {
     /// First point, number of points, and where their gradient begins.
-    fn ranges(self) -> impl Iterator<Item = (usize, usize, usize)> {
+    pub(super) fn ranges(self) -> impl Iterator<Item = (usize, usize, usize)> {
         let size = if self.per_point { 1 } else { self.count };
         (0..self.count)
             .step_by(size)

@@ -5,11 +5,13 @@ mod layout;
 mod weights;
 
 pub use init::initialise;
+use rand::{SeedableRng, rngs::StdRng};
+
 #[cfg(test)]
 pub(crate) use init::normal;
 pub use layout::{Layout, Matrix};
 pub use weights::Weights;
-pub(crate) use weights::add_outer;
+pub(crate) use weights::{ProductAdjoint, multiply};
 
 /// The shape of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -35,13 +37,21 @@ pub enum Kind {
     Plain,
 }
 
-/// Random Fourier features: cosines and sines of `frequencies` random projections.
+/// Random Fourier features: cosines, then sines, of `frequencies` random projections of the coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fourier {
     /// Number of projections; there are twice as many features.
     pub frequencies: usize,
     /// Standard deviation of the projections, in radians per half the domain.
     pub deviation: f64,
+}
+
+impl Fourier {
+    /// The projections, `[projection][coordinate]`: normal numbers that depend on nothing but these settings.
+    pub fn projections(&self, coordinates: usize) -> Vec<f64> {
+        let mut random = StdRng::seed_from_u64(0);
+        (0..self.frequencies * coordinates).map(|_| self.deviation * init::normal(&mut random)).collect()
+    }
 }
 
 impl Architecture {

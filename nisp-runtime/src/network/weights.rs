@@ -1,9 +1,9 @@
 //! The working form of the weights: materialised and packed once per step, for all tiles.
 
-use super::{Layout, Matrix};
+use super::{Fourier, Layout, Matrix};
 use crate::aligned::AlignedVec;
 use crate::gemm::{self, Left, Packed, Right, Write, gemm};
-use crate::layer::Shape;
+use crate::layer::{Shape, row_distance};
 use crate::real::Real;
 use crate::simd::Isa;
 
@@ -12,6 +12,38 @@ use crate::simd::Isa;
 pub struct Weights<E: Real> {
     padded: AlignedVec<E>,
     pub(crate) hidden: Vec<Hidden<E>>,
+    pub(crate) features: Option<Mapping<E>>,
+}
+
+/// A Fourier mapping, and the matrices on its features.
+#[derive(Debug)]
+pub(crate) struct Mapping<E: Real> {
+    /// Features in the place of units, no points.
+    pub(crate) shape: Shape,
+    /// `[coordinate][feature]`, padded.
+    pub(crate) projections: AlignedVec<E>,
+    pub(crate) phases: AlignedVec<E>,
+    /// `W^T` of the first layer and the gates.
+    pub(crate) matrices: Vec<Packed<E>>,
+}
+
+impl<E: Real> Mapping<E> {
+    fn new(isa: Isa, layout: &Layout, fourier: Fourier) -> Self {
+        let width = layout.affine[0].padded_row;
+        let mut projections = AlignedVec::zeros(layout.inputs * width);
+        let mut phases = AlignedVec::zeros(width);
+        for (f, projection) in fourier.projections(layout.inputs).chunks_exact(layout.inputs).enumerate() {
+            // The cosines come first.
+            phases[f] = E::from_f64(std::f64::consts::FRAC_PI_2);
+            for (i, &b) in projection.iter().enumerate() {
+                for feature in [f, fourier.frequencies + f] {
+                    projections[i * width + feature] = E::from_f64(b);
+                }
+            }
+        }
+        let matrices = layout.affine.iter().map(|_| Packed::zeros(isa, width, layout.width)).collect();
+        Self { shape: Shape { points: 0, width, ld: row_distance(width) }, projections, phases, matrices }
+    }
 }
 
 /// A hidden weight matrix `W`, packed for both directions.
@@ -30,6 +62,7 @@ impl<E: Real> Weights<E> {
         Self {
             padded: AlignedVec::zeros(layout.padded_len),
             hidden: layout.hidden.iter().map(|_| Hidden { forward: pack(), backward: pack() }).collect(),
+            features: layout.architecture.fourier.map(|fourier| Mapping::new(isa, layout, fourier)),
         }
     }
 
@@ -40,6 +73,12 @@ impl<E: Real> Weights<E> {
             let w = &self.padded[matrix.padded..matrix.padded_bias];
             hidden.forward.pack(Left::transposed(w, layout.width), layout.width);
             hidden.backward.pack(Left::rows(w, layout.width), layout.width);
+        }
+        if let Some(features) = &mut self.features {
+            for (packed, matrix) in features.matrices.iter_mut().zip(&layout.affine) {
+                let w = &self.padded[matrix.padded..matrix.padded_bias];
+                packed.pack(Left::transposed(w, matrix.padded_row), layout.width);
+            }
         }
     }
 
@@ -57,30 +96,50 @@ impl<E: Real> Weights<E> {
 impl<E: Real> Hidden<E> {
     /// `out = rows W^T`
     pub(crate) fn forward(&self, isa: Isa, rows: usize, ld: usize, input: &[E], out: &mut [E]) {
-        multiply(isa, rows, ld, input, &self.forward, out);
+        multiply(isa, rows, input, &self.forward, out, [ld; 2]);
     }
 
     /// Adjoint of [`Hidden::forward`]: `input_bar = out_bar W`
     pub(crate) fn backward(&self, isa: Isa, rows: usize, ld: usize, out_bar: &[E], input_bar: &mut [E]) {
-        multiply(isa, rows, ld, out_bar, &self.backward, input_bar);
+        multiply(isa, rows, out_bar, &self.backward, input_bar, [ld; 2]);
     }
 }
 
-fn multiply<E: Real>(isa: Isa, rows: usize, ld: usize, input: &[E], matrix: &Packed<E>, out: &mut [E]) {
-    let shape = gemm::Shape { rows, columns: matrix.columns(), inner: matrix.inner() };
-    gemm(isa, shape, Left::rows(input, ld), Right::Packed(matrix), out, ld, Write::Set);
-}
-
-/// The other adjoint of [`Hidden::forward`], by the weights: `weights_bar += out_bar^T input`.
-pub(crate) fn add_outer<E: Real>(
+/// `out = input matrix`, rows of both as far apart as `lds` says.
+pub(crate) fn multiply<E: Real>(
     isa: Isa,
     rows: usize,
-    shape: Shape,
-    out_bar: &[E],
     input: &[E],
-    weights_bar: &mut [E],
+    matrix: &Packed<E>,
+    out: &mut [E],
+    [input_ld, out_ld]: [usize; 2],
 ) {
-    let extents = gemm::Shape { rows: shape.width, columns: shape.width, inner: rows };
-    let right = Right::Rows { elements: input, stride: shape.ld };
-    gemm(isa, extents, Left::transposed(out_bar, shape.ld), right, weights_bar, shape.width, Write::Add);
+    let shape = gemm::Shape { rows, columns: matrix.columns(), inner: matrix.inner() };
+    gemm(isa, shape, Left::rows(input, input_ld), Right::Packed(matrix), out, out_ld, Write::Set);
+}
+
+/// The other adjoint of a layer's product, by its weights and biases.
+pub(crate) struct ProductAdjoint<'a, E> {
+    /// Shape of the adjoint rows.
+    pub(crate) shape: Shape,
+    pub(crate) channels: usize,
+    /// Adjoint of the product.
+    pub(crate) bar: &'a [E],
+    /// What was multiplied by the weights, `input_ld` apart.
+    pub(crate) input: &'a [E],
+    pub(crate) input_ld: usize,
+}
+
+impl<E: Real> ProductAdjoint<'_, E> {
+    /// `weights += bar^T input`, and the biases the sum of the values' adjoints, in a padded gradient.
+    pub(crate) fn add(&self, isa: Isa, matrix: &Matrix, gradient: &mut [E]) {
+        let Self { shape, channels, bar, input, input_ld } = *self;
+        let (weights, biases) = gradient[matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
+        for row in bar.chunks(channels * shape.ld).take(shape.points) {
+            biases[..shape.width].iter_mut().zip(row).for_each(|(sum, &x)| *sum += x);
+        }
+        let extents = gemm::Shape { rows: shape.width, columns: matrix.padded_row, inner: shape.points * channels };
+        let right = Right::Rows { elements: input, stride: input_ld };
+        gemm(isa, extents, Left::transposed(bar, shape.ld), right, weights, matrix.padded_row, Write::Add);
+    }
 }

@@ -1,0 +1,124 @@
+//! From coordinates to the channels of the first layer and the gates, and back to their weights.
+//!
+//! On raw coordinates these layers are affine maps under a `tanh`, whose channels have closed forms. After a Fourier
+//! mapping they are ordinary layers on the features' channels; the features themselves are fixed and need no adjoint.
+
+use super::tile::{Buffers, Network, Parts, Tile};
+use crate::features::Features;
+use crate::layer::{Affine, AffineAdjoint, Layer, LayerAdjoint, Shape, row_distance};
+use crate::network::{Matrix, ProductAdjoint, multiply};
+use crate::real::Real;
+
+impl<E: Real> Network<'_, E> {
+    /// Channels of the first layer and the gates, in `buffers.lifted`.
+    pub(super) fn lift(&self, tile: &Tile<'_, E>, shape: Shape, buffers: &mut Buffers<E>) {
+        let kernel = &*tile.group.kernel;
+        let rows = shape.points * kernel.channels();
+        if let Some(features) = &self.weights.features {
+            let layer = Features {
+                shape: Shape { points: shape.points, ..features.shape },
+                projections: &features.projections,
+                phases: &features.phases,
+                coordinates: &buffers.coordinates,
+                output: &mut buffers.features,
+            };
+            kernel.features(self.isa, layer);
+        }
+        for (j, matrix) in self.layout.affine.iter().enumerate() {
+            let (bias, slope) = (self.weights.bias(matrix), &mut buffers.slopes[j]);
+            let (value, output) = (&mut buffers.values[j], &mut buffers.lifted[j]);
+            match &self.weights.features {
+                None => {
+                    let (weights, coordinates) = (self.weights.matrix(matrix), &buffers.coordinates[..]);
+                    kernel.affine(self.isa, Affine { shape, weights, bias, coordinates, value, slope, output });
+                }
+                Some(features) => {
+                    let lds = [features.shape.ld, shape.ld];
+                    multiply(self.isa, rows, &buffers.features, &features.matrices[j], value, lds);
+                    kernel.layer(self.isa, Layer { shape, argument: value, bias, slope, output }, None, false);
+                }
+            }
+        }
+    }
+
+    /// Adjoint of [`Network::lift`] by the weights. The adjoints of the lifted channels are in `bar`, `difference_bar` and
+    /// `floor_bar`.
+    pub(super) fn lift_adjoint(
+        &self,
+        tile: &Tile<'_, E>,
+        shape: Shape,
+        buffers: &mut Buffers<E>,
+        gradient: &mut [E],
+        parts: Parts,
+    ) {
+        for (j, matrix) in self.layout.affine.iter().enumerate() {
+            if self.weights.features.is_some() {
+                self.mapped_adjoint(tile, shape, buffers, gradient, parts, (j, matrix));
+            } else {
+                self.affine_adjoint(tile, shape, buffers, gradient, parts, (j, matrix));
+            }
+        }
+    }
+
+    fn affine_adjoint(
+        &self,
+        tile: &Tile<'_, E>,
+        shape: Shape,
+        buffers: &Buffers<E>,
+        gradient: &mut [E],
+        parts: Parts,
+        (j, matrix): (usize, &Matrix),
+    ) {
+        let kernel = &*tile.group.kernel;
+        let seed = [&buffers.bar, &buffers.difference_bar, &buffers.floor_bar][j];
+        for (first, count, at) in parts.ranges() {
+            let (weights_bar, rest) = gradient[at + matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
+            let layer = AffineAdjoint {
+                shape: Shape { points: count, ..shape },
+                weights: self.weights.matrix(matrix),
+                coordinates: &buffers.coordinates[first * self.layout.inputs..],
+                value: &buffers.values[j][first * shape.ld..],
+                slope: &buffers.slopes[j][first * shape.ld..],
+                seed: &seed[first * kernel.channels() * shape.ld..],
+                weights_bar,
+                bias_bar: rest,
+            };
+            kernel.affine_adjoint(self.isa, layer);
+        }
+    }
+
+    /// The same after a Fourier mapping: a layer's adjoint, then a product with the features.
+    fn mapped_adjoint(
+        &self,
+        tile: &Tile<'_, E>,
+        shape: Shape,
+        buffers: &mut Buffers<E>,
+        gradient: &mut [E],
+        parts: Parts,
+        (j, matrix): (usize, &Matrix),
+    ) {
+        let kernel = &*tile.group.kernel;
+        let Buffers { bar, difference_bar, floor_bar, next_bar, output, values, slopes, features, .. } = buffers;
+        let layer = LayerAdjoint {
+            shape,
+            argument: &values[j],
+            slope: &slopes[j],
+            seed: [&*bar, &*difference_bar, &*floor_bar][j],
+            argument_bar: next_bar,
+            output,
+        };
+        kernel.layer_adjoint(self.isa, layer, None, false);
+        for (first, count, at) in parts.ranges() {
+            let row = first * kernel.channels();
+            let input_ld = row_distance(matrix.padded_row);
+            let product = ProductAdjoint {
+                shape: Shape { points: count, ..shape },
+                channels: kernel.channels(),
+                bar: &next_bar[row * shape.ld..],
+                input: &features[row * input_ld..],
+                input_ld,
+            };
+            product.add(self.isa, matrix, &mut gradient[at..]);
+        }
+    }
+}
