@@ -105,6 +105,12 @@ impl<E: Real> BoundGroup<E> {
             tile: 1,
         }
     }
+
+    /// First point and number of points of every tile.
+    pub(super) fn tiles(&self) -> impl Iterator<Item = (usize, usize)> + use<E> {
+        let (points, tile) = (self.points, self.tile);
+        (0..points).step_by(tile).map(move |first| (first, tile.min(points - first)))
+    }
 }
 
 /// The head channels that a group's jets are made of, sorted by channel.

@@ -121,12 +121,13 @@ impl Engine<f64> {
         if let Some((term, point)) = self.chunks.iter().find_map(|chunk| chunk.fault) {
             return Err(Fault::residual(self.term_name(term), Some(point)));
         }
-        for integral in self.integrals.clone() {
+        self.slope_targets();
+        for integral in &self.integrals.rows {
             // SAFETY: the parallel section is over; this thread is alone.
             unsafe {
-                self.integral_row(&integral, rows.row(starts[integral.group][integral.row]));
+                self.integral_row(integral, rows.row(starts[integral.group][integral.row]));
                 if let Some(jacobian) = jacobian {
-                    self.integral_jacobian(&integral, theta, jacobian.row(starts[integral.group][integral.row]));
+                    self.integral_jacobian(integral, theta, jacobian.row(starts[integral.group][integral.row]));
                 }
             }
         }
@@ -153,8 +154,8 @@ impl Engine<f64> {
         let mut gradient = vec![0.0; self.layout.padded_len];
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         with_buffers(&self.buffers, |buffers| {
-            for first in (0..group.points).step_by(group.tile) {
-                let tile = Tile { group, first, count: group.tile.min(group.points - first) };
+            for (first, count) in group.tiles() {
+                let tile = Tile { group, first, count };
                 network.forward(&tile, buffers);
                 let stride = tile.stride();
                 buffers.seeds[..group.schema.rows * stride].fill(0.0);
@@ -165,7 +166,7 @@ impl Engine<f64> {
                 network.adjoint(&tile, buffers, &mut gradient, false);
             }
         });
-        for (i, (slope, by_target)) in self.learned_slopes(theta).iter().zip(self.target_slopes(integral)).enumerate() {
+        for (i, (slope, by_target)) in self.learned_slopes(theta).iter().zip(&integral.target_slopes).enumerate() {
             let at = self.layout.learned_at + i;
             gradient[at] = (gradient[at] - scale * by_target) * slope;
         }
@@ -200,8 +201,9 @@ impl Engine<f64> {
             total[self.layout.learned_at + i] *= slope;
         }
         self.layout.pad_adjoint(theta, total, out);
+        self.slope_targets();
         let mut row = vec![0.0; self.layout.len];
-        for integral in &self.integrals {
+        for integral in &self.integrals.rows {
             self.integral_jacobian(integral, theta, &mut row);
             let weight = u[starts[integral.group][integral.row]];
             out.iter_mut().zip(&row).for_each(|(out, row)| *out += weight * row);

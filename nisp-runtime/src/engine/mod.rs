@@ -5,6 +5,7 @@
 
 mod group;
 mod heads;
+mod integral;
 mod jacobian;
 mod lift;
 mod objective;
@@ -17,6 +18,7 @@ use rayon::prelude::*;
 
 pub(crate) use group::BoundTerm;
 pub use group::{BoundGroup, Scaling};
+use integral::{Integral, Integrals, covers, seed_integrals};
 use tile::{Buffers, Extent, Network, Tile};
 
 use crate::aligned::AlignedVec;
@@ -46,10 +48,12 @@ pub struct Engine<E: Real> {
     pub(crate) learned: Vec<Learned>,
     chunks: Vec<Chunk<E>>,
     buffers: Vec<Mutex<Buffers<E>>>,
+    /// First term of each group, counted over all groups.
+    first_terms: Vec<usize>,
     /// Half the sum of squares of each term at the last evaluation, in the order of groups and terms.
     pub(crate) shares: Vec<f64>,
     /// Weighted sums of integral terms and their misfits.
-    integrals: Vec<Integral>,
+    integrals: Integrals,
     blocks: Vec<Block>,
 }
 
@@ -100,16 +104,6 @@ struct TileRange {
     count: usize,
 }
 
-/// State of an integral term's row between the forward pass and the adjoint.
-#[derive(Clone, Debug)]
-struct Integral {
-    group: usize,
-    row: usize,
-    term: usize,
-    /// Adjoint of the integral.
-    seed: f64,
-}
-
 impl<E: Real> Engine<E> {
     /// An engine for `groups`, whose kernels, points and data are bound; the layout is padded for `isa`. `scalars` are in the engine's units.
     pub(crate) fn new(
@@ -135,16 +129,17 @@ impl<E: Real> Engine<E> {
         let extent = Extent::of(groups.iter());
         let workers = rayon::current_num_threads() + 1;
         let buffers = (0..workers).map(|_| Mutex::new(Buffers::new(&layout, extent))).collect();
-        let integrals = integrals(&groups);
+        let integrals = Integrals::new(&groups, scalars.len(), learned.len());
         let mut engine = Self {
             isa,
             weights: Weights::new(isa, &layout),
             layout,
-            groups,
             scalars,
             learned,
             chunks,
             buffers,
+            first_terms: first_terms(&groups),
+            groups,
             shares: vec![0.0; terms],
             integrals,
             blocks: Vec::new(),
@@ -197,10 +192,12 @@ impl<E: Real> Engine<E> {
         self.run(true);
         let loss = self.collect()?;
         self.reduce();
-        let by_target = self.seeded_target_slopes();
+        self.slope_targets();
         let total = &mut self.chunks[0].gradient;
-        for (i, by_target) in by_target.into_iter().enumerate() {
-            total[self.layout.learned_at + i] -= E::from_f64(by_target);
+        for integral in &self.integrals.rows {
+            for (i, slope) in integral.target_slopes.iter().enumerate() {
+                total[self.layout.learned_at + i] -= E::from_f64(integral.seed * slope);
+            }
         }
         for (i, learned) in self.learned.iter().enumerate() {
             let slope = learned.map.at(theta[self.layout.learned.start + i].to_f64()).1;
@@ -216,8 +213,8 @@ impl<E: Real> Engine<E> {
     /// Runs all chunks, forward only or with the adjoint.
     fn run(&mut self, adjoint: bool) {
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
-        let (groups, buffers, integrals) = (&self.groups, &self.buffers, &self.integrals);
-        let first_term: &[usize] = &first_terms(groups);
+        let (groups, buffers, integrals) = (&self.groups, &self.buffers, &self.integrals.rows);
+        let first_term = &self.first_terms;
         self.chunks.par_iter_mut().for_each(|chunk| {
             with_buffers(buffers, |buffers| {
                 if adjoint {
@@ -251,12 +248,11 @@ impl<E: Real> Engine<E> {
         if let Some((term, point)) = self.chunks.iter().find_map(|chunk| chunk.fault) {
             return Err(Fault::residual(self.term_name(term), Some(point)));
         }
-        let firsts = first_terms(&self.groups);
         let mut integrals = 0.0;
-        for integral in &self.integrals {
+        for integral in &self.integrals.rows {
             let term = &self.groups[integral.group].terms[integral.term];
             let misfit = integral.seed * term.size / term.factor;
-            self.shares[firsts[integral.group] + integral.term] += misfit * misfit / 2.0;
+            self.shares[self.first_terms[integral.group] + integral.term] += misfit * misfit / 2.0;
             integrals += misfit * misfit / 2.0;
         }
         let loss: f64 = self.chunks.iter().flat_map(|chunk| &chunk.shares).sum::<f64>() + integrals;
@@ -277,39 +273,6 @@ impl<E: Real> Engine<E> {
         }
     }
 
-    /// What the targets of integral terms contribute to the gradient by the learned scalars, with a minus sign.
-    fn seeded_target_slopes(&self) -> Vec<f64> {
-        let mut total = vec![0.0; self.learned.len()];
-        for integral in &self.integrals {
-            let slopes = self.target_slopes(integral);
-            total.iter_mut().zip(slopes).for_each(|(total, slope)| *total += integral.seed * slope);
-        }
-        total
-    }
-
-    /// Derivatives of an integral's target by the learned scalars.
-    fn target_slopes(&self, integral: &Integral) -> Vec<f64> {
-        let kernel = &self.groups[integral.group].kernel;
-        let mut targets = vec![0.0; self.groups[integral.group].schema.rows];
-        let mut target = |scalars: &[f64]| {
-            kernel.target(scalars, &mut targets);
-            targets[integral.row]
-        };
-        let mut scalars: Vec<f64> = self.scalars.iter().map(|x| x.to_f64()).collect();
-        let mut slopes = Vec::with_capacity(self.learned.len());
-        for learned in &self.learned {
-            let value = scalars[learned.slot];
-            let step = 6e-6 * value.abs().max(f64::MIN_POSITIVE);
-            scalars[learned.slot] = value + step;
-            let above = target(&scalars);
-            scalars[learned.slot] = value - step;
-            let below = target(&scalars);
-            scalars[learned.slot] = value;
-            slopes.push((above - below) / (2.0 * step));
-        }
-        slopes
-    }
-
     /// `group.term`, for messages.
     pub(crate) fn term_name(&self, term: usize) -> String {
         let mut first = 0;
@@ -321,43 +284,6 @@ impl<E: Real> Engine<E> {
         }
         String::from("loss")
     }
-
-    /// Sums integral terms over their groups, ahead of the pass that needs their misfits.
-    fn integrate(&mut self) -> Result<(), Fault> {
-        for at in 0..self.integrals.len() {
-            let Integral { group, row, term, .. } = self.integrals[at];
-            let sum = self.integral(group, row);
-            let bound = &self.groups[group];
-            let scalars: Vec<f64> = self.scalars.iter().map(|x| x.to_f64()).collect();
-            let mut targets = vec![0.0; bound.schema.rows];
-            bound.kernel.target(&scalars, &mut targets);
-            let misfit = (sum - targets[row]) * bound.terms[term].factor / bound.terms[term].size;
-            if !misfit.is_finite() {
-                return Err(Fault::residual(bound.terms[term].schema.name, None));
-            }
-            self.integrals[at].seed = misfit * bound.terms[term].factor / bound.terms[term].size;
-        }
-        Ok(())
-    }
-
-    /// The weighted sum of one row over its group.
-    pub(crate) fn integral(&self, group: usize, row: usize) -> f64 {
-        let bound = &self.groups[group];
-        let weights = bound.terms.iter().find(|t| covers(t, row)).and_then(|t| t.point_weights.as_deref());
-        let mut sum = 0.0;
-        self.each_tile(group, |tile, buffers| {
-            let rows = &buffers.rows[row * tile.stride()..][..tile.count];
-            for (p, r) in rows.iter().enumerate() {
-                let weight = weights.map_or(1.0, |w| w[tile.first + p].to_f64());
-                sum += weight * r.to_f64();
-            }
-        });
-        sum
-    }
-}
-
-fn covers<E>(term: &BoundTerm<E>, row: usize) -> bool {
-    (term.schema.first..term.schema.first + term.schema.rows).contains(&row)
 }
 
 /// Lends a worker's buffers.
@@ -439,31 +365,6 @@ impl<E: Real> BoundTerm<E> {
     }
 }
 
-/// Seeds of integral rows: the integral's adjoint times each point's weight.
-fn seed_integrals<E: Real>(integrals: &[Integral], group: usize, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
-    let stride = tile.stride();
-    for integral in integrals.iter().filter(|i| i.group == group) {
-        let weights = tile.group.terms[integral.term].point_weights.as_deref();
-        let seeds = &mut buffers.seeds[integral.row * stride..][..stride];
-        for (p, seed) in seeds[..tile.count].iter_mut().enumerate() {
-            *seed = E::from_f64(integral.seed) * weights.map_or(E::ONE, |w| w[tile.first + p]);
-        }
-        seeds[tile.count..].fill(E::ZERO);
-    }
-}
-
-/// Rows of integral terms, in order.
-fn integrals<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Integral> {
-    let mut integrals = Vec::new();
-    for (group, bound) in groups.iter().enumerate() {
-        for (term, t) in bound.terms.iter().enumerate().filter(|(_, t)| t.schema.kind == TermKind::Integral) {
-            let rows = t.schema.first..t.schema.first + t.schema.rows;
-            integrals.extend(rows.map(|row| Integral { group, row, term, seed: 0.0 }));
-        }
-    }
-    integrals
-}
-
 /// Points of a tile: as many as keep its rows in cache, and enough tiles to share out.
 fn tile_points<E: Real>(layout: &Layout, channels: usize, points: usize) -> usize {
     let buffers = layout.affine.len() + layout.hidden.len() + 6;
@@ -479,10 +380,9 @@ fn cut<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
         .iter()
         .enumerate()
         .flat_map(|(at, group)| {
-            (0..group.points).step_by(group.tile).map(move |first| {
-                let count = group.tile.min(group.points - first);
-                (TileRange { group: at, first, count }, count * group.kernel.channels())
-            })
+            group
+                .tiles()
+                .map(move |(first, count)| (TileRange { group: at, first, count }, count * group.kernel.channels()))
         })
         .collect();
     let total: usize = tiles.iter().map(|(_, cost)| cost).sum();

@@ -11,8 +11,8 @@ impl<E: Real> Engine<E> {
         let bound = &self.groups[group];
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         with_buffers(&self.buffers, |buffers| {
-            for first in (0..bound.points).step_by(bound.tile) {
-                let tile = Tile { group: bound, first, count: bound.tile.min(bound.points - first) };
+            for (first, count) in bound.tiles() {
+                let tile = Tile { group: bound, first, count };
                 network.forward(&tile, buffers);
                 let Buffers { jets, points, columns, rows, .. } = buffers;
                 let inputs = Points {
