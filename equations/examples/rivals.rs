@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     }
     let circuit = Table::read(folder.join("rlc/rlc_exponential.csv"))?;
     for (header, sigma) in [("v_V", 0.0), ("v_obs_sigma0.01_V", 0.01)] {
-        let system = Rlc { start: 0.0, source_at_start: 6.0 };
+        let system = Rlc::default();
         let mut total = Vec::new();
         add(&mut total, &system, &circuit, &[header.to_string()], &circuit, sigma)?;
         print(&format!("rlc, noise {sigma} V, mean |error of f| in V"), &total);
@@ -41,10 +41,11 @@ fn add(
     noise: f64,
 ) -> Result<(), Box<dyn Error>> {
     let states = headers.iter().map(|header| observed.column(header)).collect::<Result<Vec<_>, _>>()?;
-    let data = Measurements { times: observed.column("t")?, states: &states };
+    let noise = vec![noise; states.len()];
+    let data = Measurements { times: observed.column("t")?, states: &states, noise: &noise };
     let (at, f) = (truth.column("t")?, truth.column("f")?);
     let mut results = vec![("f = 0", zero_error(f), 0.0)];
-    for answer in contest(system, &data, noise, at, f)? {
+    for answer in contest(system, &data, at, f)? {
         results.push((answer.name, mean_abs_error(&answer.source, f), answer.wall_s));
     }
     for (index, (name, error, seconds)) in results.into_iter().enumerate() {

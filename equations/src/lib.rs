@@ -4,5 +4,7 @@ pub mod pendulum;
 pub mod rivals;
 pub mod rlc;
 pub mod series;
+pub mod truth;
 
 pub use series::{Entry, PrepareError, Prepared, Request, catalogue};
+pub use truth::Truth;

@@ -1,5 +1,14 @@
 //! Double pendulum on a cart, pushed by an unknown force (paper, section 4.1, with its errata corrected).
 
+use crate::rivals::{Pendulum, System};
+use crate::series::Given;
+
+/// What classical rivals solve.
+pub(crate) fn rival(_scene: &str, given: Given<'_>) -> Option<Box<dyn System>> {
+    let [m0, m1, m2, l1, l2, g] = ["m0", "m1", "m2", "l1", "l2", "g"].map(given.parameter);
+    Some(Box::new(Pendulum { masses: [m0, m1, m2], lengths: [l1, l2], gravity: g }))
+}
+
 nisp::pde! {
     /// A cart with two links, balanced by an unknown force.
     ///

@@ -2,6 +2,16 @@
 
 #![allow(deprecated, reason = "scene `free` leaves the source under a null space on purpose")]
 
+use crate::rivals::{Rlc, System};
+use crate::series::Given;
+
+/// What classical rivals solve: they need the source at the start.
+pub(crate) fn rival(scene: &str, given: Given<'_>) -> Option<Box<dyn System>> {
+    let [damping, stiffness, rate_gain, gain, source_at_start] = ["a", "b", "c", "e", "f0"].map(given.parameter);
+    let system = Rlc { damping, stiffness, rate_gain, gain, start: given.start, source_at_start };
+    (scene == "recover").then(|| Box::new(system) as Box<dyn System>)
+}
+
 nisp::pde! {
     /// `v'' + a v' + b v = c f' + e f`: the driving voltage enters with its derivative, so that the data determine it only
     /// up to `exp(-e t / c)`; its value at the start settles the rest.

@@ -1,8 +1,12 @@
 //! Scenes over time: bound to a table with one column for the time and one for each observed field.
 
+use nisp::schema::{Origin, Scene};
 use nisp::{BindError, Problem, SceneRef, scene};
-use nisp_data::{DataError, Table};
-use std::path::Path;
+use nisp_data::{DataError, Table, nearest_name};
+use std::path::{Path, PathBuf};
+
+use crate::rivals::System;
+use crate::truth::Truth;
 
 /// An equation that the command line knows by name.
 #[derive(Clone, Copy, Debug)]
@@ -19,6 +23,17 @@ pub struct Entry {
     truth_bytes: &'static [u8],
     /// Columns of the example: name and header.
     pub columns: &'static [(&'static str, &'static str)],
+    /// The system that classical rivals solve for a scene of this name, where they know how.
+    rival: fn(&str, Given<'_>) -> Option<Box<dyn System>>,
+}
+
+/// What is given besides measurements.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a> {
+    /// First time of the measurements.
+    pub(crate) start: f64,
+    /// A parameter's value in its declared unit.
+    pub(crate) parameter: &'a dyn Fn(&str) -> f64,
 }
 
 /// What a user asks for.
@@ -27,17 +42,16 @@ pub struct Request {
     /// Scene of the entry, or its default.
     pub scene: Option<String>,
     /// Table of measurements, or the example's.
-    pub data: Option<std::path::PathBuf>,
+    pub data: Option<PathBuf>,
     /// Truth to score against.
-    pub truth: Option<std::path::PathBuf>,
-    /// Names and the headers that hold them.
+    pub truth: Option<PathBuf>,
+    /// Names and the headers that hold them; the last word on a name counts.
     pub columns: Vec<(String, String)>,
-    /// Parameters in their declared units.
+    /// Parameters in their declared units; the last word on a name counts.
     pub parameters: Vec<(String, f64)>,
 }
 
 /// A bound problem, what was measured, and what is true if that is known.
-#[derive(Debug)]
 pub struct Prepared {
     /// The problem.
     pub problem: Problem,
@@ -46,9 +60,11 @@ pub struct Prepared {
     /// Measured values by field.
     pub measured: Vec<(&'static str, Vec<f64>)>,
     /// Truth, for scoring only.
-    pub truth: Option<Table>,
+    pub truth: Option<Truth>,
     /// Where the data came from.
     pub source: String,
+    /// What classical rivals solve, if they know this scene.
+    pub rival: Option<Box<dyn System>>,
 }
 
 /// Why a scene cannot be prepared.
@@ -61,22 +77,54 @@ pub enum PrepareError {
     #[error(transparent)]
     Bind(#[from] BindError),
     /// A scene that the entry does not have.
-    #[error("`{entry}` has no scene `{scene}`; it has: {have}")]
+    #[error("`{entry}` has no scene `{scene}`{hint}; it has: {have}")]
     Scene {
         /// The entry.
         entry: &'static str,
         /// The scene asked for.
         scene: String,
+        /// The scene that may have been meant.
+        hint: String,
         /// The scenes there are.
         have: String,
     },
-    /// A `--column` whose name nothing observes.
-    #[error("--column {name}=...: the scene observes no `{name}`; it observes: {have}")]
+    /// A name in `--column` that nothing observes.
+    #[error("--column {name}=...: the scene observes no `{name}`{hint}; it observes: {have}")]
     Column {
         /// The name given.
         name: String,
+        /// The name that may have been meant.
+        hint: String,
         /// The names there are.
         have: String,
+    },
+    /// A truth at times of which the data say nothing.
+    #[error(
+        "{}: the truth's times, {} to {} s, leave those of the data, {} to {} s; cut the truth to that range, or check \
+         the unit of its times",
+        .path.display(), .truth[0], .truth[1], .data[0], .data[1]
+    )]
+    TruthRange {
+        /// The truth's file.
+        path: PathBuf,
+        /// Its first and last time.
+        truth: [f64; 2],
+        /// The data's.
+        data: [f64; 2],
+    },
+    /// A truth that has nothing to score.
+    #[error(
+        "{}: no column answers to any of {heads}; name one like the quantity, with its unit, as in `f [N]` or `f_N` \
+         (columns: {columns})",
+        .path.display()
+    )]
+    TruthHeads {
+        /// The truth's file.
+        path: PathBuf,
+        /// What could be scored.
+        heads: String,
+        /// The headers there are.
+        columns: String,
     },
 }
 
@@ -95,6 +143,7 @@ pub fn catalogue() -> [Entry; 2] {
             data_bytes: include_bytes!("../../data/pendulum/run_07_obs.csv"),
             truth_bytes: include_bytes!("../../data/pendulum/run_07_truth.csv"),
             columns: &[("q", "q_m_sigma0.01"), ("psi", "psi_rad_sigma0.01"), ("phi", "phi_rad_sigma0.01")],
+            rival: crate::pendulum::rival,
         },
         Entry {
             name: "rlc",
@@ -104,6 +153,7 @@ pub fn catalogue() -> [Entry; 2] {
             data_bytes: include_bytes!("../../data/rlc/rlc_exponential.csv"),
             truth_bytes: include_bytes!("../../data/rlc/rlc_exponential.csv"),
             columns: &[("v", "v_V")],
+            rival: crate::rlc::rival,
         },
     ]
 }
@@ -116,10 +166,9 @@ impl Entry {
     pub fn scene(&self, name: Option<&str>) -> Result<SceneRef, PrepareError> {
         let mut scenes = self.scenes.iter().map(|scene| scene());
         let Some(name) = name else { return Ok(self.scenes[0]()) };
-        scenes.find(|scene| scene.schema.name == name).ok_or_else(|| PrepareError::Scene {
-            entry: self.name,
-            scene: name.into(),
-            have: self.scenes.iter().map(|scene| scene().schema.name).collect::<Vec<_>>().join(", "),
+        scenes.find(|scene| scene.schema.name == name).ok_or_else(|| {
+            let have: Vec<_> = self.scenes.iter().map(|scene| scene().schema.name).collect();
+            PrepareError::Scene { entry: self.name, scene: name.into(), hint: hint(name, &have), have: have.join(", ") }
         })
     }
 
@@ -128,7 +177,6 @@ impl Entry {
     /// # Errors
     /// A table, a column, a scene or a parameter that does not fit.
     pub fn prepare(&self, request: &Request) -> Result<Prepared, PrepareError> {
-        let scene = self.scene(request.scene.as_deref())?;
         let example = request.data.is_none();
         let table = match &request.data {
             Some(path) => Table::read(path)?,
@@ -139,29 +187,36 @@ impl Entry {
             None if example => Some(Table::parse(Path::new(self.data), self.truth_bytes)?),
             None => None,
         };
-        let observed: Vec<_> = scene.schema.groups.iter().flat_map(|group| group.columns).collect();
-        if let Some((name, _)) = request.columns.iter().find(|(name, _)| !known(name, &observed)) {
-            let have = observed.iter().map(|c| c.name).chain(["t"]).collect::<Vec<_>>().join(", ");
-            return Err(PrepareError::Column { name: name.clone(), have });
+        let mut request = request.clone();
+        if example {
+            let own = self.columns.iter().map(|(name, header)| ((*name).into(), (*header).into()));
+            request.columns.splice(0..0, own);
         }
-        let header = |name: &str| -> Option<String> {
-            let asked = request.columns.iter().find(|(n, _)| n == name).map(|(_, header)| header.clone());
-            let default = self.columns.iter().find(|(n, _)| example && *n == name).map(|(_, header)| (*header).into());
-            asked.or(default)
-        };
+        self.bind(&request, &table, truth.as_ref())
+    }
+
+    /// Binds the scene to tables, whatever files the request names.
+    ///
+    /// # Errors
+    /// As [`Entry::prepare`].
+    pub fn bind(&self, request: &Request, table: &Table, truth: Option<&Table>) -> Result<Prepared, PrepareError> {
+        let scene = self.scene(request.scene.as_deref())?;
+        let schema = scene.schema;
+        check_columns(schema, request)?;
+        let header = |name: &str| request.columns.iter().rev().find(|(n, _)| n == name).map(|(_, h)| h.as_str());
         let column = |name: &str, unit: &str| match header(name) {
-            Some(header) => table.column(&header).map(<[f64]>::to_vec),
-            None => table.quantity(name, unit).map(<[f64]>::to_vec),
+            Some(header) => table.chosen(name, header, unit),
+            None => table.quantity(name, unit),
         };
         let times = column("t", "s")?;
-        table.require_increasing(&header("t").unwrap_or_else(|| "t".into()))?;
+        table.require_increasing(header("t").unwrap_or("t"))?;
         let mut problem = Problem::new(scene);
         for (name, value) in &request.parameters {
             problem.set_parameter(name, *value)?;
         }
         let mut measured = Vec::new();
         let (first, last) = (times[0], times[times.len() - 1]);
-        for group in scene.schema.groups {
+        for group in schema.groups {
             let mut columns = Vec::new();
             for c in group.columns {
                 let values = column(c.name, c.unit.text)?;
@@ -177,11 +232,36 @@ impl Entry {
             };
             problem.set_group(group.name, points.into(), columns)?;
         }
-        let source = request.data.as_ref().map_or_else(|| self.data.into(), |path| path.display().to_string());
-        Ok(Prepared { problem, times, measured, truth, source })
+        let truth = truth.map(|truth| Truth::read(truth, schema, [first, last])).transpose()?;
+        let source = table.path().display().to_string();
+        let rival =
+            (self.rival)(schema.name, Given { start: first, parameter: &|name| parameter(schema, request, name) });
+        Ok(Prepared { problem, times, measured, truth, source, rival })
     }
 }
 
-fn known(name: &str, observed: &[&nisp::schema::Column]) -> bool {
-    name == "t" || observed.iter().any(|column| column.name == name)
+/// Every name in `--column` must be one that the scene observes.
+fn check_columns(schema: &Scene, request: &Request) -> Result<(), PrepareError> {
+    let observed: Vec<_> = schema.groups.iter().flat_map(|group| group.columns).map(|column| column.name).collect();
+    let known: Vec<_> = observed.into_iter().chain(["t"]).collect();
+    match request.columns.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+        Some((name, _)) => {
+            Err(PrepareError::Column { name: name.clone(), hint: hint(name, &known), have: known.join(", ") })
+        }
+        None => Ok(()),
+    }
+}
+
+fn hint(name: &str, have: &[&str]) -> String {
+    nearest_name(name, have.iter().copied()).map_or_else(String::new, |near| format!(", did you mean `{near}`?"))
+}
+
+/// What a parameter was set to, or its declared value.
+fn parameter(schema: &Scene, request: &Request, name: &str) -> f64 {
+    let asked = request.parameters.iter().rev().find(|(n, _)| n == name).map(|(_, value)| *value);
+    let declared = schema.scalars.iter().find(|scalar| scalar.name == name).and_then(|scalar| match scalar.origin {
+        Origin::Given(value) => value.map(|value| value / scalar.unit.factor),
+        _ => None,
+    });
+    asked.or(declared).unwrap_or(f64::NAN)
 }

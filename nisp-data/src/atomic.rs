@@ -5,6 +5,8 @@ use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
+use tempfile::NamedTempFile;
+
 use crate::DataError;
 
 /// Writes `path` through `content`. If anything fails, the path keeps what it held before, and nothing is left behind.
@@ -13,23 +15,31 @@ pub fn write_atomic(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Res
 }
 
 fn try_write(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
-    let folder = match path.parent() {
-        Some(parent) if !parent.as_os_str().is_empty() => parent,
-        _ => Path::new("."),
-    };
+    stage(path, content)?.persist(path).map_err(|error| error.error)?;
+    sync_folder(folder_of(path));
+    Ok(())
+}
+
+/// Writes the content beside its final place, through to the disk. The file goes away if it is dropped.
+fn stage(path: &Path, content: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
     builder.prefix(".nisp-").suffix(".tmp");
     readable_by_others(&mut builder);
-    let mut file = builder.tempfile_in(folder)?;
+    let mut file = builder.tempfile_in(folder_of(path))?;
     {
         let mut buffer = BufWriter::new(file.as_file_mut());
         content(&mut buffer)?;
         buffer.flush()?;
     }
     file.as_file().sync_all()?;
-    file.persist(path).map_err(|error| error.error)?;
-    sync_folder(folder);
-    Ok(())
+    Ok(file)
+}
+
+fn folder_of(path: &Path) -> &Path {
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() => parent,
+        _ => Path::new("."),
+    }
 }
 
 /// Temporary files are private by default; a result is not.
@@ -51,22 +61,27 @@ fn sync_folder(folder: &Path) {
 
 /// A folder for results that is known to be writable before the work starts.
 ///
-/// If the folder was made here and nothing was ever written into it, it is removed again when dropped.
+/// If nothing was ever written into it, what was made of it (and of its parents) is removed again when dropped.
 #[derive(Debug)]
 pub struct OutDir {
     path: PathBuf,
-    made_here: bool,
+    /// Folders that were not there before, the innermost first.
+    made: Vec<PathBuf>,
     used: Cell<bool>,
 }
+
+/// A file that waits to be written: its name in the folder, and its bytes.
+pub type Content = (&'static str, Vec<u8>);
 
 impl OutDir {
     /// Makes the folder (and its parents) if needed, and proves with a probe file that it can be written.
     pub fn create(path: impl AsRef<Path>) -> Result<OutDir, DataError> {
         let path = path.as_ref().to_path_buf();
         let fail = |source| DataError::Unwritable { path: path.clone(), source };
-        let made_here = !path.exists();
+        let absent = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.exists();
+        let made = path.ancestors().take_while(absent).map(Path::to_path_buf).collect();
+        let out = OutDir { path: path.clone(), made, used: Cell::new(false) };
         fs::create_dir_all(&path).map_err(fail)?;
-        let out = OutDir { path: path.clone(), made_here, used: Cell::new(false) };
         tempfile::Builder::new().prefix(".nisp-").suffix(".tmp").tempfile_in(&path).map_err(fail)?;
         Ok(out)
     }
@@ -81,24 +96,33 @@ impl OutDir {
         self.path.join(name)
     }
 
-    /// Writes one file whole, and says where it is.
-    pub fn write(
-        &self,
-        name: &str,
-        content: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<PathBuf, DataError> {
-        let path = self.file(name);
-        write_atomic(&path, content)?;
-        self.used.set(true);
-        Ok(path)
+    /// Writes several files: all of them or, if one cannot be written, none.
+    pub fn write(&self, files: &[Content]) -> Result<(), DataError> {
+        let fail = |name: &str| {
+            let path = self.file(name);
+            move |source| DataError::Unwritable { path, source }
+        };
+        let mut staged = Vec::new();
+        for (name, bytes) in files {
+            staged.push((name, stage(&self.file(name), |out| out.write_all(bytes)).map_err(fail(name))?));
+        }
+        // Everything is on the disk: what is left are renames within a folder.
+        for (name, file) in staged {
+            file.persist(self.file(name)).map_err(|error| fail(name)(error.error))?;
+            self.used.set(true);
+        }
+        sync_folder(&self.path);
+        Ok(())
     }
 }
 
 impl Drop for OutDir {
     fn drop(&mut self) {
-        if self.made_here && !self.used.get() {
-            // Fails, as it should, when someone else has put a file there.
-            let _ = fs::remove_dir(&self.path);
+        if !self.used.get() {
+            for folder in &self.made {
+                // Fails, as it should, when someone else has put a file there.
+                let _ = fs::remove_dir(folder);
+            }
         }
     }
 }
@@ -128,12 +152,22 @@ mod tests {
     #[test]
     fn an_unused_folder_goes_away_and_a_used_one_stays() {
         let folder = tempfile::tempdir().unwrap();
-        let unused = folder.path().join("a/b");
-        drop(OutDir::create(&unused).unwrap());
-        assert!(!unused.exists());
+        drop(OutDir::create(folder.path().join("a/b")).unwrap());
+        assert!(!folder.path().join("a").exists());
         let used = folder.path().join("c");
-        OutDir::create(&used).unwrap().write("x", |w| w.write_all(b"1")).unwrap();
+        OutDir::create(&used).unwrap().write(&[("x", b"1".to_vec())]).unwrap();
         assert_eq!(names(&used), ["x"]);
+    }
+
+    #[test]
+    fn files_that_belong_together_are_written_together_or_not_at_all() {
+        let folder = tempfile::tempdir().unwrap();
+        let out = OutDir::create(folder.path().join("a")).unwrap();
+        // The second file's folder does not exist, so that it cannot be staged.
+        assert!(out.write(&[("x", b"1".to_vec()), ("none/y", b"2".to_vec())]).is_err());
+        assert!(names(out.path()).is_empty());
+        drop(out);
+        assert!(!folder.path().join("a").exists());
     }
 
     #[test]

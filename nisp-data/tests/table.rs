@@ -32,7 +32,17 @@ fn finds_columns_by_name_and_unit() {
     assert_eq!(table.column("N").unwrap()[0], 4.0);
     assert_eq!(table.column("psi_rad_sigma0.01").unwrap()[0], 5.0);
     assert!(!table.has("psi"));
-    assert!(table.quantity("q", "mm").is_err());
+    assert!(table.quantity("q", "V").is_err());
+}
+
+#[test]
+fn multiples_of_the_unit_are_converted() {
+    let table = parse("t_ms,q [cm],psi_deg,x_m_sigma0.01\n0,1,180,1\n500,2,0,1\n");
+    assert_eq!(table.quantity("t", "s").unwrap(), [0.0, 0.5]);
+    assert_eq!(table.quantity("q", "m").unwrap(), [0.01, 0.02]);
+    assert_eq!(table.quantity("psi", "rad").unwrap()[0], std::f64::consts::PI);
+    assert_eq!(table.chosen("t", "t_ms", "s").unwrap(), [0.0, 0.5]);
+    assert_eq!(table.chosen("q", "x_m_sigma0.01", "m").unwrap(), [1.0, 1.0]);
 }
 
 #[test]
@@ -49,6 +59,13 @@ fn refuses_with_what_to_do() {
     assert_eq!(word, "t.csv: line 3, column `q_m_sigma0.01`: `x` is not a number; correct it or remove the row");
     let twice = parse("q [m],q_m\n0,1\n1,2\n").column("q").unwrap_err().to_string();
     assert!(twice.contains("several columns answer to `q`: q [m], q_m; choose one"), "{twice}");
+    assert_eq!(
+        table.chosen("q", "q_m_sigma1", "m").unwrap_err().to_string(),
+        "t.csv: no column for `q_m_sigma1`; the nearest is `q_m_sigma0`: --column q=q_m_sigma0 (columns: t_s, \
+         q_m_sigma0, q_m_sigma0.01)"
+    );
+    let blanks = parse("t q\n0 1\n1 2\n").quantity("t", "s").unwrap_err().to_string();
+    assert!(blanks.contains("separate cells by commas, semicolons or tabs"), "{blanks}");
     assert!(refusal(b"").contains("empty"));
     assert!(refusal(b"# a\n# b\n").contains("only comments"));
     assert!(refusal(b"t,q\n0,1\n").contains("at least 2 are needed"));
@@ -106,7 +123,7 @@ proptest! {
         table.write_to(&mut bytes).unwrap();
         let back = Table::parse(Path::new("t"), &bytes).unwrap();
         let bits = |numbers: &[f64]| numbers.iter().map(|v| v.to_bits()).collect::<Vec<_>>();
-        prop_assert_eq!(bits(back.quantity("x", "m/s^2").unwrap()), bits(&values));
+        prop_assert_eq!(bits(&back.quantity("x", "m/s^2").unwrap()), bits(&values));
         prop_assert_eq!(bits(back.column("y").unwrap()), bits(&values));
     }
 }

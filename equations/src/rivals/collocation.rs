@@ -14,22 +14,22 @@ const GAUSS_NEWTON_STEPS: usize = 20;
 /// A known value of the source is held this much more tightly than an equation.
 const PIN: f64 = 1e-3;
 
-/// The source at times `at`, given the standard deviation of the noise (above zero) and the residual up to which the
-/// equations are to hold. `chosen` is the prior's weight.
+/// Noise that stands for none.
+const EXACT: f64 = 1e-8;
+
+/// The source at times `at`, given the residual (above zero) up to which the equations are to hold. `chosen` is the
+/// prior's weight.
 pub fn collocation(
     system: &dyn System,
     data: &Measurements<'_>,
-    noise: f64,
     tolerance: f64,
     at: &[f64],
 ) -> Result<Estimate, RivalError> {
     check(system, data, SUPPORT + 1)?;
-    if !(noise > 0.0 && tolerance > 0.0) {
-        return Err(RivalError::Input(
-            "noise and tolerance must be above zero; for exact data give its rounding".into(),
-        ));
+    if !(tolerance > 0.0) {
+        return Err(RivalError::Input("the tolerance must be above zero".into()));
     }
-    let problem = Problem::new(system, data, noise, tolerance);
+    let problem = Problem::new(system, data, tolerance);
     let mut state = vec![0.0; problem.unknowns()];
     let decade = best_decade(DECADES.0, DECADES.1, |decade| {
         let weight = 10f64.powf(decade);
@@ -52,7 +52,7 @@ struct Problem<'a> {
 }
 
 impl<'a> Problem<'a> {
-    fn new(system: &'a dyn System, data: &Measurements<'_>, noise: f64, tolerance: f64) -> Problem<'a> {
+    fn new(system: &'a dyn System, data: &Measurements<'_>, tolerance: f64) -> Problem<'a> {
         let times = data.times;
         let basis = Basis::new(times[0], times[times.len() - 1], (times.len() - 1).min(400));
         let fields = system.states() + 1;
@@ -65,8 +65,12 @@ impl<'a> Problem<'a> {
             .iter()
             .enumerate()
             .flat_map(|(field, values)| times.iter().zip(*values).map(move |(&t, &value)| (t, field, value)));
-        let mut fixed: Vec<_> =
-            measured.map(|(t, field, value)| (row(t, field, 0, 1.0 / noise), value / noise)).collect();
+        let mut fixed: Vec<_> = measured
+            .map(|(t, field, value)| {
+                let noise = data.noise[field].max(EXACT);
+                (row(t, field, 0, 1.0 / noise), value / noise)
+            })
+            .collect();
         if let Some((t, value)) = system.known_source() {
             let scale = 1.0 / (PIN * tolerance);
             fixed.push((row(t, fields - 1, 0, scale), scale * value));

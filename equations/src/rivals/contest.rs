@@ -8,8 +8,6 @@ use super::{Estimate, Measurements, RivalError, System, collocation, savitzky_go
 /// blurs exact ones.
 const TOLERANCE: f64 = 1e-2;
 const TOLERANCE_EXACT: f64 = 1e-3;
-/// Noise that stands for none: collocation needs some.
-const EXACT: f64 = 1e-8;
 /// Degree of the local polynomials.
 const DEGREE: usize = 6;
 
@@ -26,26 +24,24 @@ pub struct Answer {
     pub source: Vec<f64>,
 }
 
-/// The answers of every rival at times `at`, where `truth` is the true source. `noise` is the standard deviation of the
-/// measurements, zero for exact ones.
+/// The answers of every rival at times `at`, where `truth` is the true source.
 ///
 /// # Errors
 /// Measurements that do not fit the system, or that are too few.
 pub fn contest(
     system: &dyn System,
     data: &Measurements<'_>,
-    noise: f64,
     at: &[f64],
     truth: &[f64],
 ) -> Result<Vec<Answer>, RivalError> {
-    let tolerance = if noise > 0.0 { TOLERANCE } else { TOLERANCE_EXACT };
+    let tolerance = if data.noise.iter().any(|&noise| noise > 0.0) { TOLERANCE } else { TOLERANCE_EXACT };
     let timed = |name, oracle, method: &dyn Fn() -> Result<Estimate, RivalError>| {
         let start = Instant::now();
         let source = method()?.source;
         Ok(Answer { name, oracle, wall_s: start.elapsed().as_secs_f64(), source })
     };
     Ok(vec![
-        timed("collocation", false, &|| collocation(system, data, noise.max(EXACT), tolerance, at))?,
+        timed("collocation", false, &|| collocation(system, data, tolerance, at))?,
         timed("smoothing spline", false, &|| smoothing_spline(system, data, at))?,
         timed("Savitzky-Golay (oracle)", true, &|| savitzky_golay_oracle(system, data, DEGREE, at, truth))?,
     ])

@@ -22,7 +22,7 @@ mod systems;
 pub use collocation::collocation;
 pub use contest::{Answer, contest};
 pub use savitzky_golay::{savitzky_golay, savitzky_golay_oracle};
-pub use smoothing::smoothing_spline;
+pub use smoothing::{noise_level, smoothing_spline};
 pub use systems::{Pendulum, Rlc};
 
 /// An equation of motion of second order in its states and of first order in one source.
@@ -48,6 +48,8 @@ pub struct Measurements<'a> {
     pub times: &'a [f64],
     /// The states' measured values.
     pub states: &'a [&'a [f64]],
+    /// Standard deviation of each state's noise; zero for exact values.
+    pub noise: &'a [f64],
 }
 
 /// A source recovered by a rival.
@@ -86,6 +88,9 @@ fn check(system: &dyn System, data: &Measurements<'_>, least: usize) -> Result<(
     if data.states.len() != system.states() || data.states.iter().any(|state| state.len() != count) {
         let what = format!("{} states with {count} values each are needed", system.states());
         return Err(RivalError::Input(what));
+    }
+    if data.noise.len() != system.states() || !data.noise.iter().all(|&noise| noise >= 0.0) {
+        return Err(RivalError::Input("each state needs its noise, zero or more".into()));
     }
     if count < least {
         return Err(RivalError::Input(format!("{count} measurements; this method needs at least {least}")));

@@ -7,6 +7,8 @@ use super::{Estimate, Measurements, RivalError, System, check};
 
 /// Decades of the penalty's weight that are looked at.
 const DECADES: (i32, i32) = (-16, 2);
+/// Noise below this share of the values themselves is none.
+const NEGLIGIBLE: f64 = 1e-3;
 
 /// The source at times `at` from smoothing splines of the states. `chosen` is the first state's weight.
 pub fn smoothing_spline(system: &dyn System, data: &Measurements<'_>, at: &[f64]) -> Result<Estimate, RivalError> {
@@ -24,6 +26,23 @@ pub fn smoothing_spline(system: &dyn System, data: &Measurements<'_>, at: &[f64]
         jets.push(at.iter().map(|&t| jet(&smoother.basis.alive(t), &coefficients)).collect());
     }
     Ok(Estimate { source: system.source(at, &jets), chosen })
+}
+
+/// The standard deviation of the noise in measurements at rising times, from what a smoothing spline leaves of them
+/// (Wahba's estimate). Zero where that is no more than a spline's own error.
+///
+/// # Errors
+/// Too few measurements, or times that do not rise.
+pub fn noise_level(times: &[f64], values: &[f64]) -> Result<f64, RivalError> {
+    if times.len() != values.len() || times.len() <= SUPPORT || !times.windows(2).all(|pair| pair[0] < pair[1]) {
+        return Err(RivalError::Input(format!("{} measurements at rising times are needed", SUPPORT + 1)));
+    }
+    let smoother = Smoother::new(times);
+    let decade = best_decade(DECADES.0, DECADES.1, |decade| smoother.cross_validation(10f64.powf(decade), values))?;
+    let (squares, free) = smoother.residual(10f64.powf(decade), values)?;
+    let size = values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64;
+    let noise = (squares / free.max(1.0)).sqrt();
+    Ok(if noise > NEGLIGIBLE * size.sqrt() { noise } else { 0.0 })
 }
 
 fn jet(alive: &Alive, coefficients: &[f64]) -> [f64; 3] {
@@ -77,10 +96,15 @@ impl Smoother {
 
     /// Generalised cross-validation's score.
     fn cross_validation(&self, weight: f64, values: &[f64]) -> Result<f64, RivalError> {
+        let (squares, free) = self.residual(weight, values)?;
+        Ok(values.len() as f64 * squares / free.powi(2))
+    }
+
+    /// The sum of squares that the fit leaves, and how many values it left free.
+    fn residual(&self, weight: f64, values: &[f64]) -> Result<(f64, f64), RivalError> {
         let (coefficients, trace) = self.fit(weight, values)?;
         let fitted = |row: &Vec<(usize, f64)>| row.iter().map(|&(at, entry)| entry * coefficients[at]).sum::<f64>();
-        let squares: f64 = self.data_rows.iter().zip(values).map(|(row, value)| (fitted(row) - value).powi(2)).sum();
-        let count = values.len() as f64;
-        Ok(count * squares / (count - trace).powi(2))
+        let squares = self.data_rows.iter().zip(values).map(|(row, value)| (fitted(row) - value).powi(2)).sum();
+        Ok((squares, values.len() as f64 - trace))
     }
 }

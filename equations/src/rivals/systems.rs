@@ -83,13 +83,29 @@ impl System for Pendulum {
     }
 }
 
-/// `v'' + 7 v' + 10 v = f' + 6 f` with the source known at one time, without which it is open by `c exp(-6 t)`.
+/// `v'' + a v' + b v = c f' + e f` with the source known at one time, without which it is open by
+/// `exp(-e t / c)`.
 #[derive(Debug, Clone)]
 pub struct Rlc {
+    /// a, in 1/s.
+    pub damping: f64,
+    /// b, in 1/s^2.
+    pub stiffness: f64,
+    /// c, in 1/s, not zero.
+    pub rate_gain: f64,
+    /// e, in 1/s^2.
+    pub gain: f64,
     /// The first time, in s.
     pub start: f64,
     /// The source at that time, in V.
     pub source_at_start: f64,
+}
+
+impl Default for Rlc {
+    /// The constants of `data/rlc`.
+    fn default() -> Rlc {
+        Rlc { damping: 7.0, stiffness: 10.0, rate_gain: 1.0, gain: 6.0, start: 0.0, source_at_start: 6.0 }
+    }
 }
 
 impl System for Rlc {
@@ -102,23 +118,25 @@ impl System for Rlc {
     }
 
     fn residual(&self, jet: &[f64], residual: &mut [f64], jacobian: &mut [f64]) {
-        let slopes = [10.0, 7.0, 1.0, -6.0, -1.0];
+        let slopes = [self.stiffness, self.damping, 1.0, -self.gain, -self.rate_gain];
         residual[0] = slopes.iter().zip(jet).map(|(slope, value)| slope * value).sum();
         jacobian[..5].copy_from_slice(&slopes);
     }
 
-    /// Integrates `f' = g - 6 f` exactly for a `g` that is straight between the times.
+    /// Integrates `c f' = g - e f` exactly for a `g` that is straight between the times.
     fn source(&self, times: &[f64], jets: &[Vec<[f64; 3]>]) -> Vec<f64> {
-        let drive: Vec<f64> = jets[0].iter().map(|[v, dv, ddv]| ddv + 7.0 * dv + 10.0 * v).collect();
+        let rate = self.gain / self.rate_gain;
+        let drive = |[v, dv, ddv]: &[f64; 3]| (ddv + self.damping * dv + self.stiffness * v) / self.rate_gain;
+        let drive: Vec<f64> = jets[0].iter().map(drive).collect();
         let mut f = self.source_at_start;
         let (mut before, mut g_before) = (self.start, drive.first().copied().unwrap_or(0.0));
         let step = |(&t, &g): (&f64, &f64)| {
             let h = t - before;
-            let decay = (-6.0 * h).exp();
+            let x = rate * h;
+            let decay = (-x).exp();
             // Shares of the drive at either end of the step; their limit is half a step each.
-            let x = 6.0 * h;
-            let late = if x < 1e-4 { h * (0.5 - x / 6.0) } else { (1.0 - (1.0 - decay) / x) / 6.0 };
-            let early = if x < 1e-4 { h * (0.5 - x / 3.0) } else { (1.0 - decay) / 6.0 - late };
+            let late = if x.abs() < 1e-4 { h * (0.5 - x / 6.0) } else { (1.0 - (1.0 - decay) / x) / rate };
+            let early = if x.abs() < 1e-4 { h * (0.5 - x / 3.0) } else { (1.0 - decay) / rate - late };
             f = decay * f + early * g_before + late * g;
             (before, g_before) = (t, g);
             f
@@ -138,7 +156,7 @@ mod tests {
     /// The slopes are written by hand, so they are checked by differences.
     #[test]
     fn slopes_match_differences() {
-        let systems: [&dyn System; 2] = [&Pendulum::default(), &Rlc { start: 0.0, source_at_start: 6.0 }];
+        let systems: [&dyn System; 2] = [&Pendulum::default(), &Rlc::default()];
         for system in systems {
             let width = 3 * system.states() + 2;
             let rows = system.equations();
@@ -172,7 +190,7 @@ mod tests {
             let parts = [part(44.0 / 3.0, 2.0), part(1.0 / 3.0, 5.0), part(-9.0, 3.0)];
             std::array::from_fn::<f64, 3, _>(|k| parts.iter().map(|p| p[k]).sum())
         };
-        let system = Rlc { start: 0.0, source_at_start: 6.0 };
+        let system = Rlc::default();
         let times: Vec<f64> = (0..=400).map(|k| f64::from(k) * 0.005).collect();
         let source = system.source(&times, &[times.iter().map(|&t| jet(t)).collect()]);
         let truth: Vec<f64> = times.iter().map(|t| 6.0 * (-3.0 * t).exp()).collect();

@@ -1,8 +1,10 @@
 //! Which header answers to a name. For `q` in metres: `q`, `q [m]` or `q_m`; anything longer must be asked for by its
 //! exact header, because guessing between `q_m_sigma0` and `q_m_sigma0.01` would be a quiet wrong answer.
 
+use super::units::factor;
 use super::{Column, Table};
 use crate::DataError;
+use crate::names::likeness;
 
 /// Unit symbols that may follow a name after an underscore (`dq_m_s`, `N_N_per_m`).
 const SYMBOLS: [&str; 34] = [
@@ -16,9 +18,28 @@ impl Table {
         self.checked(self.find(name, None)?)
     }
 
-    /// As [`Table::column`], but a unit in the header must be `unit`.
-    pub fn quantity(&self, name: &str, unit: &str) -> Result<&[f64], DataError> {
-        self.checked(self.find(name, Some(unit))?)
+    /// As [`Table::column`], but in `unit`: a header that names a multiple of it (`t_ms` for seconds) is converted, and
+    /// one that names another unit does not answer.
+    pub fn quantity(&self, name: &str, unit: &str) -> Result<Vec<f64>, DataError> {
+        self.converted(self.find(name, Some(unit))?, name, unit)
+    }
+
+    /// The column with a header that the user chose for `name`, in `unit`, converted as in [`Table::quantity`].
+    pub fn chosen(&self, name: &str, header: &str, unit: &str) -> Result<Vec<f64>, DataError> {
+        let Some(column) = self.columns.iter().find(|column| column.header == header) else {
+            return self
+                .find(header, None)
+                .map_err(|_| self.absent(name, header))
+                .and_then(|c| self.converted(c, name, unit));
+        };
+        self.converted(column, name, unit)
+    }
+
+    fn converted(&self, column: &Column, name: &str, unit: &str) -> Result<Vec<f64>, DataError> {
+        let values = self.checked(column)?;
+        let own = unit_of(&column.header).filter(|_| column.header != name);
+        let size = own.and_then(|own| factor(own, unit)).unwrap_or(1.0);
+        Ok(values.iter().map(|value| value * size).collect())
     }
 
     /// Whether some header answers to `name`.
@@ -71,31 +92,48 @@ impl Table {
             _ => format!("`{name}`"),
         };
         let longer = self.matching(|header| starts_with_name(header, name));
-        let nearest = match longer.first() {
-            Some(column) => Some(column.header.as_str()),
-            None => self.headers().max_by(|a, b| similarity(a, name).total_cmp(&similarity(b, name))),
-        };
+        let nearest = longer.first().map(|column| column.header.as_str()).or_else(|| self.nearest(name));
+        self.no_column(&wanted, &nearest.map_or_else(String::new, |header| format!("; {}", choose(name, header))))
+    }
+
+    /// A header that the user asked for and that is not there.
+    fn absent(&self, name: &str, header: &str) -> DataError {
+        let hint = self.nearest(header).map(|near| format!("; the nearest is `{near}`: {}", option(name, near)));
+        self.no_column(&format!("`{header}`"), &hint.unwrap_or_default())
+    }
+
+    fn no_column(&self, wanted: &str, hint: &str) -> DataError {
         let all = list(self.headers());
-        let what = match nearest {
-            Some(header) => format!("no column for {wanted}; {} (columns: {all})", choose(name, header)),
-            None => format!("no column for {wanted} (columns: {all})"),
+        let what = if self.columns.len() == 1 {
+            format!(
+                "no column for {wanted}; the file has one column, `{all}`: separate cells by commas, semicolons or tabs"
+            )
+        } else {
+            format!("no column for {wanted}{hint} (columns: {all})")
         };
         DataError::Column { path: self.path.clone(), what }
+    }
+
+    fn nearest(&self, name: &str) -> Option<&str> {
+        self.headers().max_by(|a, b| likeness(base(a), name).total_cmp(&likeness(base(b), name)))
     }
 }
 
 fn choose(name: &str, header: &str) -> String {
-    let quoted =
-        if header.contains([' ', '[', '*']) { format!("'{name}={header}'") } else { format!("{name}={header}") };
-    format!("choose one, for instance with --column {quoted}")
+    format!("choose one, for instance with {}", option(name, header))
+}
+
+/// How to choose a header on the command line.
+fn option(name: &str, header: &str) -> String {
+    if header.contains([' ', '[', '*']) {
+        format!("--column '{name}={header}'")
+    } else {
+        format!("--column {name}={header}")
+    }
 }
 
 fn list<'a>(headers: impl Iterator<Item = &'a str>) -> String {
     headers.collect::<Vec<_>>().join(", ")
-}
-
-fn similarity(header: &str, name: &str) -> f64 {
-    strsim::jaro_winkler(&base(header).to_lowercase(), &name.to_lowercase())
 }
 
 fn base(header: &str) -> &str {
@@ -106,17 +144,31 @@ fn starts_with_name(header: &str, name: &str) -> bool {
     header.strip_prefix(name).is_some_and(|rest| rest.starts_with([' ', '_', '[', '.', '-']))
 }
 
-/// Whether `header` is `name [unit]` or `name_unit`, for the given unit or for any.
+/// Whether `header` is `name [unit]` or `name_unit`, for the given unit, a multiple of it, or any.
 fn answers(header: &str, name: &str, unit: Option<&str>) -> bool {
     let Some(rest) = header.strip_prefix(name) else { return false };
-    if let Some(inner) = rest.trim_start().strip_prefix('[').and_then(|rest| rest.strip_suffix(']')) {
-        return unit.is_none_or(|unit| normal(unit) == normal(inner));
+    if let Some(inner) = bracketed(rest) {
+        return unit.is_none_or(|unit| fits(inner, unit));
     }
     let Some(suffix) = rest.strip_prefix('_') else { return false };
     match unit {
-        Some(unit) => !is_plain(unit) && normal(unit) == normal(suffix),
+        Some(unit) => !is_plain(unit) && fits(suffix, unit),
         None => is_unit_suffix(suffix),
     }
+}
+
+fn fits(own: &str, unit: &str) -> bool {
+    normal(own) == normal(unit) || factor(own, unit).is_some()
+}
+
+/// The unit that a header ends with: `t [ms]`, `t_ms`.
+fn unit_of(header: &str) -> Option<&str> {
+    let end = header.find('[').map_or(header, |at| &header[at..]);
+    bracketed(end).or_else(|| header.rsplit_once('_').map(|(_, suffix)| suffix))
+}
+
+fn bracketed(text: &str) -> Option<&str> {
+    text.trim_start().strip_prefix('[').and_then(|rest| rest.strip_suffix(']'))
 }
 
 fn is_plain(unit: &str) -> bool {

@@ -2,6 +2,7 @@
 
 mod lookup;
 mod read;
+mod units;
 mod write;
 
 use std::path::{Path, PathBuf};
