@@ -6,7 +6,7 @@ use clap::{Args as Group, Parser, Subcommand};
 
 /// Recover unknown sources from noisy measurements and a known governing equation.
 #[derive(Parser)]
-#[command(version, after_help = "Begin with: nisp solve pendulum")]
+#[command(version, after_help = "Begin with `nisp solve pendulum`; `nisp solve --help` has examples.")]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -18,67 +18,119 @@ pub(crate) enum Command {
     List,
     /// Show a scene's equations, units, channels and what is skipped.
     Explain {
-        /// Name of the equation (see `nisp list`).
+        /// Equation (see `nisp list`).
+        #[arg(value_name = "SCENE")]
         equation: String,
         /// One of its scenes.
-        #[arg(long)]
+        #[arg(long, value_name = "NAME")]
         scene: Option<String>,
     },
-    /// Recover a source; without options, from the repository's own example.
-    #[command(after_help = "Exit codes: 0 solved, 2 bad input, 3 not converged.")]
+    /// Recover a source; without options, from the repository's own noisy example.
+    #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
     Solve(Box<Options>),
 }
 
 /// How and from what to solve.
 #[derive(Group)]
 pub(crate) struct Options {
-    /// Name of the equation (see `nisp list`).
+    /// Equation to solve (see `nisp list`).
+    #[arg(value_name = "SCENE")]
     pub(crate) equation: String,
-    /// One of its scenes.
-    #[arg(long)]
+    /// One of the equation's scenes [default: its first].
+    #[arg(long, value_name = "NAME")]
     pub(crate) scene: Option<String>,
-    /// CSV of measurements, with a time column `t`.
-    #[arg(long, value_name = "FILE")]
+    /// CSV of measurements, with a column for the time [default: the repository's example].
+    #[arg(long, value_name = "FILE", help_heading = DATA)]
     pub(crate) data: Option<PathBuf>,
-    /// Header that holds a quantity, for instance q=q_m_sigma0.01.
-    #[arg(long, value_name = "NAME=HEADER", value_parser = pair)]
+    /// Header of the column that holds a quantity, for instance q=q_m_sigma0.01. Repeatable.
+    #[arg(long, value_name = "NAME=HEADER", value_parser = pair, help_heading = DATA)]
     pub(crate) column: Vec<(String, String)>,
-    /// CSV of the truth, used to score and for nothing else.
-    #[arg(long, value_name = "FILE")]
+    /// CSV of the truth, used to score the answer and for nothing else.
+    #[arg(long, value_name = "FILE", help_heading = DATA)]
     pub(crate) truth: Option<PathBuf>,
-    /// A parameter in its declared unit.
-    #[arg(long, value_name = "NAME=VALUE", value_parser = value)]
+    /// A parameter's value in its declared unit, for instance m0=0.05. Repeatable.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = value, help_heading = DATA)]
     pub(crate) set: Vec<(String, f64)>,
+    /// TOML file of options; those on the command line win.
+    #[arg(long, value_name = "FILE", help_heading = DATA)]
+    pub(crate) config: Option<PathBuf>,
     /// Seed of the initial weights.
-    #[arg(long, default_value_t = 0)]
+    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, help_heading = METHOD)]
     pub(crate) seed: u64,
-    /// Element type.
-    #[arg(long, default_value = "f64", value_parser = ["f32", "f64"])]
+    /// Element type of the network.
+    #[arg(long, default_value = "f64", value_parser = ["f32", "f64"], help_heading = METHOD)]
     pub(crate) precision: String,
-    /// Method of minimisation.
-    #[arg(long, default_value = "auto", value_parser = ["auto", "adam", "lbfgs", "broyden", "lm", "evidence"])]
+    /// Method of minimisation; auto chooses by the noise in the data.
+    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = optimizers(), help_heading = METHOD)]
     pub(crate) optimizer: String,
     /// Hidden units of a layer.
-    #[arg(long, default_value_t = 16)]
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = count, allow_negative_numbers = true,
+          help_heading = METHOD)]
     pub(crate) width: usize,
     /// Layers.
-    #[arg(long, default_value_t = 2)]
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = count, allow_negative_numbers = true,
+          help_heading = METHOD)]
     pub(crate) layers: usize,
-    /// Threads; 0 for one per processor.
-    #[arg(long, default_value_t = 0)]
-    pub(crate) threads: usize,
-    /// Wall time.
-    #[arg(long, value_name = "SECONDS", default_value_t = 10.0)]
+    /// Threads [default: one per processor]. The answer does not depend on them.
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
+    pub(crate) threads: Option<usize>,
+    /// Wall time; the best state so far is the answer.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds, allow_negative_numbers = true,
+          help_heading = METHOD)]
     pub(crate) budget: f64,
-    /// Steps at most.
-    #[arg(long, value_name = "N")]
-    pub(crate) iterations: Option<u64>,
-    /// Folder for results.
-    #[arg(long, value_name = "DIR", default_value = "nisp-out")]
+    /// Steps at most [default: as many as the budget allows].
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
+    pub(crate) iterations: Option<usize>,
+    /// Folder for results; made if it is not there.
+    #[arg(long, value_name = "DIR", default_value = "nisp-out", help_heading = RESULTS)]
     pub(crate) out: PathBuf,
     /// One JSON object on standard output, and nothing else there.
-    #[arg(long)]
+    #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
+}
+
+const DATA: &str = "Data";
+const METHOD: &str = "Method";
+const RESULTS: &str = "Results";
+
+const SEE_HELP: &str = "Exit codes: 0 solved, 2 bad input, 3 not converged. `--help` has examples.";
+
+const TEACH: &str = "\
+Examples:
+  nisp solve pendulum
+      the repository's noisy example, scored against its truth
+  nisp solve pendulum --data run.csv --column q=q_m_sigma0.01 --set m0=0.05
+      your measurements; the cart weighs 50 g
+  nisp solve rlc --data volts.csv --set f0=6 --budget 4 --seed 3 --json > answer.json
+  nisp solve pendulum --config run.toml --out results/run-7
+
+Data:
+  A CSV with one header line, a time that rises, and a column for each observed quantity. For `q` in metres the headers
+  `q`, `q [m]` and `q_m` are found by themselves; `q_mm` is converted. Any other header is chosen with --column. A
+  header without a unit is taken in the declared one: `nisp explain SCENE` shows units and parameters.
+
+Configuration (every option has a key of the same name; paths are taken from the file's folder):
+  data = \"run.csv\"
+  column = { q = \"q_m_sigma0.01\" }
+  set = { m0 = 0.05 }
+  budget = 4.0
+
+Results, in the folder of --out:
+  source.csv  the recovered source with its standard deviation, where the method gives one
+  state.csv   the fields, likewise
+  plot.svg    both, with measurements, truth and a band of two standard deviations
+  All are written together at the end; files of those names are replaced.
+
+Ctrl-C (or SIGTERM) ends the run at the best state so far, which is written; the status is not_converged. A second
+Ctrl-C ends it at once.
+
+Exit codes:
+  0  solved, or the budget is spent (status `converged`, `budget`)
+  2  bad input; nothing was written
+  3  not converged, or interrupted (status `not_converged`); the best state was written";
+
+fn optimizers() -> clap::builder::PossibleValuesParser {
+    nisp::Optimizer::ALL.map(nisp::Optimizer::name).into()
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {
@@ -88,6 +140,20 @@ fn pair(text: &str) -> Result<(String, String), String> {
 
 fn value(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, for instance m0=0.005")?;
-    let value = value.trim().parse().map_err(|_| format!("`{value}` is no number"))?;
-    Ok((name.trim().into(), value))
+    let number = value.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let number = number.ok_or("the value must be a finite number, in the declared unit and without it")?;
+    Ok((name.trim().into(), number))
+}
+
+/// More of anything than this is a slip.
+const MOST: usize = 1_000_000_000;
+
+fn count(text: &str) -> Result<usize, String> {
+    let number = text.parse::<usize>().ok().filter(|number| (1..=MOST).contains(number));
+    number.ok_or_else(|| "give a whole number of at least 1".into())
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| *number > 0.0 && *number <= MOST as f64);
+    number.ok_or_else(|| "give a positive number of seconds, for instance 10".into())
 }

@@ -1,33 +1,57 @@
 //! `nisp explain`: what the compiler made of a scene.
 
+use std::fmt::Write;
 use std::process::ExitCode;
+
+use nisp::schema::{Origin, Unit};
 
 /// Prints a scene's equations, units, channels and savings.
 pub(crate) fn explain(equation: &str, scene: Option<&str>) -> Result<ExitCode, String> {
     let entry = crate::entry(equation)?;
     let schema = entry.scene(scene).map_err(|error| error.to_string())?.schema;
-    println!("{} / {}: {}", schema.module, schema.name, schema.docs.lines().next().unwrap_or_default());
+    let mut text = String::new();
+    // Writing into a string cannot fail.
+    let mut line = |content: String| {
+        let _ = writeln!(text, "{}", content.trim_end());
+    };
+    line(format!("{}, scene {}: {}", schema.module, schema.name, schema.docs.lines().next().unwrap_or_default()));
     for head in schema.heads {
-        println!(
-            "  {} {} [{}]  {}",
-            if head.source { "source" } else { "field " },
-            head.name,
-            head.unit.text,
-            head.docs
-        );
+        let kind = if head.source { "source" } else { "field" };
+        line(format!("  {kind:9} {:6} {:9} {}", head.name, unit(&head.unit), head.docs));
+    }
+    for scalar in schema.scalars {
+        let (kind, value) = match scalar.origin {
+            Origin::Given(value) => ("parameter", value),
+            Origin::Learned { start, .. } => ("learned", start),
+            Origin::Literal(_) | Origin::HeadScale(_) | Origin::SideScale { .. } => continue,
+        };
+        let value =
+            value.map_or_else(|| "must be --set".into(), |value| format!("{}", rounded(value / scalar.unit.factor)));
+        line(format!("  {kind:9} {:6} {:9} {value}", scalar.name, unit(&scalar.unit)));
     }
     for group in schema.groups {
-        println!("group {}", group.name);
+        line(format!("group {}", group.name));
         for term in group.terms {
-            println!("  {} [{}]: {}", term.name, term.unit.text, term.equation);
+            line(format!("  {} {}: {}", term.name, unit(&term.unit), term.equation));
         }
         let jets: Vec<_> = group.jets.iter().map(|jet| jet.name).collect();
-        println!("  channels {} of a dense jet's {}: {}", group.channels.len(), group.dense, group.channels.join(", "));
-        println!("  reads {}", jets.join(", "));
-        println!("  residuals {} FLOPs a point, adjoint {}", group.flops[0], group.flops[1]);
+        let channels = group.channels.join(", ");
+        line(format!("  channels {} of a dense jet's {}: {channels}", group.channels.len(), group.dense));
+        line(format!("  reads {}", jets.join(", ")));
+        line(format!("  residuals {} FLOPs a point, adjoint {}", group.flops[0], group.flops[1]));
     }
-    for line in schema.skipped {
-        println!("skipped: {line}");
+    for skipped in schema.skipped {
+        line(format!("skipped: {skipped}"));
     }
+    crate::print(&text)?;
     Ok(ExitCode::SUCCESS)
+}
+
+fn unit(unit: &Unit) -> String {
+    format!("[{}]", unit.text)
+}
+
+/// Without the digits that a conversion of units may have left behind.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.12e}").parse().unwrap_or(value)
 }

@@ -6,14 +6,12 @@ use std::time::Duration;
 
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Estimate, Optimizer, Settings, Solution, Width, recover};
+use nisp::{Optimizer, Settings, Solution, Width, recover};
 use nisp_data::OutDir;
-use nisp_data::Table;
-use nisp_data::picture::{Curve, LinePanel, LinePlot, Quantity, line_plot};
 use nisp_equations::{Prepared, Request};
 
 use crate::args::Options;
-use crate::score::{Score, score};
+use crate::{interrupt, report, results, score};
 
 /// Not converged.
 const NOT_CONVERGED: u8 = 3;
@@ -31,24 +29,33 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let settings = settings(options)?;
     let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
+    interrupt::listen()?;
     let mut solution = run(&prepared, &settings)?;
-    let scores = match &prepared.truth {
-        Some(truth) => score(&solution, truth).map_err(|error| error.to_string())?,
-        None => Vec::new(),
-    };
-    let estimates = solution.evaluate_with_errors(&prepared.times);
-    write(&out, &prepared, &estimates).map_err(|error| error.to_string())?;
-    if options.json {
-        println!("{}", json(&solution, options, &scores));
-    } else {
-        table(&mut solution, &prepared, &scores, &out);
+    let mut warnings: Vec<_> = solution.warnings.iter().map(|warning| warning.message.clone()).collect();
+    if solution.status == Status::Interrupted {
+        warnings.push(format!("interrupted after {:.1} s: this is the best state so far", solution.wall_s));
     }
-    Ok(if solution.status == Status::NotConverged { ExitCode::from(NOT_CONVERGED) } else { ExitCode::SUCCESS })
+    let scores = prepared.truth.as_ref().map_or_else(Vec::new, |truth| score::score(&solution, truth));
+    let estimates = solution.evaluate_with_errors(&prepared.times);
+    let files = results::files(&prepared, &estimates).map_err(|error| error.to_string())?;
+    out.write(&files).map_err(|error| error.to_string())?;
+    let text = if options.json {
+        report::json(&solution, options, &settings, &scores, &warnings)
+    } else {
+        report::table(&mut solution, &prepared, &scores, &warnings, &out)
+    };
+    crate::print(&text)?;
+    let failed = matches!(solution.status, Status::NotConverged | Status::Interrupted);
+    Ok(if failed { ExitCode::from(NOT_CONVERGED) } else { ExitCode::SUCCESS })
 }
 
 fn settings(options: &Options) -> Result<Settings, String> {
-    if !(options.budget > 0.0 && options.budget.is_finite()) {
-        return Err(format!("--budget {}: give a positive number of seconds", options.budget));
+    let threads = match options.threads {
+        Some(threads) => threads,
+        None => std::thread::available_parallelism().map_or(1, usize::from),
+    };
+    if threads > MOST_THREADS {
+        return Err(format!("--threads {threads}: at most {MOST_THREADS}; leave it out for one per processor"));
     }
     Ok(Settings {
         precision: if options.precision == "f32" { Width::F32 } else { Width::F64 },
@@ -56,111 +63,29 @@ fn settings(options: &Options) -> Result<Settings, String> {
         architecture: Architecture::modified(options.width, options.layers),
         seed: options.seed,
         budget: Some(Duration::from_secs_f64(options.budget)),
-        iterations: options.iterations,
-        threads: options.threads,
+        iterations: options.iterations.map(|count| count as u64),
+        threads,
     })
 }
+
+/// No machine has more, and asking the system for them would end badly.
+const MOST_THREADS: usize = 1024;
 
 /// Runs the solver, with a line of progress on a terminal.
 fn run(prepared: &Prepared, settings: &Settings) -> Result<Solution, String> {
     let terminal = std::io::stderr().is_terminal();
+    let budget = settings.budget.unwrap_or_default().as_secs_f64();
     let mut shown = 0.0;
     let result = recover(&prepared.problem, settings, &mut |report| {
         if terminal && report.elapsed_s >= shown {
-            shown = report.elapsed_s + 0.2;
-            eprint!("\r{:6.1} s  step {:7}  loss {:.3e}", report.elapsed_s, report.iteration, report.loss);
+            shown = report.elapsed_s + 0.1;
+            let (now, step, loss) = (report.elapsed_s, report.iteration, report.loss);
+            eprint!("\r{now:6.1} of {budget} s  step {step}  loss {loss:.3e}\x1b[K");
         }
-        Flow::Continue
+        if interrupt::asked() { Flow::Stop } else { Flow::Continue }
     });
     if terminal {
-        eprintln!();
+        eprint!("\r\x1b[K");
     }
     result.map_err(|error| error.to_string())
-}
-
-fn status(solution: &Solution) -> &'static str {
-    match solution.status {
-        Status::Converged => "converged",
-        Status::Budget | Status::Interrupted => "budget",
-        Status::NotConverged => "not_converged",
-    }
-}
-
-/// Source and state as CSV, and a plot.
-fn write(out: &OutDir, prepared: &Prepared, estimates: &[Estimate]) -> Result<(), nisp_data::DataError> {
-    for (name, source) in [("source.csv", true), ("state.csv", false)] {
-        let mut table = Table::empty();
-        table.push("t", "s", &prepared.times)?;
-        for estimate in estimates.iter().filter(|estimate| estimate.source == source) {
-            table.push(estimate.name, estimate.unit.text, &estimate.values)?;
-            if let Some(deviations) = &estimate.deviations {
-                table.push(&format!("{}_sd", estimate.name), estimate.unit.text, deviations)?;
-            }
-        }
-        out.write(name, |to| table.write_to(to))?;
-    }
-    let mut sorted: Vec<&Estimate> = estimates.iter().collect();
-    sorted.sort_by_key(|estimate| !estimate.source);
-    let panels = sorted.into_iter().map(|estimate| {
-        let mut panel = LinePanel::new(Quantity::new(estimate.name, estimate.unit.text));
-        let measured = prepared.measured.iter().find(|(name, _)| *name == estimate.name);
-        panel.measured = measured.map(|(_, values)| Curve::new(&prepared.times, values));
-        panel.estimate = Some(Curve::new(&prepared.times, &estimate.values));
-        panel.deviation.clone_from(&estimate.deviations);
-        let truth = prepared.truth.as_ref();
-        panel.truth = truth.and_then(|truth| {
-            let values = truth.quantity(estimate.name, estimate.unit.text).ok()?;
-            Some(Curve::new(truth.column("t").ok()?, values))
-        });
-        panel
-    });
-    let plot = LinePlot { title: prepared.source.clone(), x: Quantity::new("t", "s"), panels: panels.collect() };
-    line_plot(&plot)?.write_svg(out.file("plot.svg"))
-}
-
-fn json(solution: &Solution, options: &Options, scores: &[Score]) -> serde_json::Value {
-    let errors: serde_json::Map<_, _> = scores.iter().map(|s| (s.name.clone(), s.mean_abs.into())).collect();
-    let warnings: Vec<_> = solution.warnings.iter().map(|warning| warning.message.clone()).collect();
-    serde_json::json!({
-        "scene": format!("{}/{}", solution.scene().module, solution.scene().name),
-        "status": status(solution),
-        "seed": options.seed,
-        "precision": solution.settings.precision.name(),
-        "optimizer": solution.optimizer.name(),
-        "threads": options.threads,
-        "wall_s": solution.wall_s,
-        "iterations": solution.iterations,
-        "loss": solution.loss,
-        "warnings": warnings,
-        "errors": errors,
-        "settings": {
-            "width": options.width, "layers": options.layers, "budget_s": options.budget,
-            "iterations": options.iterations, "isa": solution.isa(),
-        },
-    })
-}
-
-fn table(solution: &mut Solution, prepared: &Prepared, scores: &[Score], out: &OutDir) {
-    println!("{} / {} from {}", solution.scene().module, solution.scene().name, prepared.source);
-    println!(
-        "{} after {:.1} s, {} steps of {}, loss {:.3e}",
-        status(solution).replace('_', " "),
-        solution.wall_s,
-        solution.iterations,
-        solution.optimizer.name(),
-        solution.loss
-    );
-    for (group, points) in solution.groups() {
-        println!("  group {:10} {:6} points, {} channels", group.name, points, group.channels.len());
-    }
-    for line in solution.scene().skipped {
-        println!("  skipped: {line}");
-    }
-    for Score { name, unit, mean_abs } in scores {
-        println!("  mean absolute error {name:10} {mean_abs:.3e} {unit}");
-    }
-    for warning in &solution.warnings {
-        println!("  warning: {}", warning.message);
-    }
-    println!("wrote source.csv, state.csv and plot.svg to {}", out.path().display());
 }
