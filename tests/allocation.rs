@@ -51,9 +51,8 @@ unsafe impl GlobalAlloc for Counting {
 static ALLOCATOR: Counting = Counting;
 
 fn problem() -> Problem {
-    let points = |count: usize| -> Points {
-        (0..2 * count).map(|i| (i as f64 * 0.618).fract()).collect::<Vec<f64>>().into()
-    };
+    let points =
+        |count: usize| -> Points { (0..2 * count).map(|i| (i as f64 * 0.618).fract()).collect::<Vec<f64>>().into() };
     let mut problem = Problem::new(scene::<heat::recover::Scene>());
     problem.set_group("inside", points(300), vec![]).expect("a group");
     problem.set_group("probes", points(50), vec![(0..50).map(|i| f64::from(i).sin()).collect()]).expect("a group");

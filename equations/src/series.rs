@@ -98,6 +98,16 @@ pub enum PrepareError {
         /// The names there are.
         have: String,
     },
+    /// A measurement so large that its square is no number.
+    #[error("`{name}` goes up to {largest:e} {unit}; check its column and its unit")]
+    Size {
+        /// What was measured.
+        name: &'static str,
+        /// Its largest magnitude.
+        largest: f64,
+        /// Its declared unit.
+        unit: &'static str,
+    },
     /// A truth at times of which the data say nothing.
     #[error(
         "{}: the truth's times, {} to {} s, leave those of the data, {} to {} s; cut the truth to that range, or check \
@@ -130,6 +140,9 @@ pub enum PrepareError {
 
 /// Times at which the equations are asked to hold.
 const COLLOCATION: usize = 300;
+
+/// Products of a few numbers up to this size are finite.
+const LARGEST: f64 = 1e60;
 
 /// Everything that the command line can solve.
 pub fn catalogue() -> [Entry; 2] {
@@ -204,9 +217,13 @@ impl Entry {
         let schema = scene.schema;
         check_columns(schema, request)?;
         let header = |name: &str| request.columns.iter().rev().find(|(n, _)| n == name).map(|(_, h)| h.as_str());
-        let column = |name: &str, unit: &str| match header(name) {
-            Some(header) => table.chosen(name, header, unit),
-            None => table.quantity(name, unit),
+        let column = |name: &'static str, unit: &'static str| {
+            let values = match header(name) {
+                Some(header) => table.chosen(name, header, unit)?,
+                None => table.quantity(name, unit)?,
+            };
+            let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+            if largest > LARGEST { Err(PrepareError::Size { name, largest, unit }) } else { Ok(values) }
         };
         let times = column("t", "s")?;
         table.require_increasing(header("t").unwrap_or("t"))?;

@@ -26,7 +26,7 @@ pub fn collocation(
     at: &[f64],
 ) -> Result<Estimate, RivalError> {
     check(system, data, SUPPORT + 1)?;
-    if !(tolerance > 0.0) {
+    if tolerance.is_nan() || tolerance <= 0.0 {
         return Err(RivalError::Input("the tolerance must be above zero".into()));
     }
     let problem = Problem::new(system, data, tolerance);
