@@ -49,6 +49,8 @@ pub trait Residuals: Send + Sync + 'static {
     fn magnitude<V: Simd>(at: &Lane<'_, V>, rows: &mut Sink<'_, V::Elem>);
     /// Targets of integral terms, from scalars alone; `rows` is indexed like the group's rows.
     fn target(scalars: &[f64], rows: &mut [f64]);
+    /// Their derivatives by the learned scalars, `[row][learned scalar]`; rows of other terms are left alone.
+    fn target_slopes(scalars: &[f64], rows: &mut [f64]);
 }
 
 /// Emitted code of one group, erased: each method works on a tile.
@@ -79,6 +81,8 @@ pub trait GroupKernel<E: Real>: Send + Sync {
     fn adjoint(&self, isa: Isa, points: Points<'_, E>, bars: &mut [E]);
     /// Targets of integral terms.
     fn target(&self, scalars: &[f64], rows: &mut [f64]);
+    /// Derivatives of the targets of integral terms by the learned scalars, `[row][learned scalar]`.
+    fn target_slopes(&self, scalars: &[f64], rows: &mut [f64]);
 }
 
 /// A scene as emitted by the macro: its schema, and its groups' kernels in the schema's order.
@@ -178,6 +182,10 @@ where
 
     fn target(&self, scalars: &[f64], rows: &mut [f64]) {
         R::target(scalars, rows);
+    }
+
+    fn target_slopes(&self, scalars: &[f64], rows: &mut [f64]) {
+        R::target_slopes(scalars, rows);
     }
 }
 

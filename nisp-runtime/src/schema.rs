@@ -196,6 +196,8 @@ pub enum TermKind {
     Chamfer {
         /// Both directions, not only cloud to surface.
         symmetric: bool,
+        /// Only the distance across the surface, not that along it.
+        plane: bool,
     },
 }
 

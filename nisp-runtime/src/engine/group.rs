@@ -1,8 +1,9 @@
 //! A point group bound to its points and data.
 
+use super::chamfer::Chamfer;
 use crate::kernel::GroupKernel;
 use crate::real::Real;
-use crate::schema;
+use crate::schema::{self, TermKind};
 
 /// A group, its points and how its rows count. All quantities are in the engine's own units.
 pub struct BoundGroup<E: Real> {
@@ -41,7 +42,6 @@ pub(crate) struct JetMap<E> {
 }
 
 /// How the rows of a term count.
-#[derive(Clone, Debug)]
 pub(crate) struct BoundTerm<E> {
     pub(crate) schema: &'static schema::Term,
     /// Rows are divided by this.
@@ -50,8 +50,8 @@ pub(crate) struct BoundTerm<E> {
     pub(crate) factor: f64,
     /// A weight for each point, or nothing for one.
     pub(crate) point_weights: Option<Vec<E>>,
-    /// What rows are compared with, `[row][point]`, or nothing for zero.
-    pub(crate) targets: Option<Vec<E>>,
+    /// The cloud that rows are compared with, of a Chamfer term.
+    pub(crate) chamfer: Option<Chamfer<E>>,
 }
 
 /// Affine maps from network outputs to the engine's units, and the coordinates' scales.
@@ -90,7 +90,7 @@ impl<E: Real> BoundGroup<E> {
         let terms = schema
             .terms
             .iter()
-            .map(|schema| BoundTerm { schema, size: 1.0, factor: 1.0, point_weights: None, targets: None })
+            .map(|schema| BoundTerm { schema, size: 1.0, factor: 1.0, point_weights: None, chamfer: None })
             .collect();
         Self {
             kernel,
@@ -143,6 +143,25 @@ impl<E: Real> JetMap<E> {
 }
 
 impl<E: Real> BoundTerm<E> {
+    /// Number of rows that solvers see, for a group of so many points.
+    pub(crate) fn row_count(&self, points: usize) -> usize {
+        match self.schema.kind {
+            TermKind::Integral => self.schema.rows,
+            TermKind::Chamfer { .. } => self.schema.rows * points + 1,
+            TermKind::Residual | TermKind::Observation => self.schema.rows * points,
+        }
+    }
+
+    /// Number of independent data that the rows stand for.
+    pub(crate) fn data_count(&self, points: usize) -> usize {
+        self.chamfer.as_ref().map_or_else(|| self.row_count(points), Chamfer::data)
+    }
+
+    /// The row that a Chamfer term's loss has beyond what its points can mend.
+    pub(crate) fn scatter(&self) -> f64 {
+        self.chamfer.as_ref().map_or(0.0, |chamfer| chamfer.scatter() * self.factor / self.size)
+    }
+
     /// Value and derivative of a row, as counted, for a misfit `r` at a point of weight `m`: half the square of the
     /// value is the row's share of the loss, robust or not.
     #[inline(always)]

@@ -32,6 +32,8 @@ pub(super) struct Integrals {
     parts: Vec<(TileRange, Vec<f64>)>,
     scalars: Vec<f64>,
     targets: Vec<f64>,
+    /// Derivatives of a group's targets by the learned scalars.
+    slopes: Vec<f64>,
 }
 
 impl Integrals {
@@ -52,10 +54,12 @@ impl Integrals {
         let involved = groups.iter().enumerate().filter(|(at, _)| rows.iter().any(|r| r.group == *at));
         let tiles = involved.flat_map(|(at, group)| group.tiles().map(move |(first, count)| (at, first, count)));
         let parts = tiles.map(|(group, first, count)| (TileRange { group, first, count }, vec![0.0; rows.len()]));
+        let most = groups.iter().map(|g| g.schema.rows).max().unwrap_or(0);
         Self {
             parts: parts.collect(),
             scalars: vec![0.0; scalars],
-            targets: vec![0.0; groups.iter().map(|g| g.schema.rows).max().unwrap_or(0)],
+            targets: vec![0.0; most],
+            slopes: vec![0.0; most * learned],
             rows,
         }
     }
@@ -89,23 +93,14 @@ impl<E: Real> Engine<E> {
         Ok(())
     }
 
-    /// Derivatives of all targets by the learned scalars, by central differences.
+    /// Derivatives of all targets by the learned scalars.
     pub(super) fn slope_targets(&mut self) {
-        let Integrals { rows, scalars, targets, .. } = &mut self.integrals;
+        let Integrals { rows, scalars, slopes, .. } = &mut self.integrals;
         scalars.iter_mut().zip(&self.scalars).for_each(|(to, from)| *to = from.to_f64());
         for integral in rows {
-            let kernel = &self.groups[integral.group].kernel;
-            for (slope, learned) in integral.target_slopes.iter_mut().zip(&self.learned) {
-                let value = scalars[learned.slot];
-                let step = 6e-6 * value.abs().max(1e-6);
-                let mut target = |scalar: f64| {
-                    scalars[learned.slot] = scalar;
-                    kernel.target(scalars, targets);
-                    targets[integral.row]
-                };
-                *slope = (target(value + step) - target(value - step)) / (2.0 * step);
-                scalars[learned.slot] = value;
-            }
+            self.groups[integral.group].kernel.target_slopes(scalars, slopes);
+            let learned = integral.target_slopes.len();
+            integral.target_slopes.copy_from_slice(&slopes[integral.row * learned..][..learned]);
         }
     }
 }

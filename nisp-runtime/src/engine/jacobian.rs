@@ -50,9 +50,8 @@ impl Engine<f64> {
         let mut starts = Vec::new();
         for (at, group) in self.groups.iter().enumerate() {
             for term in &group.terms {
-                let points = if term.schema.kind == TermKind::Integral { 1 } else { group.points };
                 let first = next;
-                next += term.schema.rows * points;
+                next += term.row_count(group.points);
                 starts.push((at, first, next));
             }
         }
@@ -72,6 +71,7 @@ impl Engine<f64> {
                         *start = next;
                         next += points;
                     }
+                    next += usize::from(term.chamfer.is_some());
                 }
                 starts
             })
@@ -131,8 +131,23 @@ impl Engine<f64> {
                 }
             }
         }
+        self.scatter_rows(rows, jacobian);
         let loss = r.iter().map(|x| x * x).sum::<f64>() / 2.0;
         if loss.is_finite() { Ok(loss) } else { Err(Fault::residual("loss", None)) }
+    }
+
+    /// The last row of every Chamfer term, which depends on nothing.
+    fn scatter_rows(&self, rows: RowsOut, jacobian: Option<RowsOut>) {
+        let terms = self.groups.iter().flat_map(|group| &group.terms);
+        for ((_, _, end), term) in self.row_starts().into_iter().zip(terms).filter(|(_, term)| term.chamfer.is_some()) {
+            // SAFETY: called after the parallel section; this thread is alone.
+            unsafe {
+                rows.row(end - 1)[0] = term.scatter();
+                if let Some(jacobian) = jacobian {
+                    jacobian.row(end - 1).fill(0.0);
+                }
+            }
+        }
     }
 
     fn learned_slopes(&self, theta: &[f64]) -> Vec<f64> {
@@ -146,7 +161,7 @@ impl Engine<f64> {
     }
 
     /// The derivative of an integral term's row, by one summed adjoint over its group and, for what the target depends
-    /// on, by differences.
+    /// on, by its slopes.
     fn integral_jacobian(&self, integral: &Integral, theta: &[f64], out: &mut [f64]) {
         let group = &self.groups[integral.group];
         let term = &group.terms[integral.term];
@@ -248,8 +263,7 @@ impl TileJob<'_> {
         let layout = self.network.layout;
         for row in self.pointwise() {
             buffers.seeds[..self.tile.group.schema.rows * stride].fill(0.0);
-            let (from, to) = (row * stride, row * stride + self.tile.count);
-            buffers.seeds[from..to].copy_from_slice(&buffers.row_slopes[from..to]);
+            self.seed_row(row, |_| 1.0, buffers);
             gradients.clear();
             gradients.resize(self.tile.count * layout.padded_len, 0.0);
             self.network.adjoint(&self.tile, buffers, gradients, true);
@@ -269,9 +283,22 @@ impl TileJob<'_> {
         let stride = self.tile.stride();
         buffers.seeds[..self.tile.group.schema.rows * stride].fill(0.0);
         for row in self.pointwise() {
+            self.seed_row(row, |p| u[self.starts[row] + self.tile.first + p], buffers);
+        }
+    }
+
+    /// Adds to the seeds of the raw rows those of one row as it counts, a seed for each point of the tile.
+    fn seed_row(&self, row: usize, u: impl Fn(usize) -> f64, buffers: &mut super::Buffers<f64>) {
+        let stride = self.tile.stride();
+        let super::Buffers { seeds, row_slopes, .. } = buffers;
+        let chamfer = self.tile.group.terms.iter().find(|term| term.chamfer.is_some() && covers(term, row));
+        if let Some((term, chamfer)) = chamfer.and_then(|term| Some((term, term.chamfer.as_ref()?))) {
+            let (points, scale) = (self.tile.first..self.tile.first + self.tile.count, term.factor / term.size);
+            let seeds = &mut seeds[term.schema.first * stride..];
+            chamfer.seed(row - term.schema.first, points, stride, |p| scale * u(p), seeds);
+        } else {
             for p in 0..self.tile.count {
-                let at = row * stride + p;
-                buffers.seeds[at] = buffers.row_slopes[at] * u[self.starts[row] + self.tile.first + p];
+                seeds[row * stride + p] += row_slopes[row * stride + p] * u(p);
             }
         }
     }

@@ -3,6 +3,8 @@
 //! Work is cut into a fixed number of chunks, whatever the number of threads; each chunk sums its own gradient and the
 //! chunks are added in a fixed tree. Results are therefore bitwise the same for any number of threads.
 
+mod assign;
+mod chamfer;
 mod group;
 mod heads;
 mod integral;
@@ -16,6 +18,7 @@ use std::sync::Mutex;
 
 use rayon::prelude::*;
 
+pub(crate) use chamfer::Chamfer;
 pub(crate) use group::BoundTerm;
 pub use group::{BoundGroup, Scaling};
 use integral::{Integral, Integrals, covers, seed_integrals};
@@ -169,6 +172,9 @@ impl<E: Real> Engine<E> {
         for (learned, &theta) in self.learned.iter().zip(&theta[self.layout.learned.clone()]) {
             self.scalars[learned.slot] = E::from_f64(learned.map.at(theta.to_f64()).0);
         }
+        if self.chamfers().any(|chamfer| !chamfer.is_assigned()) {
+            self.assign();
+        }
     }
 
     /// The loss at `theta`.
@@ -248,14 +254,20 @@ impl<E: Real> Engine<E> {
         if let Some((term, point)) = self.chunks.iter().find_map(|chunk| chunk.fault) {
             return Err(Fault::residual(self.term_name(term), Some(point)));
         }
-        let mut integrals = 0.0;
+        let mut whole = 0.0;
+        let terms = self.groups.iter().flat_map(|group| &group.terms);
+        for (share, term) in self.shares.iter_mut().zip(terms) {
+            let scatter = term.scatter().powi(2) / 2.0;
+            *share += scatter;
+            whole += scatter;
+        }
         for integral in &self.integrals.rows {
             let term = &self.groups[integral.group].terms[integral.term];
             let misfit = integral.seed * term.size / term.factor;
             self.shares[self.first_terms[integral.group] + integral.term] += misfit * misfit / 2.0;
-            integrals += misfit * misfit / 2.0;
+            whole += misfit * misfit / 2.0;
         }
-        let loss: f64 = self.chunks.iter().flat_map(|chunk| &chunk.shares).sum::<f64>() + integrals;
+        let loss: f64 = self.chunks.iter().flat_map(|chunk| &chunk.shares).sum::<f64>() + whole;
         if loss.is_finite() { Ok(loss) } else { Err(Fault::residual("loss", None)) }
     }
 
@@ -323,15 +335,31 @@ fn weigh<E: Real>(
         if term.schema.kind == TermKind::Integral {
             continue;
         }
+        let mut judge = |sum: f64, values: &[E]| {
+            *share += sum;
+            if !sum.is_finite() && fault.is_none() {
+                let point = (0..tile.count).find(|p| values[*p..].iter().step_by(stride).any(|x| !x.is_finite()));
+                fault = Some((index, tile.first + point.unwrap_or(0)));
+            }
+        };
+        if let Some(chamfer) = &term.chamfer {
+            let (at, len) = (term.schema.first * stride, term.schema.rows * stride);
+            let (values, seeds) = (&mut rows[at..][..len], &mut seeds[at..][..len]);
+            let points = tile.first..tile.first + tile.count;
+            let scale = E::from_f64(term.factor / term.size);
+            let sum = chamfer.weigh(points.clone(), stride, scale, values);
+            seeds.fill(E::ZERO);
+            for (i, row) in values.chunks_exact(stride).enumerate() {
+                chamfer.seed(i, points.clone(), stride, |p| row[p] * scale, seeds);
+            }
+            judge(sum, values);
+            continue;
+        }
         for row in term.schema.first..term.schema.first + term.schema.rows {
             let values = &mut rows[row * stride..][..stride];
             let (seeds, slopes) = (&mut seeds[row * stride..][..stride], &mut row_slopes[row * stride..][..stride]);
-            let sum = term.weigh(row, tile.first, tile.count, values, seeds, slopes);
-            *share += sum;
-            if !sum.is_finite() && fault.is_none() {
-                let point = values[..tile.count].iter().position(|x| !x.is_finite()).unwrap_or(0);
-                fault = Some((index, tile.first + point));
-            }
+            let sum = term.weigh(tile.first, tile.count, values, seeds, slopes);
+            judge(sum, values);
         }
     }
     fault
@@ -339,21 +367,11 @@ fn weigh<E: Real>(
 
 impl<E: Real> BoundTerm<E> {
     /// Replaces the raw rows of a tile by what counts, and gives half the sum of their squares.
-    fn weigh(
-        &self,
-        row: usize,
-        first: usize,
-        count: usize,
-        values: &mut [E],
-        seeds: &mut [E],
-        slopes: &mut [E],
-    ) -> f64 {
-        let local = row - self.schema.first;
+    fn weigh(&self, first: usize, count: usize, values: &mut [E], seeds: &mut [E], slopes: &mut [E]) -> f64 {
         let mut sum = 0.0;
         for p in 0..count {
             let weight = self.point_weights.as_ref().map_or(E::ONE, |w| w[first + p]);
-            let target = self.targets.as_ref().map_or(E::ZERO, |t| t[local * (t.len() / self.schema.rows) + first + p]);
-            let (value, slope) = self.row(values[p] - target, weight);
+            let (value, slope) = self.row(values[p], weight);
             values[p] = value;
             slopes[p] = slope;
             seeds[p] = value * slope;

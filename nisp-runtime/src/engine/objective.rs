@@ -18,6 +18,14 @@ impl<E: Real> Objective<E> for Engine<E> {
     fn gradient(&mut self, theta: &[E], gradient: &mut [E]) -> Result<f64, Fault> {
         self.loss_and_gradient(theta, gradient)
     }
+
+    fn accepted(&mut self, theta: &[E]) -> bool {
+        if self.chamfers().next().is_none() {
+            return false;
+        }
+        self.set(theta);
+        self.assign()
+    }
 }
 
 impl LeastSquares for Engine<f64> {
@@ -75,8 +83,7 @@ impl<E: Real> Engine<E> {
         let mut next = 0;
         for group in &self.groups {
             for term in &group.terms {
-                let points = if term.schema.kind == TermKind::Integral { 1 } else { group.points };
-                let rows = next..next + term.schema.rows * points;
+                let rows = next..next + term.row_count(group.points);
                 next = rows.end;
                 blocks.push(Block {
                     term: format!("{}.{}", group.schema.name, term.schema.name),
@@ -84,7 +91,7 @@ impl<E: Real> Engine<E> {
                         TermKind::Observation | TermKind::Chamfer { .. } => BlockKind::ObservationOfUnknownNoise,
                         TermKind::Residual | TermKind::Integral => BlockKind::Equation,
                     },
-                    count: rows.len() as f64,
+                    count: term.data_count(group.points) as f64,
                     rows,
                     sigma: term.size,
                 });

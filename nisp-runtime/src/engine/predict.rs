@@ -1,7 +1,9 @@
 //! Forward passes without gradient: network outputs at points, magnitudes of rows.
 
+use rayon::prelude::*;
+
 use super::tile::{Buffers, Network, Tile};
-use super::{Engine, with_buffers};
+use super::{BoundTerm, Chamfer, Engine, with_buffers};
 use crate::real::Real;
 use crate::residual::Points;
 
@@ -13,18 +15,7 @@ impl<E: Real> Engine<E> {
         with_buffers(&self.buffers, |buffers| {
             for (first, count) in bound.tiles() {
                 let tile = Tile { group: bound, first, count };
-                network.forward(&tile, buffers);
-                let Buffers { jets, points, columns, rows, .. } = buffers;
-                let inputs = Points {
-                    count: tile.count,
-                    stride: tile.stride(),
-                    jets,
-                    coordinates: points,
-                    columns,
-                    scalars: &self.scalars,
-                    seeds: &[],
-                };
-                bound.kernel.residual(self.isa, inputs, rows);
+                residuals(&network, &tile, buffers);
                 work(&tile, buffers);
             }
         });
@@ -45,4 +36,59 @@ impl<E: Real> Engine<E> {
         });
         all
     }
+    /// Clouds of Chamfer terms.
+    pub(super) fn chamfers(&self) -> impl Iterator<Item = &Chamfer<E>> {
+        self.groups.iter().flat_map(|group| &group.terms).filter_map(|term| term.chamfer.as_ref())
+    }
+
+    /// Assigns every cloud to the surface that the present parameters predict. Returns true if rows have changed.
+    pub(super) fn assign(&mut self) -> bool {
+        let mut changed = false;
+        for group in 0..self.groups.len() {
+            for term in 0..self.groups[group].terms.len() {
+                if self.groups[group].terms[term].chamfer.is_some() {
+                    let surface = self.surface(group, term);
+                    let BoundTerm { chamfer, size, .. } = &mut self.groups[group].terms[term];
+                    changed |= chamfer.as_mut().is_some_and(|chamfer| chamfer.assign(&surface, *size));
+                }
+            }
+        }
+        changed
+    }
+
+    /// Raw rows of a term, point by point.
+    fn surface(&self, group: usize, term: usize) -> Vec<f64> {
+        let bound = &self.groups[group];
+        let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
+        let schema = bound.terms[term].schema;
+        let mut surface = vec![0.0; bound.points * schema.rows];
+        surface.par_chunks_mut(bound.tile * schema.rows).enumerate().for_each(|(at, out)| {
+            let tile = Tile { group: bound, first: at * bound.tile, count: out.len() / schema.rows };
+            with_buffers(&self.buffers, |buffers| {
+                residuals(&network, &tile, buffers);
+                for (p, point) in out.chunks_exact_mut(schema.rows).enumerate() {
+                    for (i, x) in point.iter_mut().enumerate() {
+                        *x = buffers.rows[(schema.first + i) * tile.stride() + p].to_f64();
+                    }
+                }
+            });
+        });
+        surface
+    }
+}
+
+/// A tile forward to the raw rows of its residuals.
+fn residuals<E: Real>(network: &Network<'_, E>, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
+    network.forward(tile, buffers);
+    let Buffers { jets, points, columns, rows, .. } = buffers;
+    let inputs = Points {
+        count: tile.count,
+        stride: tile.stride(),
+        jets,
+        coordinates: points,
+        columns,
+        scalars: network.scalars,
+        seeds: &[],
+    };
+    tile.group.kernel.residual(network.isa, inputs, rows);
 }

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::scale::{Scales, scales};
 use super::{Binding, Problem, UnitSystem};
-use crate::engine::{BoundGroup, Engine, Learned, LearnedMap, Scaling};
+use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling};
 use crate::kernel::Precision;
 use crate::network::{Architecture, Layout};
 use crate::schema::{self, Origin};
@@ -67,6 +67,14 @@ pub enum BindError {
         /// The point, counted from 0.
         point: usize,
     },
+    /// A Chamfer term without a cloud.
+    #[error("group `{group}`: term `{term}` has no cloud; bind the points that its surface passes through")]
+    NoCloud {
+        /// The group.
+        group: &'static str,
+        /// The term.
+        term: &'static str,
+    },
     /// A network that cannot be.
     #[error("a network of {layers} layers of {width} units cannot be built; both must be at least 1")]
     Architecture {
@@ -101,6 +109,8 @@ pub(crate) struct Bound {
     pub(crate) coordinates: Vec<Vec<f64>>,
     /// Columns by group, in the engine's units.
     pub(crate) columns: Vec<Vec<Vec<f64>>>,
+    /// Clouds by group and term, in the engine's units, flat and point by point; empty for other terms.
+    pub(crate) clouds: Vec<Vec<Vec<f64>>>,
 }
 
 impl Problem {
@@ -124,15 +134,17 @@ impl Problem {
         let coordinates: Vec<Vec<f64>> = bindings.iter().map(|b| inward_points(schema, &system, b)).collect();
         let columns: Vec<Vec<Vec<f64>>> =
             bindings.iter().zip(schema.groups).map(|(b, group)| inward_columns(group, &system, b)).collect();
+        let clouds: Vec<Vec<Vec<f64>>> =
+            bindings.iter().zip(schema.groups).map(|(b, group)| inward_clouds(group, &system, b)).collect();
         let mut scalars: Vec<f64> = schema
             .scalars
             .iter()
             .zip(&self.scalars)
             .map(|(scalar, value)| value.map_or(1.0, |value| value / system.size(&scalar.unit)))
             .collect();
-        let Scales { scaling, sizes } = scales(&self.scene, &mut scalars, &coordinates, &columns);
+        let Scales { scaling, sizes } = scales(&self.scene, &mut scalars, &coordinates, &columns, &clouds);
         let learned = learned(schema, &system, &scalars);
-        Ok(Bound { problem: self.clone(), system, scaling, scalars, learned, sizes, coordinates, columns })
+        Ok(Bound { problem: self.clone(), system, scaling, scalars, learned, sizes, coordinates, columns, clouds })
     }
 
     /// What is bound to each group, checked for lengths and finite numbers.
@@ -162,6 +174,13 @@ impl Problem {
                 length("the weights".into(), binding.points.weights.len(), points)?;
             }
             finite(group.name, || "a coordinate".into(), &binding.points.coordinates, inputs)?;
+            for term in group.terms.iter().filter(|term| matches!(term.kind, schema::TermKind::Chamfer { .. })) {
+                let cloud = binding.cloud(term.name).filter(|cloud| !cloud.is_empty());
+                let cloud = cloud.ok_or(BindError::NoCloud { group: group.name, term: term.name })?;
+                let what = || format!("the cloud of `{}`", term.name);
+                length(what(), cloud.len(), cloud.len().next_multiple_of(term.rows))?;
+                finite(group.name, what, cloud, term.rows)?;
+            }
             bindings.push(binding);
         }
         Ok(bindings)
@@ -200,6 +219,15 @@ fn finite(group: &'static str, what: impl Fn() -> String, values: &[f64], per_po
 fn inward_points(schema: &schema::Scene, system: &UnitSystem, binding: &Binding) -> Vec<f64> {
     let factors: Vec<f64> = schema.coordinates.iter().map(|c| system.inward(&c.unit)).collect();
     binding.points.coordinates.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect()
+}
+
+fn inward_clouds(group: &schema::Group, system: &UnitSystem, binding: &Binding) -> Vec<Vec<f64>> {
+    let cloud = |term: &schema::Term| match term.kind {
+        schema::TermKind::Chamfer { .. } => binding.cloud(term.name).unwrap_or_default(),
+        _ => &[],
+    };
+    let inward = |term| cloud(term).iter().map(|x| x * system.inward(&term.unit)).collect();
+    group.terms.iter().map(inward).collect()
 }
 
 fn inward_columns(group: &schema::Group, system: &UnitSystem, binding: &Binding) -> Vec<Vec<f64>> {
@@ -249,12 +277,14 @@ impl Bound {
         for (at, kernel) in E::kernels(&scene).into_iter().enumerate().take(scene.schema.groups.len()) {
             let schema = &scene.schema.groups[at];
             let mut group = BoundGroup::new(kernel, schema, &self.scaling, &self.coordinates[at], &self.columns[at]);
-            for (term, size) in group.terms.iter_mut().zip(&self.sizes[at]) {
+            let bound = self.sizes[at].iter().zip(&self.clouds[at]);
+            for (term, (size, cloud)) in group.terms.iter_mut().zip(bound) {
                 term.size = *size;
                 let weights = self.problem.groups[at].as_ref().map_or(&[][..], |b| &b.points.weights);
                 if term.schema.kind == schema::TermKind::Integral && !weights.is_empty() {
                     term.point_weights = Some(weights.iter().map(|&w| E::from_f64(w)).collect());
                 }
+                term.chamfer = Chamfer::new(cloud, term.schema, group.points);
             }
             groups.push(group);
         }

@@ -53,6 +53,13 @@ struct Binding {
     clouds: Vec<(String, Vec<f64>)>,
 }
 
+impl Binding {
+    /// The cloud of a term, as bound last.
+    fn cloud(&self, term: &str) -> Option<&[f64]> {
+        self.clouds.iter().rev().find(|(name, _)| name == term).map(|(_, cloud)| &cloud[..])
+    }
+}
+
 impl Problem {
     /// A scene with nothing bound but its declared defaults.
     pub fn new(scene: SceneRef) -> Self {

@@ -28,6 +28,7 @@ pub(super) fn scales(
     scalars: &mut [f64],
     coordinates: &[Vec<f64>],
     columns: &[Vec<Vec<f64>>],
+    clouds: &[Vec<Vec<f64>>],
 ) -> Scales {
     let schema = scene.schema;
     let (centre, half) = extents(schema, coordinates);
@@ -38,8 +39,8 @@ pub(super) fn scales(
         .map(|((kernel, group), (coordinates, columns))| Probe::new(kernel, group, coordinates, columns, half.len()))
         .collect();
     let mut heads: Vec<Option<(f64, f64)>> = vec![None; schema.heads.len()];
-    for probe in &probes {
-        probe.observe(schema, scalars, &mut heads);
+    for (probe, clouds) in probes.iter().zip(clouds) {
+        probe.observe(schema, scalars, clouds, &mut heads);
     }
     // Every pass settles at least one head or is the last.
     for _ in 0..schema.heads.len() {
@@ -51,6 +52,11 @@ pub(super) fn scales(
     for (scalar, value) in schema.scalars.iter().zip(scalars.iter_mut()) {
         if let Origin::HeadScale(head) = scalar.origin {
             *value = found[head].1;
+        }
+    }
+    for (slot, scalar) in schema.scalars.iter().enumerate() {
+        if let Origin::SideScale { group, term, .. } = scalar.origin {
+            scalars[slot] = probes[group].side(schema, scalars, slot, (group, term), &half, &found);
         }
     }
     let sizes = probes.iter().map(|probe| probe.sizes(schema, scalars, &half, &found)).collect();
@@ -160,11 +166,20 @@ impl Probe {
     }
 
     /// Offset and scale of heads that a row observes directly: it depends on the head's value and nothing else.
-    fn observe(&self, scene: &schema::Scene, scalars: &[f64], heads: &mut [Option<(f64, f64)>]) {
+    fn observe(&self, scene: &schema::Scene, scalars: &[f64], clouds: &[Vec<f64>], heads: &mut [Option<(f64, f64)>]) {
         let zero = self.jets(|_| 0.0);
         let rows = self.rows(&zero, scalars, false);
-        for term in self.schema.terms.iter().filter(|t| t.kind == TermKind::Observation) {
-            for row in term.first..term.first + term.rows {
+        for (term, cloud) in self.schema.terms.iter().zip(clouds) {
+            for (i, row) in (term.first..term.first + term.rows).enumerate() {
+                let without = &rows[row * self.stride..][..self.count];
+                let measured = match term.kind {
+                    TermKind::Observation => without.iter().map(|x| -x).collect(),
+                    // A coordinate of the surface that is the same everywhere but for the head.
+                    TermKind::Chamfer { .. } if without.iter().all(|x| *x == without[0]) => {
+                        cloud.iter().skip(i).step_by(term.rows).map(|x| x - without[0]).collect()
+                    }
+                    _ => Vec::new(),
+                };
                 let slopes = self.sensitivities(row, &zero, scalars);
                 let read: Vec<usize> =
                     (0..self.schema.jets.len()).filter(|&j| self.rms(&slopes[j * self.stride..]) > 0.0).collect();
@@ -174,8 +189,9 @@ impl Probe {
                 if !is_value || heads[head].is_some() || scene.heads[head].transformed {
                     continue;
                 }
-                let values = (0..self.count).map(|p| -rows[row * self.stride + p] / slopes[jet * self.stride + p]);
-                heads[head] = spread(values.filter(|x| x.is_finite()));
+                let slope = |at: usize| slopes[jet * self.stride + at % self.count];
+                let values = measured.iter().enumerate().map(|(at, x)| x / slope(at)).filter(|x| x.is_finite());
+                heads[head] = spread(values);
             }
         }
     }
@@ -205,19 +221,44 @@ impl Probe {
         }
     }
 
+    /// Natural size of one side of a complementarity: with the other side out of the way, the magnitude of
+    /// `a + b - sqrt(a^2 + b^2)` is twice the side over its scale.
+    fn side(
+        &self,
+        scene: &schema::Scene,
+        scalars: &[f64],
+        slot: usize,
+        place: (usize, usize),
+        half: &[f64],
+        heads: &[(f64, f64)],
+    ) -> f64 {
+        const AWAY: f64 = 1e30;
+        let mut scalars = scalars.to_vec();
+        for (at, scalar) in scene.scalars.iter().enumerate() {
+            match scalar.origin {
+                Origin::SideScale { group, term, .. } if (group, term) == place => scalars[at] = AWAY,
+                _ => {}
+            }
+        }
+        scalars[slot] = 1.0;
+        let jets = self.jets(|jet| typical(jet, half, network(scene, heads, jet.head)));
+        let row = self.schema.terms[place.1].first;
+        let size = self.rms(&self.rows(&jets, &scalars, true)[row * self.stride..]) / 2.0;
+        if size > 0.0 && size.is_finite() { size } else { 1.0 }
+    }
+
     /// Natural sizes of the group's terms.
     fn sizes(&self, scene: &schema::Scene, scalars: &[f64], half: &[f64], heads: &[(f64, f64)]) -> Vec<f64> {
-        let network = |head: usize| if scene.heads[head].transformed { (0.0, 1.0) } else { heads[head] };
-        let jets = self.jets(|jet| typical(jet, half, network(jet.head)));
+        let jets = self.jets(|jet| typical(jet, half, network(scene, heads, jet.head)));
         let rows = self.rows(&jets, scalars, true);
         let size = |term: &schema::Term| -> f64 {
             let square: f64 = (term.first..term.first + term.rows)
                 .map(|row| match term.kind {
                     // Data may sit far from zero; what counts is how far they spread.
-                    TermKind::Observation => {
+                    TermKind::Observation | TermKind::Chamfer { .. } => {
                         let slopes = self.sensitivities(row, &jets, scalars);
                         let parts = self.schema.jets.iter().enumerate().map(|(j, jet)| {
-                            let scale = network(jet.head).1;
+                            let scale = network(scene, heads, jet.head).1;
                             self.rms(&slopes[j * self.stride..]) * typical(jet, half, (0.0, scale))
                         });
                         parts.sum::<f64>()
@@ -231,6 +272,11 @@ impl Probe {
         };
         self.schema.terms.iter().map(size).collect()
     }
+}
+
+/// What a head's own output looks like: transformed heads are of the order of one.
+fn network(scene: &schema::Scene, heads: &[(f64, f64)], head: usize) -> (f64, f64) {
+    if scene.heads[head].transformed { (0.0, 1.0) } else { heads[head] }
 }
 
 /// Typical magnitude of a jet of a head with this offset and scale.

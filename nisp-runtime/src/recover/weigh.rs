@@ -19,7 +19,11 @@ const LEAST_NOISE: f64 = 1e-6;
 pub(crate) fn by_size<E: Real>(engine: &mut Engine<E>) {
     for group in &mut engine.groups {
         for term in &mut group.terms {
-            let count = if term.schema.kind == TermKind::Integral { 1 } else { group.points };
+            let count = match (&term.chamfer, term.schema.kind) {
+                (Some(chamfer), _) => chamfer.cloud_points(),
+                (None, TermKind::Integral) => 1,
+                (None, _) => group.points,
+            };
             term.factor = (term.schema.weight / count as f64).sqrt();
         }
     }

@@ -6,7 +6,7 @@ use quote::quote;
 use super::lower::{Dialect, Frame, lower};
 use super::residuals_type;
 use crate::model::{Model, Scene};
-use crate::plan::{GroupPlan, RowKind};
+use crate::plan::{GroupPlan, RowKind, TermPlan};
 use crate::program::{Program, Slot};
 
 /// The type that holds the programs, and its implementation of `Residuals`.
@@ -22,7 +22,11 @@ pub(super) fn emit(model: &Model, scene: &Scene, group: &GroupPlan) -> TokenStre
     let residual = points(&group.residual);
     let adjoint = points(&group.adjoint);
     let magnitude = points(&group.magnitude);
-    let target = target(group);
+    let target = scalars(group, |term| match &term.kind {
+        RowKind::Integral(program) => Some(program),
+        _ => None,
+    });
+    let target_slopes = scalars(group, |term| Some(&term.target_slopes));
     quote! {
         #[doc = #title]
         #(#equations)*
@@ -35,6 +39,7 @@ pub(super) fn emit(model: &Model, scene: &Scene, group: &GroupPlan) -> TokenStre
             #[inline(always)]
             fn magnitude<V: Simd>(at: &Lane<'_, V>, out: &mut Sink<'_, V::Elem>) { #magnitude }
             fn target(scalars: &[f64], rows: &mut [f64]) { #target }
+            fn target_slopes(scalars: &[f64], rows: &mut [f64]) { #target_slopes }
         }
     }
 }
@@ -55,17 +60,15 @@ fn points(program: &Program) -> TokenStream {
     quote!(#statements #(out.put::<V>(#indices, #outputs);)*)
 }
 
-/// Targets of integral terms: written at the rows that they belong to.
-fn target(group: &GroupPlan) -> TokenStream {
+/// Programs over scalars alone, one per term; as many outputs for each row of the term are written where its rows are.
+fn scalars(group: &GroupPlan, program: impl Fn(&TermPlan) -> Option<&Program>) -> TokenStream {
     let read = |_: Slot, index: usize| quote!(scalars[#index]);
-    let terms = group.terms.iter().filter_map(|term| match &term.kind {
-        RowKind::Integral(program) => Some((term, program)),
-        _ => None,
-    });
-    let blocks = terms.map(|(term, program)| {
+    let programs = group.terms.iter().filter_map(|term| Some((term, program(term).filter(|p| !p.outputs.is_empty())?)));
+    let blocks = programs.map(|(term, program)| {
         let frame = Frame { read: &read, parameters: quote!(), arguments: quote!(), dialect: Dialect::Scalar };
         let (statements, outputs) = lower(program, &frame);
-        let indices = term.first..term.first + outputs.len();
+        let first = term.first * outputs.len() / term.rows;
+        let indices = first..first + outputs.len();
         quote!({ #statements #(rows[#indices] = #outputs;)* })
     });
     quote!(#(#blocks)*)

@@ -172,7 +172,9 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
         RowKind::Residual => quote!(schema::TermKind::Residual),
         RowKind::Observation => quote!(schema::TermKind::Observation),
         RowKind::Integral(_) => quote!(schema::TermKind::Integral),
-        RowKind::Chamfer(symmetric) => quote!(schema::TermKind::Chamfer { symmetric: #symmetric }),
+        RowKind::Chamfer { symmetric, plane } => {
+            quote!(schema::TermKind::Chamfer { symmetric: #symmetric, plane: #plane })
+        }
     };
     let loss = match plan.loss {
         model::Loss::Square => quote!(schema::Loss::Square),

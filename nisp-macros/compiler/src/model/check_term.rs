@@ -30,7 +30,7 @@ impl TermInput<'_, '_> {
             TermBody::Observe { value, column, unit } => {
                 self.observation(value, column.as_ref(), unit.as_deref(), term)?
             }
-            TermBody::Chamfer { point, symmetric } => self.chamfer(point, *symmetric)?,
+            TermBody::Chamfer { point, symmetric, plane } => self.chamfer(point, *symmetric, *plane)?,
         };
         let loss = match &term.loss {
             None => Loss::Square,
@@ -169,16 +169,18 @@ impl TermInput<'_, '_> {
         }
     }
 
-    fn chamfer(&mut self, point: &syntax::Expr, symmetric: bool) -> Checked<Body> {
+    fn chamfer(&mut self, point: &syntax::Expr, symmetric: bool, plane: bool) -> Checked<Body> {
         let value = self.elaborator.value(point)?;
-        if !matches!(value.extent, Extent::Vector(2..=9)) {
+        if !matches!(value.extent, Extent::Vector(2..=4)) {
             let message = catalogue::chamfer_of(&value.extent.to_string());
             return Err(self.elaborator.errors.report(point.place, message));
         }
-        let prefix = if symmetric { "symmetric chamfer" } else { "chamfer" };
+        let prefix =
+            format!("{}{}chamfer", if symmetric { "symmetric " } else { "" }, if plane { "plane " } else { "" },);
         let arrow = if symmetric { r"\leftrightarrow" } else { r"\leftarrow" };
+        let entries = value.entries.into_iter().map(|entry| entry.expr).collect();
         Ok(Body {
-            kind: TermKind::Chamfer { point: value.entries.into_iter().map(|entry| entry.expr).collect(), symmetric },
+            kind: TermKind::Chamfer { point: entries, symmetric, plane },
             unit: Unit::si(value.dim.known().cloned().unwrap_or_default()),
             equation: format!("{prefix} {}", print_text(point)),
             latex: format!(r"{} {arrow} \mathrm{{cloud}}", self.latex(point)),

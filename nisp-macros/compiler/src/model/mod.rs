@@ -206,6 +206,8 @@ pub enum TermKind {
         point: Vec<Expr>,
         /// Both directions, not only cloud to surface.
         symmetric: bool,
+        /// Only the distance across the surface, not that along it.
+        plane: bool,
     },
 }
 

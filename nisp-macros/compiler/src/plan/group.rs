@@ -96,7 +96,7 @@ fn kind(kind: &TermKind) -> RowKind {
         TermKind::Residual(_) | TermKind::Inequality(_) | TermKind::Complementarity { .. } => RowKind::Residual,
         TermKind::Observation(_) => RowKind::Observation,
         TermKind::Integral { .. } => RowKind::Integral(Program::default()),
-        TermKind::Chamfer { symmetric, .. } => RowKind::Chamfer(*symmetric),
+        TermKind::Chamfer { symmetric, plane, .. } => RowKind::Chamfer { symmetric: *symmetric, plane: *plane },
     }
 }
 

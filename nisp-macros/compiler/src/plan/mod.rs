@@ -183,8 +183,13 @@ pub enum RowKind {
     /// Rows are integrands; their weighted sum over the group is compared with a target: a program over slot Parameter
     /// only, with one output per row.
     Integral(Program),
-    /// Rows are coordinates of a surface point, compared with a cloud; true for both directions.
-    Chamfer(bool),
+    /// Rows are coordinates of a surface point, compared with a cloud.
+    Chamfer {
+        /// Both directions.
+        symmetric: bool,
+        /// Only across the surface.
+        plane: bool,
+    },
 }
 
 impl ScenePlan {

@@ -19,7 +19,7 @@
 //! item        columns: (NAME (: vector)? UNIT?), ... ;
 //!           | let NAME = EXPR;
 //!           | NAME: condition, ... suffix? ;
-//!           | NAME: symmetric? chamfer EXPR suffix? ;
+//!           | NAME: symmetric? plane? chamfer EXPR suffix? ;
 //!           | observe NAME, ... suffix? ;                       columns named like the fields, in their units
 //!           | observe NAME: EXPR ~ COLUMN UNIT? suffix? ;       a column declared above, or declared here
 //! condition   EXPR (== | >= | <=) EXPR

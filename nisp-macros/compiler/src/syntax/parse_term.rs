@@ -118,12 +118,12 @@ pub(super) fn positive(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Ch
 }
 
 fn body(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<TermBody> {
-    let symmetric = stream.at_word("symmetric") && stream.after_next().at_word("chamfer");
-    let chamfer = if symmetric { stream.after_next() } else { *stream };
+    let mut chamfer = *stream;
+    let (symmetric, plane) = (chamfer.take_word("symmetric"), chamfer.take_word("plane"));
     if chamfer.at_word("chamfer") && starts_expression(&chamfer.after_next()) {
         *stream = chamfer.after_next();
         let point = parse_expression::parse(stream, context)?;
-        return Ok(TermBody::Chamfer { point, symmetric });
+        return Ok(TermBody::Chamfer { point, symmetric, plane });
     }
     let mut conditions = vec![condition(stream, context)?];
     while stream.take(",").is_some() {

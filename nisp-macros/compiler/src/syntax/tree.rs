@@ -167,12 +167,14 @@ pub enum TermBody {
         /// The unit written after the column.
         unit: Option<Box<Unit>>,
     },
-    /// `chamfer EXPR` or `symmetric chamfer EXPR`
+    /// `chamfer EXPR`, with `symmetric` or `plane` before it
     Chamfer {
         /// The surface point.
         point: Expr,
         /// Both directions.
         symmetric: bool,
+        /// Only across the surface.
+        plane: bool,
     },
 }
 

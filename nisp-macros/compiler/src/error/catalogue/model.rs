@@ -208,7 +208,10 @@ pub(crate) fn complementarity_of_vectors() -> String {
 }
 
 pub(crate) fn chamfer_of(found: &str) -> String {
-    help(format!("`chamfer` takes the position of a surface point, found {found}"), "write `chamfer [x + u, y + v, w]`")
+    help(
+        format!("`chamfer` takes the position of a surface point (2 to 4 coordinates), found {found}"),
+        "write `chamfer [x + u, y + v, w]`",
+    )
 }
 
 pub(crate) fn empty_group(name: &str) -> String {
