@@ -1,6 +1,7 @@
 //! The adjoint is the transpose of the derivative: `u . (J v) = (J^T u) . v`.
 
 use nisp::network::Architecture;
+use nisp::schema::TermKind;
 use nisp::solve::objective::LeastSquares;
 
 use crate::models::each_model;
@@ -23,9 +24,17 @@ fn dot_products_agree<M: Model>(model: &M) {
             for term in group.terms {
                 let (size, points) = (reference.sizes[block], tangents.len());
                 block += 1;
-                if term.kind == nisp::schema::TermKind::Integral {
-                    first += term.rows;
-                    continue;
+                match term.kind {
+                    TermKind::Integral => {
+                        first += term.rows;
+                        continue;
+                    }
+                    // Its rows mix coordinates; `rows` checks them.
+                    TermKind::Chamfer { .. } => {
+                        first += term.rows * points + 1;
+                        continue;
+                    }
+                    TermKind::Residual | TermKind::Observation => {}
                 }
                 let count = term.rows * points;
                 if term.loss == nisp::schema::Loss::Square {

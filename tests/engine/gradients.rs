@@ -29,9 +29,7 @@ fn gradient_agrees<M: Model>(model: &M) {
             let expected = reference.loss(&moving).slope;
             let (found, size) = along(&gradient, &direction);
             let error = (found - expected).abs() / size;
-            // The slope of an integral's target by learned scalars is a central difference.
-            let tolerance = if reference.layout.learned.is_empty() { 1e-12 } else { 1e-9 };
-            assert!(error <= tolerance, "{} {architecture:?}: {error:e}", model.scene().schema.module);
+            assert!(error <= 1e-12, "{} {architecture:?}: {error:e}", model.scene().schema.module);
         }
     }
 }

@@ -103,6 +103,36 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    mod shape {
+        units: off;
+        coordinates: a, b;
+        fields: u, w;
+        on patch {
+            cloud: symmetric chamfer [a + u, b + u * w, w] with huber(0.3) weight 2;
+            flat: laplacian(w) == 0;
+        }
+        on line { cloud: chamfer [a + w, u]; }
+        scene fit { }
+    }
+}
+
+nisp::pde! {
+    mod ring {
+        units: off;
+        coordinates: x, y;
+        fields: u, v;
+        parameters: k = 0.8;
+        on inside { balance: laplacian(u) + k * v == sin(x); }
+        on seam pairs {
+            columns: jump;
+            value: u == partner(u) + jump * v, v == k * partner(v);
+            slope: d(u, x) == partner(d(u, x)) * partner(x);
+        }
+        scene wrap { learn k; }
+    }
+}
+
 /// Points that fill a box evenly: multiples of the golden ratio's generalisation (Roberts).
 fn scatter(count: usize, dimension: usize, low: f64, high: f64) -> Vec<f64> {
     let ratio = (0..60).fold(2.0_f64, |g, _| (1.0 + g).powf(1.0 / (dimension as f64 + 1.0)));
@@ -299,6 +329,61 @@ impl Model for Heat {
     }
 }
 
+pub(crate) struct Shape;
+
+impl Model for Shape {
+    const ORDER: usize = 2;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<shape::fit::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        // More and fewer points than the surfaces have, some far away.
+        vec![
+            Data { cloud: scatter(130, 3, -0.6, 1.7), ..group("patch", scatter(48, 2, 0.0, 1.0)) },
+            Data { cloud: scatter(9, 2, 0.0, 1.2), ..group("line", scatter(21, 2, 0.0, 1.0)) },
+        ]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        let [a, b] = [0, 1].map(|i| T::of(at.x[i]));
+        let [u, w] = [0, 1].map(|head| at.heads[head].value());
+        match group {
+            "line" => vec![a + w, u],
+            _ => vec![a + u, b + u * w, w, at.heads[1].laplacian(2).value()],
+        }
+    }
+}
+
+pub(crate) struct Ring;
+
+impl Model for Ring {
+    const ORDER: usize = 2;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<ring::wrap::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        let left: Vec<f64> = (0..23).flat_map(|i| [-1.0, i as f64 * 0.1]).collect();
+        let right = left.chunks_exact(2).flat_map(|p| [1.0, p[1] + 0.05]).collect();
+        let seam = Data { partners: right, columns: vec![wave(23, 0.4)], ..group("seam", left) };
+        vec![group("inside", scatter(60, 2, -1.0, 1.0)), seam]
+    }
+    fn learned<T: Number>(&self, theta: &[T]) -> Vec<T> {
+        vec![T::of(0.8) * theta[0].exp()]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        let [u, v] = [0, 1].map(|head| at.heads[head].clone());
+        if group == "inside" {
+            return vec![u.laplacian(2).value() + at.learned[0] * v.value() - T::of(at.x[0].sin())];
+        }
+        let [u_far, v_far] = [0, 1].map(|head| at.partner[head].clone());
+        vec![
+            u.value() - u_far.value() - T::of(at.columns[0]) * v.value(),
+            v.value() - at.learned[0] * v_far.value(),
+            // Partners lie on the line x = 1.
+            u.by(0).value() - u_far.by(0).value(),
+        ]
+    }
+}
+
 /// Runs a generic check on every model.
 macro_rules! each_model {
     ($check:ident) => {
@@ -308,6 +393,8 @@ macro_rules! each_model {
         $check(&crate::models::Sponge);
         $check(&crate::models::Triharmonic);
         $check(&crate::models::Heat);
+        $check(&crate::models::Shape);
+        $check(&crate::models::Ring);
     };
 }
 

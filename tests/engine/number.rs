@@ -22,6 +22,9 @@ pub(crate) trait Number:
     fn cos(self) -> Self {
         self.chain(self.value().cos(), -self.value().sin())
     }
+    fn sqrt(self) -> Self {
+        self.chain(self.value().sqrt(), 0.5 / self.value().sqrt())
+    }
     fn tanh(self) -> Self {
         self.chain(self.value().tanh(), 1.0 / self.value().cosh().powi(2))
     }

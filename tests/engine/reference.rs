@@ -17,8 +17,11 @@ pub(crate) trait Model {
     /// The scene, bound.
     fn problem(&self) -> Problem {
         self.groups().into_iter().fold(Problem::new(self.scene()), |mut problem, data| {
-            let points = Points { coordinates: data.points, weights: data.weights, ..Points::default() };
+            let points = Points { coordinates: data.points, weights: data.weights, partners: data.partners };
             problem.set_group(data.name, points, data.columns).expect("a group of the scene");
+            if !data.cloud.is_empty() {
+                problem.set_cloud(data.name, "cloud", data.cloud).expect("a group of the scene");
+            }
             problem
         })
     }
@@ -45,12 +48,17 @@ pub(crate) struct Data {
     pub(crate) points: Vec<f64>,
     pub(crate) columns: Vec<Vec<f64>>,
     pub(crate) weights: Vec<f64>,
+    pub(crate) partners: Vec<f64>,
+    /// Of the group's term `cloud`.
+    pub(crate) cloud: Vec<f64>,
 }
 
 /// What equations read at a point.
 pub(crate) struct Point<'a, 's, T> {
     pub(crate) x: &'a [f64],
     pub(crate) heads: &'a [Jet<'s, T>],
+    /// At the point's partner; empty if it has none.
+    pub(crate) partner: &'a [Jet<'s, T>],
     pub(crate) columns: &'a [f64],
     pub(crate) learned: &'a [T],
 }
@@ -137,7 +145,9 @@ impl<'m, M: Model> Reference<'m, M> {
         let at = |(p, x): (usize, &[f64])| {
             let columns: Vec<f64> = data.columns.iter().map(|column| column[p]).collect();
             let heads = self.heads(theta, x);
-            self.model.rows(data.name, &Point { x, heads: &heads, columns: &columns, learned: &learned })
+            let partner = data.partners.chunks_exact(x.len()).nth(p).map_or_else(Vec::new, |x| self.heads(theta, x));
+            let at = Point { x, heads: &heads, partner: &partner, columns: &columns, learned: &learned };
+            self.model.rows(data.name, &at)
         };
         data.points.chunks_exact(self.scaling.half.len()).enumerate().map(at).collect()
     }
@@ -152,6 +162,11 @@ impl<'m, M: Model> Reference<'m, M> {
             for (term, &size) in group.terms.iter().zip(&mut sizes) {
                 let each = term.first..term.first + term.rows;
                 let mut misfits: Vec<T> = Vec::new();
+                if let TermKind::Chamfer { symmetric, .. } = term.kind {
+                    let surface: Vec<&[T]> = rows.iter().map(|r| &r[each.clone()]).collect();
+                    loss = loss + T::of(term.weight) * chamfer(&surface, &data.cloud, symmetric, term, size);
+                    continue;
+                }
                 if term.kind == TermKind::Integral {
                     misfits.extend(each.map(|row| {
                         let weight = |p: usize| T::of(data.weights.get(p).copied().unwrap_or(1.0));
@@ -168,6 +183,25 @@ impl<'m, M: Model> Reference<'m, M> {
         }
         loss
     }
+}
+
+/// Mean cost of the distances from a cloud to a surface, and from the surface to the cloud.
+fn chamfer<T: Number>(surface: &[&[T]], cloud: &[f64], symmetric: bool, term: &schema::Term, size: f64) -> T {
+    let cloud: Vec<&[f64]> = cloud.chunks_exact(term.rows).collect();
+    let square = |x: &[T], y: &[f64]| {
+        x.iter().zip(y).map(|(&x, &y)| (x - T::of(y)) * (x - T::of(y))).reduce(|a, b| a + b).expect("dimensions")
+    };
+    let nearest = |squares: &mut dyn Iterator<Item = T>| -> T {
+        squares.min_by(|a, b| a.value().total_cmp(&b.value())).expect("points")
+    };
+    let mean = |squares: Vec<T>| -> T {
+        let share = T::of(1.0 / squares.len() as f64);
+        let cost = |square: T| cost(term, square.sqrt() * T::of(1.0 / size));
+        squares.into_iter().fold(T::of(0.0), |sum, square| sum + share * cost(square))
+    };
+    let there = mean(cloud.iter().map(|y| nearest(&mut surface.iter().map(|x| square(x, y)))).collect());
+    let back = |x: &[T]| nearest(&mut cloud.iter().map(|y| square(x, y)));
+    if symmetric { there + mean(surface.iter().map(|x| back(x)).collect()) } else { there }
 }
 
 /// What a misfit costs.

@@ -11,9 +11,9 @@ pub struct BoundGroup<E: Real> {
     pub(crate) schema: &'static schema::Group,
     /// Number of points.
     pub(crate) points: usize,
-    /// Network coordinates, `[point][coordinate]`.
+    /// Network coordinates, `[site][point][coordinate]`: of the points, then of their partners if they have any.
     pub(crate) network: Vec<E>,
-    /// Coordinates in the engine's units, `[coordinate][point]`.
+    /// Coordinates in the engine's units, `[site][coordinate][point]`.
     pub(crate) coordinates: Vec<E>,
     /// Data, `[column][point]`.
     pub(crate) columns: Vec<E>,
@@ -38,6 +38,8 @@ pub(crate) struct Output {
 #[derive(Clone, Debug)]
 pub(crate) struct JetMap<E> {
     pub(crate) offset: E,
+    /// 0 for the point itself, 1 for its partner.
+    pub(crate) site: usize,
     pub(crate) parts: Vec<(usize, E)>,
 }
 
@@ -68,23 +70,25 @@ pub struct Scaling {
 }
 
 impl<E: Real> BoundGroup<E> {
-    /// Binds a group to its points (engine units, `[point][coordinate]`) and columns (`[column][point]`).
+    /// Binds a group to its points (engine units, `[point][coordinate]`), their partners (likewise; none unless the
+    /// group is paired) and columns (`[column][point]`).
     pub(crate) fn new(
         kernel: Box<dyn GroupKernel<E>>,
         schema: &'static schema::Group,
         scaling: &Scaling,
         coordinates: &[f64],
+        partners: &[f64],
         columns: &[Vec<f64>],
     ) -> Self {
         let inputs = scaling.half.len();
         let points = coordinates.len() / inputs;
-        let network = coordinates
-            .iter()
-            .enumerate()
-            .map(|(at, x)| E::from_f64((x - scaling.centre[at % inputs]) / scaling.half[at % inputs]))
-            .collect();
-        let transposed =
-            (0..inputs).flat_map(|i| (0..points).map(move |p| E::from_f64(coordinates[p * inputs + i]))).collect();
+        let sites = [coordinates, partners];
+        let scaled = |(at, x): (usize, &f64)| (x - scaling.centre[at % inputs]) / scaling.half[at % inputs];
+        let network = sites.iter().flat_map(|site| site.iter().enumerate().map(scaled)).map(E::from_f64).collect();
+        let transposed = |site: &[f64], i: usize| -> Vec<E> {
+            site.iter().skip(i).step_by(inputs).map(|&x| E::from_f64(x)).collect()
+        };
+        let transposed = sites.iter().flat_map(|site| (0..inputs).flat_map(|i| transposed(site, i))).collect();
         let outputs = outputs_read(schema);
         let jets = schema.jets.iter().map(|jet| JetMap::new(jet, &outputs, scaling)).collect();
         let terms = schema
@@ -110,6 +114,11 @@ impl<E: Real> BoundGroup<E> {
     pub(super) fn tiles(&self) -> impl Iterator<Item = (usize, usize)> + use<E> {
         let (points, tile) = (self.points, self.tile);
         (0..points).step_by(tile).map(move |first| (first, tile.min(points - first)))
+    }
+
+    /// Points of the network for each point: two if points have partners.
+    pub(crate) fn sites(&self) -> usize {
+        1 + usize::from(self.schema.paired)
     }
 }
 
@@ -138,7 +147,7 @@ impl<E: Real> JetMap<E> {
                 Some((at, E::from_f64(coefficient * scale)))
             })
             .collect();
-        Self { offset: E::from_f64(if is_value { scaling.offset[jet.head] } else { 0.0 }), parts }
+        Self { site: jet.site, offset: E::from_f64(if is_value { scaling.offset[jet.head] } else { 0.0 }), parts }
     }
 }
 

@@ -117,7 +117,7 @@ impl<E: Real> Engine<E> {
         learned: Vec<Learned>,
     ) -> Self {
         for group in &mut groups {
-            group.tile = tile_points::<E>(&layout, group.kernel.channels(), group.points);
+            group.tile = tile_points::<E>(&layout, group.kernel.channels() * group.sites(), group.points);
         }
         let terms = groups.iter().map(|g| g.terms.len()).sum();
         let chunks = cut(&groups)
@@ -398,9 +398,8 @@ fn cut<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
         .iter()
         .enumerate()
         .flat_map(|(at, group)| {
-            group
-                .tiles()
-                .map(move |(first, count)| (TileRange { group: at, first, count }, count * group.kernel.channels()))
+            let cost = group.sites() * group.kernel.channels();
+            group.tiles().map(move |(first, count)| (TileRange { group: at, first, count }, count * cost))
         })
         .collect();
     let total: usize = tiles.iter().map(|(_, cost)| cost).sum();

@@ -46,8 +46,10 @@ pub(crate) struct Buffers<E: Real> {
 /// Largest sizes that a set of groups asks of [`Buffers`].
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Extent {
+    /// Points of the network in a tile.
     points: usize,
     rows: usize,
+    sites: usize,
     outputs: usize,
     jets: usize,
     columns: usize,
@@ -57,8 +59,9 @@ pub(crate) struct Extent {
 impl Extent {
     pub(crate) fn of<'a, E: Real>(groups: impl Iterator<Item = &'a BoundGroup<E>>) -> Self {
         groups.fold(Self::default(), |extent, group| Self {
-            points: extent.points.max(group.tile),
-            rows: extent.rows.max(group.tile * group.kernel.channels()),
+            points: extent.points.max(group.tile * group.sites()),
+            rows: extent.rows.max(group.tile * group.sites() * group.kernel.channels()),
+            sites: extent.sites.max(group.sites()),
             outputs: extent.outputs.max(group.outputs.len()),
             jets: extent.jets.max(group.jets.len()),
             columns: extent.columns.max(group.schema.columns.len()),
@@ -94,7 +97,7 @@ impl<E: Real> Buffers<E> {
             floor_bar: rows(),
             outputs: quantities(extent.outputs),
             jets: quantities(extent.jets),
-            points: quantities(layout.inputs),
+            points: quantities(layout.inputs * extent.sites),
             columns: quantities(extent.columns),
             rows: quantities(extent.residuals),
             seeds: quantities(extent.residuals),
@@ -124,7 +127,12 @@ pub(crate) struct Tile<'a, E: Real> {
 
 impl<E: Real> Tile<'_, E> {
     fn shape(&self, layout: &Layout) -> Shape {
-        Shape { points: self.count, width: layout.width, ld: row_distance(layout.width) }
+        Shape { points: self.count * self.group.sites(), width: layout.width, ld: row_distance(layout.width) }
+    }
+
+    /// Distance between quantities of the network's points: the tile's own, then their partners.
+    fn output_stride(&self) -> usize {
+        (self.count * self.group.sites()).next_multiple_of(POINT_LANES)
     }
 
     /// Distance between per-point quantities.
@@ -170,8 +178,10 @@ impl<E: Real> Network<'_, E> {
     fn load(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
         let group = tile.group;
         let inputs = self.layout.inputs;
-        buffers.coordinates[..tile.count * inputs]
-            .copy_from_slice(&group.network[tile.first * inputs..][..tile.count * inputs]);
+        let len = tile.count * inputs;
+        for (site, to) in buffers.coordinates.chunks_exact_mut(len).take(group.sites()).enumerate() {
+            to.copy_from_slice(&group.network[(site * group.points + tile.first) * inputs..][..len]);
+        }
         for (from, to) in [(&group.coordinates, &mut buffers.points), (&group.columns, &mut buffers.columns)] {
             for (from, to) in from.chunks_exact(group.points).zip(to.chunks_exact_mut(tile.stride())) {
                 let values = &from[tile.first..][..tile.count];
@@ -184,7 +194,7 @@ impl<E: Real> Network<'_, E> {
     /// From the last layer's channels to jets.
     fn heads(&self, tile: &Tile<'_, E>, shape: Shape, buffers: &mut Buffers<E>) {
         let group = tile.group;
-        let stride = tile.stride();
+        let (stride, output_stride) = (tile.stride(), tile.output_stride());
         let heads = Heads {
             shape,
             channels: group.kernel.channels(),
@@ -192,24 +202,25 @@ impl<E: Real> Network<'_, E> {
             weights: self.weights.matrix(&self.layout.head),
             rows: &buffers.output,
             out: &mut buffers.outputs,
-            stride,
+            stride: output_stride,
         };
         dispatch(self.isa, heads);
-        for (output, out) in group.outputs.iter().zip(buffers.outputs.chunks_exact_mut(stride)) {
+        for (output, out) in group.outputs.iter().zip(buffers.outputs.chunks_exact_mut(output_stride)) {
             if output.channel == 0 {
                 let bias = self.weights.bias(&self.layout.head)[output.head];
-                out[..tile.count].iter_mut().for_each(|x| *x += bias);
+                out[..shape.points].iter_mut().for_each(|x| *x += bias);
             }
-            let last = out[tile.count - 1];
-            out[tile.count..].fill(last);
         }
         for (map, jet) in group.jets.iter().zip(buffers.jets.chunks_exact_mut(stride)) {
-            jet.fill(map.offset);
+            jet[..tile.count].fill(map.offset);
             for &(output, factor) in &map.parts {
-                for (jet, &out) in jet.iter_mut().zip(&buffers.outputs[output * stride..][..stride]) {
+                let out = &buffers.outputs[output * output_stride + map.site * tile.count..][..tile.count];
+                for (jet, &out) in jet.iter_mut().zip(out) {
                     *jet += factor * out;
                 }
             }
+            let last = jet[tile.count - 1];
+            jet[tile.count..].fill(last);
         }
     }
 
@@ -220,7 +231,7 @@ impl<E: Real> Network<'_, E> {
         let kernel = &*group.kernel;
         let shape = tile.shape(self.layout);
         let channels = kernel.channels();
-        let parts = Parts { count: tile.count, per_point, distance: self.layout.padded_len };
+        let parts = Parts { count: tile.count, points: shape.points, per_point, distance: self.layout.padded_len };
         self.programs_adjoint(tile, buffers, gradient, parts);
         let rows = shape.points * channels;
         let gated = self.layout.affine.len() > 1;
@@ -234,7 +245,7 @@ impl<E: Real> Network<'_, E> {
             outputs: &group.outputs,
             weights: self.weights.matrix(&self.layout.head),
             seeds: &buffers.output_bars,
-            stride: tile.stride(),
+            stride: tile.output_stride(),
             rows_bar: &mut buffers.seed,
         };
         dispatch(self.isa, heads);
@@ -279,21 +290,25 @@ impl<E: Real> Network<'_, E> {
             seeds: &buffers.seeds,
         };
         group.kernel.adjoint(self.isa, points, &mut buffers.bars);
-        buffers.output_bars[..group.outputs.len() * stride].fill(E::ZERO);
+        let output_stride = tile.output_stride();
+        buffers.output_bars[..group.outputs.len() * output_stride].fill(E::ZERO);
         for (map, bar) in group.jets.iter().zip(buffers.bars.chunks_exact(stride)) {
             for &(output, factor) in &map.parts {
-                for (out, &bar) in buffers.output_bars[output * stride..][..stride].iter_mut().zip(bar) {
+                let out = &mut buffers.output_bars[output * output_stride + map.site * tile.count..][..tile.count];
+                for (out, &bar) in out.iter_mut().zip(bar) {
                     *out += factor * bar;
                 }
             }
         }
         let learned = &buffers.bars[group.jets.len() * stride..];
-        for (first, count, at) in parts.ranges() {
+        for (first, count, at) in (Parts { points: tile.count, ..parts }).ranges() {
             for i in 0..self.layout.learned.len() {
                 gradient[at + self.layout.learned_at + i] +=
                     learned[i * stride + first..][..count].iter().copied().sum();
             }
-            for (output, bar) in group.outputs.iter().zip(buffers.output_bars.chunks_exact(stride)) {
+        }
+        for (first, count, at) in parts.ranges() {
+            for (output, bar) in group.outputs.iter().zip(buffers.output_bars.chunks_exact(output_stride)) {
                 if output.channel == 0 {
                     gradient[at + self.layout.head.padded_bias + output.head] +=
                         bar[first..][..count].iter().copied().sum();
@@ -326,7 +341,7 @@ impl<E: Real> Network<'_, E> {
                         first,
                         rows: &buffers.output,
                         seeds: &buffers.output_bars,
-                        stride: tile.stride(),
+                        stride: tile.output_stride(),
                         weights_bar: &mut gradient[at + self.layout.head.padded..],
                     };
                     dispatch(self.isa, heads);
@@ -384,10 +399,13 @@ impl<E: Real> Network<'_, E> {
     }
 }
 
-/// How a tile's gradient is split: as a whole, or point by point.
+/// How a tile's gradient is split: as a whole, or point by point, a partner's with its point's.
 #[derive(Clone, Copy)]
 pub(super) struct Parts {
+    /// Points of the tile.
     count: usize,
+    /// Points of the network, partners after the points.
+    points: usize,
     per_point: bool,
     distance: usize,
 }
@@ -395,10 +413,11 @@ pub(super) struct Parts {
 impl Parts {
     /// First point, number of points, and where their gradient begins.
     pub(super) fn ranges(self) -> impl Iterator<Item = (usize, usize, usize)> {
-        let size = if self.per_point { 1 } else { self.count };
-        (0..self.count)
-            .step_by(size)
-            .map(move |first| (first, size, if self.per_point { first * self.distance } else { 0 }))
+        let size = if self.per_point { 1 } else { self.points };
+        (0..self.points).step_by(size).map(move |first| {
+            let at = if self.per_point { first % self.count * self.distance } else { 0 };
+            (first, size, at)
+        })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use super::scale::{Scales, scales};
+use super::scale::{Data, Scales, scales};
 use super::{Binding, Problem, UnitSystem};
 use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling};
 use crate::kernel::Precision;
@@ -107,6 +107,8 @@ pub(crate) struct Bound {
     pub(crate) sizes: Vec<Vec<f64>>,
     /// Coordinates by group, in the engine's units, point by point.
     pub(crate) coordinates: Vec<Vec<f64>>,
+    /// Coordinates of their partners, in the same way; empty unless the group is paired.
+    pub(crate) partners: Vec<Vec<f64>>,
     /// Columns by group, in the engine's units.
     pub(crate) columns: Vec<Vec<Vec<f64>>>,
     /// Clouds by group and term, in the engine's units, flat and point by point; empty for other terms.
@@ -131,7 +133,10 @@ impl Problem {
             }
         }
         let system = self.system(&bindings);
-        let coordinates: Vec<Vec<f64>> = bindings.iter().map(|b| inward_points(schema, &system, b)).collect();
+        let coordinates: Vec<Vec<f64>> =
+            bindings.iter().map(|b| inward_points(schema, &system, &b.points.coordinates)).collect();
+        let partners: Vec<Vec<f64>> =
+            bindings.iter().map(|b| inward_points(schema, &system, &b.points.partners)).collect();
         let columns: Vec<Vec<Vec<f64>>> =
             bindings.iter().zip(schema.groups).map(|(b, group)| inward_columns(group, &system, b)).collect();
         let clouds: Vec<Vec<Vec<f64>>> =
@@ -142,9 +147,24 @@ impl Problem {
             .zip(&self.scalars)
             .map(|(scalar, value)| value.map_or(1.0, |value| value / system.size(&scalar.unit)))
             .collect();
-        let Scales { scaling, sizes } = scales(&self.scene, &mut scalars, &coordinates, &columns, &clouds);
+        let Scales { scaling, sizes } = scales(
+            &self.scene,
+            &mut scalars,
+            Data { coordinates: &coordinates, partners: &partners, columns: &columns, clouds: &clouds },
+        );
         let learned = learned(schema, &system, &scalars);
-        Ok(Bound { problem: self.clone(), system, scaling, scalars, learned, sizes, coordinates, columns, clouds })
+        Ok(Bound {
+            problem: self.clone(),
+            system,
+            scaling,
+            scalars,
+            learned,
+            sizes,
+            coordinates,
+            partners,
+            columns,
+            clouds,
+        })
     }
 
     /// What is bound to each group, checked for lengths and finite numbers.
@@ -174,6 +194,12 @@ impl Problem {
                 length("the weights".into(), binding.points.weights.len(), points)?;
             }
             finite(group.name, || "a coordinate".into(), &binding.points.coordinates, inputs)?;
+            length(
+                "the list of partners".into(),
+                binding.points.partners.len(),
+                if group.paired { numbers } else { 0 },
+            )?;
+            finite(group.name, || "a partner's coordinate".into(), &binding.points.partners, inputs)?;
             for term in group.terms.iter().filter(|term| matches!(term.kind, schema::TermKind::Chamfer { .. })) {
                 let cloud = binding.cloud(term.name).filter(|cloud| !cloud.is_empty());
                 let cloud = cloud.ok_or(BindError::NoCloud { group: group.name, term: term.name })?;
@@ -216,9 +242,9 @@ fn finite(group: &'static str, what: impl Fn() -> String, values: &[f64], per_po
     }
 }
 
-fn inward_points(schema: &schema::Scene, system: &UnitSystem, binding: &Binding) -> Vec<f64> {
+fn inward_points(schema: &schema::Scene, system: &UnitSystem, points: &[f64]) -> Vec<f64> {
     let factors: Vec<f64> = schema.coordinates.iter().map(|c| system.inward(&c.unit)).collect();
-    binding.points.coordinates.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect()
+    points.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect()
 }
 
 fn inward_clouds(group: &schema::Group, system: &UnitSystem, binding: &Binding) -> Vec<Vec<f64>> {
@@ -276,7 +302,14 @@ impl Bound {
         let mut groups = Vec::new();
         for (at, kernel) in E::kernels(&scene).into_iter().enumerate().take(scene.schema.groups.len()) {
             let schema = &scene.schema.groups[at];
-            let mut group = BoundGroup::new(kernel, schema, &self.scaling, &self.coordinates[at], &self.columns[at]);
+            let mut group = BoundGroup::new(
+                kernel,
+                schema,
+                &self.scaling,
+                &self.coordinates[at],
+                &self.partners[at],
+                &self.columns[at],
+            );
             let bound = self.sizes[at].iter().zip(&self.clouds[at]);
             for (term, (size, cloud)) in group.terms.iter_mut().zip(bound) {
                 term.size = *size;
@@ -302,7 +335,8 @@ impl Bound {
         let lanes = isa.lanes::<E>();
         let layout = Layout::new(architecture, coordinates.len(), scene.schema.heads.len(), self.learned.len(), lanes);
         let kernel = E::kernels(&scene).pop();
-        let groups = kernel.map(|kernel| BoundGroup::new(kernel, &scene.schema.outputs, &self.scaling, &points, &[]));
+        let groups =
+            kernel.map(|kernel| BoundGroup::new(kernel, &scene.schema.outputs, &self.scaling, &points, &[], &[]));
         let scalars = self.scalars.iter().map(|&x| E::from_f64(x)).collect();
         Engine::new(isa, layout, groups.into_iter().collect(), scalars, self.learned.clone())
     }

@@ -9,6 +9,18 @@ use crate::residual::Points;
 use crate::schema::{self, Origin, TermKind};
 use crate::simd::Isa;
 
+/// What is bound, by group, in the engine's units.
+#[derive(Clone, Copy)]
+pub(super) struct Data<'a> {
+    /// Point by point.
+    pub(super) coordinates: &'a [Vec<f64>],
+    /// Of the points' partners; empty unless the group is paired.
+    pub(super) partners: &'a [Vec<f64>],
+    pub(super) columns: &'a [Vec<Vec<f64>>],
+    /// By group and term; empty unless the term is a Chamfer distance.
+    pub(super) clouds: &'a [Vec<Vec<f64>>],
+}
+
 /// What [`scales`] finds.
 pub(super) struct Scales {
     pub(super) scaling: Scaling,
@@ -23,29 +35,25 @@ const SAMPLE: usize = 256;
 const LANES: usize = 16;
 
 /// Finds natural sizes; fills in the scalars that hold them.
-pub(super) fn scales(
-    scene: &SceneRef,
-    scalars: &mut [f64],
-    coordinates: &[Vec<f64>],
-    columns: &[Vec<Vec<f64>>],
-    clouds: &[Vec<Vec<f64>>],
-) -> Scales {
+pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>) -> Scales {
     let schema = scene.schema;
-    let (centre, half) = extents(schema, coordinates);
+    let (centre, half) = extents(schema, data.coordinates);
     let probes: Vec<Probe> = <f64 as Precision>::kernels(scene)
         .into_iter()
         .zip(schema.groups)
-        .zip(coordinates.iter().zip(columns))
-        .map(|((kernel, group), (coordinates, columns))| Probe::new(kernel, group, coordinates, columns, half.len()))
+        .enumerate()
+        .map(|(at, (kernel, group))| Probe::new(kernel, group, data, at, half.len()))
         .collect();
-    let mut heads: Vec<Option<(f64, f64)>> = vec![None; schema.heads.len()];
-    for (probe, clouds) in probes.iter().zip(clouds) {
+    // Between two bounds there is nothing to find.
+    let between = |head: &schema::Head| head.lower.and(head.upper).map(|_| (0.0, 1.0));
+    let mut heads: Vec<Option<(f64, f64)>> = schema.heads.iter().map(between).collect();
+    for (probe, clouds) in probes.iter().zip(data.clouds) {
         probe.observe(schema, scalars, clouds, &mut heads);
     }
     // Every pass settles at least one head or is the last.
     for _ in 0..schema.heads.len() {
         for probe in &probes {
-            probe.balance(scalars, &half, &mut heads);
+            probe.balance(schema, scalars, &half, &mut heads);
         }
     }
     let found: Vec<(f64, f64)> = heads.iter().map(|h| h.unwrap_or((0.0, 1.0))).collect();
@@ -101,10 +109,11 @@ impl Probe {
     fn new(
         kernel: Box<dyn GroupKernel<f64>>,
         schema: &'static schema::Group,
-        coordinates: &[f64],
-        columns: &[Vec<f64>],
+        data: Data<'_>,
+        at: usize,
         inputs: usize,
     ) -> Self {
+        let (coordinates, partners) = (&data.coordinates[at], &data.partners[at]);
         let points = coordinates.len() / inputs;
         let step = points.div_ceil(SAMPLE).max(1);
         let sample: Vec<usize> = (0..points).step_by(step).collect();
@@ -117,8 +126,12 @@ impl Probe {
             schema,
             count: sample.len(),
             stride,
-            coordinates: (0..inputs).flat_map(|i| spread(&|p| coordinates[p * inputs + i])).collect(),
-            columns: columns.iter().flat_map(|column| spread(&|p| column[p])).collect(),
+            coordinates: [coordinates, partners]
+                .into_iter()
+                .filter(|site| !site.is_empty())
+                .flat_map(|site| (0..inputs).flat_map(move |i| spread(&|p| site[p * inputs + i])))
+                .collect(),
+            columns: data.columns[at].iter().flat_map(|column| spread(&|p| column[p])).collect(),
         }
     }
 
@@ -197,12 +210,24 @@ impl Probe {
     }
 
     /// Scales of heads that are the only unknown of some row.
-    fn balance(&self, scalars: &[f64], half: &[f64], heads: &mut [Option<(f64, f64)>]) {
+    fn balance(&self, scene: &schema::Scene, scalars: &[f64], half: &[f64], heads: &mut [Option<(f64, f64)>]) {
         for term in self.schema.terms.iter().filter(|t| matches!(t.kind, TermKind::Residual | TermKind::Observation)) {
             for row in term.first..term.first + term.rows {
-                let known = self.jets(|jet| heads[jet.head].map_or(0.0, |h| typical(jet, half, h)));
-                let point = self.jets(|jet| heads[jet.head].map_or(1e-3, |h| typical(jet, half, h)));
-                let slopes = self.sensitivities(row, &point, scalars);
+                let jets = |unknown: f64| {
+                    self.jets(|jet| match heads[jet.head] {
+                        Some(_) if scene.heads[jet.head].transformed => typical(jet, half, (0.0, 1.0)),
+                        Some(found) => typical(jet, half, found),
+                        None => unknown,
+                    })
+                };
+                let scales = |unknown: f64| -> Vec<f64> {
+                    let scale = |(scalar, &value): (&schema::Scalar, &f64)| match scalar.origin {
+                        Origin::HeadScale(head) => heads[head].map_or(unknown, |found| found.1),
+                        _ => value,
+                    };
+                    scene.scalars.iter().zip(scalars).map(scale).collect()
+                };
+                let slopes = self.sensitivities(row, &jets(1e-3), &scales(1.0));
                 let pull = |head: usize| -> f64 {
                     let jets = self.schema.jets.iter().enumerate().filter(|(_, jet)| jet.head == head);
                     jets.map(|(j, jet)| self.rms(&slopes[j * self.stride..]) * typical(jet, half, (0.0, 1.0))).sum()
@@ -213,7 +238,7 @@ impl Probe {
                     .filter(|&(_, pull)| pull > 0.0 && pull.is_finite())
                     .collect();
                 let [(head, pull)] = unknown[..] else { continue };
-                let rest = self.rms(&self.rows(&known, scalars, true)[row * self.stride..]);
+                let rest = self.rms(&self.rows(&jets(0.0), &scales(0.0), true)[row * self.stride..]);
                 if rest > 0.0 && rest.is_finite() {
                     heads[head] = Some((0.0, rest / pull));
                 }
@@ -232,6 +257,7 @@ impl Probe {
         half: &[f64],
         heads: &[(f64, f64)],
     ) -> f64 {
+        // Far from the tiny number that keeps the root off its kink, too.
         const AWAY: f64 = 1e30;
         let mut scalars = scalars.to_vec();
         for (at, scalar) in scene.scalars.iter().enumerate() {
@@ -240,10 +266,10 @@ impl Probe {
                 _ => {}
             }
         }
-        scalars[slot] = 1.0;
+        scalars[slot] = 1.0 / AWAY;
         let jets = self.jets(|jet| typical(jet, half, network(scene, heads, jet.head)));
         let row = self.schema.terms[place.1].first;
-        let size = self.rms(&self.rows(&jets, &scalars, true)[row * self.stride..]) / 2.0;
+        let size = self.rms(&self.rows(&jets, &scalars, true)[row * self.stride..]) / (2.0 * AWAY);
         if size > 0.0 && size.is_finite() { size } else { 1.0 }
     }
 

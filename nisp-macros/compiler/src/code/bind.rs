@@ -91,6 +91,13 @@ fn step(model: &Model, at: usize, group: &GroupPlan) -> TokenStream {
     let clouds: Vec<_> = clouds.map(|term| (format_ident!("{}", term.name.text), &term.name.text)).collect();
     let cloud_arguments = clouds.iter().map(|(name, _)| quote!(#name: impl Into<Vec<f64>>));
     let cloud_calls = clouds.iter().map(|(name, text)| quote!(.with_cloud(#at, #text, #name.into())));
+    let (partners, points) = match declared.paired {
+        true => (
+            quote!(partners: impl Into<Vec<f64>>,),
+            quote!(::nisp::Points { partners: partners.into(), ..points.into() }),
+        ),
+        false => (quote!(), quote!(points.into())),
+    };
     let units: Vec<String> = columns.iter().map(|c| format!("`{}` in {}", c.name.text, c.unit.text)).collect();
     let waits = format!(" Waits for the points of group `{text}`.");
     let doc = format!(
@@ -105,8 +112,10 @@ fn step(model: &Model, at: usize, group: &GroupPlan) -> TokenStream {
         pub struct #this(::nisp::Problem);
         impl #this {
             #[doc = #doc]
-            pub fn #method(self, points: impl Into<::nisp::Points>, #(#arguments,)* #(#cloud_arguments,)*) -> #next {
-                #next(self.0.with_group(#at, points.into(), vec![#(#pushes),*]) #(#cloud_calls)*)
+            pub fn #method(
+                self, points: impl Into<::nisp::Points>, #partners #(#arguments,)* #(#cloud_arguments,)*
+            ) -> #next {
+                #next(self.0.with_group(#at, #points, vec![#(#pushes),*]) #(#cloud_calls)*)
             }
         }
     }
