@@ -70,7 +70,7 @@ impl<E: Real> Engine<E> {
     pub(super) fn integrate(&mut self) -> Result<(), Fault> {
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         let (groups, buffers) = (&self.groups, &self.buffers);
-        let Integrals { rows, parts, scalars, targets } = &mut self.integrals;
+        let Integrals { rows, parts, scalars, targets, .. } = &mut self.integrals;
         let rows_read: &[Integral] = rows;
         parts.par_iter_mut().for_each(|(range, sums)| {
             let tile = Tile { group: &groups[range.group], first: range.first, count: range.count };
