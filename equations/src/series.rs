@@ -1,11 +1,12 @@
 //! Scenes over time: bound to a table with one column for the time and one for each observed field.
 
 use nisp::schema::{Origin, Scene};
-use nisp::{BindError, Problem, SceneRef, scene};
-use nisp_data::{DataError, Table, nearest_name};
+use nisp::{Problem, SceneRef, scene};
+use nisp_data::{Table, nearest_name};
 use std::path::{Path, PathBuf};
 
-use crate::rivals::System;
+use crate::error::PrepareError;
+use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::truth::Truth;
 
 /// An equation that the command line knows by name.
@@ -23,6 +24,10 @@ pub struct Entry {
     truth_bytes: &'static [u8],
     /// Columns of the example: name and header.
     pub columns: &'static [(&'static str, &'static str)],
+    /// Paths of truths in the repository, from which fresh noisy copies can be made.
+    pub truths: &'static [&'static str],
+    /// Rows of a truth for each measurement.
+    pub every: usize,
     /// The system that classical rivals solve for a scene of this name, where they know how.
     rival: fn(&str, Given<'_>) -> Option<Box<dyn System>>,
 }
@@ -67,75 +72,19 @@ pub struct Prepared {
     pub rival: Option<Box<dyn System>>,
 }
 
-/// Why a scene cannot be prepared.
-#[derive(Debug, thiserror::Error)]
-pub enum PrepareError {
-    /// The table.
-    #[error(transparent)]
-    Data(#[from] DataError),
-    /// The binding.
-    #[error(transparent)]
-    Bind(#[from] BindError),
-    /// A scene that the entry does not have.
-    #[error("`{entry}` has no scene `{scene}`{hint}; it has: {have}")]
-    Scene {
-        /// The entry.
-        entry: &'static str,
-        /// The scene asked for.
-        scene: String,
-        /// The scene that may have been meant.
-        hint: String,
-        /// The scenes there are.
-        have: String,
-    },
-    /// A name in `--column` that nothing observes.
-    #[error("--column {name}=...: the scene observes no `{name}`{hint}; it observes: {have}")]
-    Column {
-        /// The name given.
-        name: String,
-        /// The name that may have been meant.
-        hint: String,
-        /// The names there are.
-        have: String,
-    },
-    /// A measurement so large that its square is no number.
-    #[error("`{name}` goes up to {largest:e} {unit}; check its column and its unit")]
-    Size {
-        /// What was measured.
-        name: &'static str,
-        /// Its largest magnitude.
-        largest: f64,
-        /// Its declared unit.
-        unit: &'static str,
-    },
-    /// A truth at times of which the data say nothing.
-    #[error(
-        "{}: the truth's times, {} to {} s, leave those of the data, {} to {} s; cut the truth to that range, or check \
-         the unit of its times",
-        .path.display(), .truth[0], .truth[1], .data[0], .data[1]
-    )]
-    TruthRange {
-        /// The truth's file.
-        path: PathBuf,
-        /// Its first and last time.
-        truth: [f64; 2],
-        /// The data's.
-        data: [f64; 2],
-    },
-    /// A truth that has nothing to score.
-    #[error(
-        "{}: no column answers to any of {heads}; name one like the quantity, with its unit, as in `f [N]` or `f_N` \
-         (columns: {columns})",
-        .path.display()
-    )]
-    TruthHeads {
-        /// The truth's file.
-        path: PathBuf,
-        /// What could be scored.
-        heads: String,
-        /// The headers there are.
-        columns: String,
-    },
+impl Prepared {
+    /// What the classical rivals answer at times `at`, where `truth` is true; nothing where none knows this scene. They
+    /// are given the noise that they find themselves.
+    pub fn contest(&self, at: &[f64], truth: &[f64]) -> Vec<Answer> {
+        let Some(system) = &self.rival else { return Vec::new() };
+        let states: Vec<&[f64]> = self.measured.iter().map(|(_, values)| values.as_slice()).collect();
+        let noise: Result<Vec<f64>, _> = states.iter().map(|values| noise_level(&self.times, values)).collect();
+        let answers = noise.and_then(|noise| {
+            contest(system.as_ref(), &Measurements { times: &self.times, states: &states, noise: &noise }, at, truth)
+        });
+        // Rivals that cannot answer have no row in a table.
+        answers.unwrap_or_default()
+    }
 }
 
 /// Times at which the equations are asked to hold.
@@ -156,6 +105,21 @@ pub fn catalogue() -> [Entry; 2] {
             data_bytes: include_bytes!("../../data/pendulum/run_07_obs.csv"),
             truth_bytes: include_bytes!("../../data/pendulum/run_07_truth.csv"),
             columns: &[("q", "q_m_sigma0.01"), ("psi", "psi_rad_sigma0.01"), ("phi", "phi_rad_sigma0.01")],
+            truths: &[
+                "data/pendulum/run_01_truth.csv",
+                "data/pendulum/run_03_truth.csv",
+                "data/pendulum/run_05_truth.csv",
+                "data/pendulum/run_07_truth.csv",
+                "data/pendulum/run_09_truth.csv",
+                "data/pendulum/run_11_truth.csv",
+                "data/pendulum/run_13_truth.csv",
+                "data/pendulum/run_15_truth.csv",
+                "data/pendulum/run_17_truth.csv",
+                "data/pendulum/run_19_truth.csv",
+                "data/pendulum/run_21_truth.csv",
+                "data/pendulum/run_23_truth.csv",
+            ],
+            every: 4,
             rival: crate::pendulum::rival,
         },
         Entry {
@@ -166,6 +130,8 @@ pub fn catalogue() -> [Entry; 2] {
             data_bytes: include_bytes!("../../data/rlc/rlc_exponential.csv"),
             truth_bytes: include_bytes!("../../data/rlc/rlc_exponential.csv"),
             columns: &[("v", "v_V")],
+            truths: &["data/rlc/rlc_exponential.csv"],
+            every: 3,
             rival: crate::rlc::rival,
         },
     ]

@@ -28,6 +28,8 @@ pub(crate) enum Command {
     /// Recover a source; without options, from the repository's own noisy example.
     #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
     Solve(Box<Options>),
+    /// Measure error against time over methods, widths and precisions, beside classical rivals.
+    Frontier(Box<crate::frontier::Options>),
 }
 
 /// How and from what to solve.
@@ -129,7 +131,8 @@ Exit codes:
   2  bad input; nothing was written
   3  not converged, or interrupted (status `not_converged`); the best state was written";
 
-fn optimizers() -> clap::builder::PossibleValuesParser {
+/// Names of all methods.
+pub(crate) fn optimizers() -> clap::builder::PossibleValuesParser {
     nisp::Optimizer::ALL.map(nisp::Optimizer::name).into()
 }
 
@@ -148,12 +151,20 @@ fn value(text: &str) -> Result<(String, f64), String> {
 /// More of anything than this is a slip.
 const MOST: usize = 1_000_000_000;
 
-fn count(text: &str) -> Result<usize, String> {
+/// A whole number of at least 1.
+pub(crate) fn count(text: &str) -> Result<usize, String> {
     let number = text.parse::<usize>().ok().filter(|number| (1..=MOST).contains(number));
     number.ok_or_else(|| "give a whole number of at least 1".into())
 }
 
-fn seconds(text: &str) -> Result<f64, String> {
+/// A time above zero.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
     let number = text.parse::<f64>().ok().filter(|number| *number > 0.0 && *number <= MOST as f64);
     number.ok_or_else(|| "give a positive number of seconds, for instance 10".into())
+}
+
+/// A number of zero or more.
+pub(crate) fn number(text: &str) -> Result<f64, String> {
+    let number = text.parse::<f64>().ok().filter(|number| *number >= 0.0 && number.is_finite());
+    number.ok_or_else(|| "give a number of zero or more".into())
 }

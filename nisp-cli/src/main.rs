@@ -1,8 +1,9 @@
-//! The `nisp` command: list, explain and solve the equations that NISP ships.
+//! The `nisp` command: list, explain and solve the equations that NISP ships, and measure how well.
 
 mod args;
 mod config;
 mod explain;
+mod frontier;
 mod interrupt;
 mod list;
 mod report;
@@ -30,6 +31,7 @@ fn main() -> ExitCode {
             explain::explain(&equation, scene.as_deref())
         }
         Parsed::Asked(Args { command: Command::Solve(options) }) => solve::solve(&options),
+        Parsed::Asked(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),
     });
     result.unwrap_or_else(|message| {
         eprintln!("nisp: {message}");

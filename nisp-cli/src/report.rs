@@ -6,7 +6,7 @@ use nisp::solve::driver::Status;
 use nisp::{Settings, Solution};
 use nisp_data::OutDir;
 use nisp_equations::Prepared;
-use nisp_equations::rivals::{Measurements, contest, mean_abs_error, noise_level};
+use nisp_equations::rivals::mean_abs_error;
 
 use crate::args::Options;
 use crate::score::Score;
@@ -19,6 +19,16 @@ fn status(solution: &Solution) -> &'static str {
         Status::Converged => "converged",
         Status::Budget => "budget",
         Status::NotConverged | Status::Interrupted => "not_converged",
+    }
+}
+
+/// How the run ended, in words.
+fn end(solution: &Solution) -> &'static str {
+    match solution.status {
+        Status::Converged => "converged",
+        Status::Budget => "budget spent",
+        Status::NotConverged => "not converged",
+        Status::Interrupted => "interrupted",
     }
 }
 
@@ -85,7 +95,7 @@ pub(crate) fn table(
     let threads = solution.settings.threads;
     line(format!(
         "{} after {:.1} s: {} steps of {} in {} on {threads} thread{}, loss {:.3e}",
-        status(solution).replace('_', " "),
+        end(solution),
         solution.wall_s,
         solution.iterations,
         solution.optimizer.name(),
@@ -126,15 +136,7 @@ pub(crate) fn table(
 /// Errors of the classical rivals, where they can be asked.
 fn rivals(prepared: &Prepared, score: &Score) -> Vec<(String, f64)> {
     let known = prepared.truth.as_ref().and_then(|truth| Some((&truth.times, truth.of(score.name)?)));
-    let (Some(system), Some((at, values))) = (&prepared.rival, known) else { return Vec::new() };
-    if prepared.times.len() > ROWS_FOR_RIVALS {
-        return Vec::new();
-    }
-    let states: Vec<&[f64]> = prepared.measured.iter().map(|(_, values)| values.as_slice()).collect();
-    let noise: Result<Vec<f64>, _> = states.iter().map(|values| noise_level(&prepared.times, values)).collect();
-    let Ok(noise) = noise else { return Vec::new() };
-    let data = Measurements { times: &prepared.times, states: &states, noise: &noise };
-    // A rival that has no answer has no row.
-    let answers = contest(system.as_ref(), &data, at, values).unwrap_or_default();
-    answers.into_iter().map(|answer| (answer.name.into(), mean_abs_error(&answer.source, values))).collect()
+    let Some((at, values)) = known.filter(|_| prepared.times.len() <= ROWS_FOR_RIVALS) else { return Vec::new() };
+    let answers = prepared.contest(at, values).into_iter();
+    answers.map(|answer| (answer.name.into(), mean_abs_error(&answer.source, values))).collect()
 }

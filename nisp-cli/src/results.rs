@@ -1,19 +1,35 @@
 //! The files of a solved problem: source and state as CSV, and a plot.
 
-use nisp::Estimate;
+use nisp::{Estimate, Solution};
 use nisp_data::atomic::Content;
 use nisp_data::picture::{Curve, LinePanel, LinePlot, Picture, Quantity, line_plot};
 use nisp_data::{DataError, Table};
 use nisp_equations::Prepared;
 
+/// Points of a curve: a layer between two measurements shows too.
+const CURVE: usize = 600;
+
 /// Names and contents, to be written together.
-pub(crate) fn files(prepared: &Prepared, estimates: &[Estimate]) -> Result<Vec<Content>, DataError> {
-    let plot = plot(prepared, estimates)?;
+pub(crate) fn files(prepared: &Prepared, solution: &mut Solution) -> Result<Vec<Content>, DataError> {
+    let times = &prepared.times;
+    let (first, last) = (times[0], times[times.len() - 1]);
+    let fine: Vec<f64> = (0..CURVE).map(|i| first + (last - first) * i as f64 / (CURVE - 1) as f64).collect();
+    // Together, because the factorisation behind the error bars is the dear part.
+    let mut estimates = solution.evaluate_with_errors(&[times.as_slice(), &fine].concat());
+    let curves: Vec<_> = estimates.iter_mut().map(|estimate| split(estimate, times.len())).collect();
+    let plot = plot(prepared, solution, &fine, &curves)?;
     Ok(vec![
-        ("source.csv", table(prepared, estimates, true)?),
-        ("state.csv", table(prepared, estimates, false)?),
+        ("source.csv", table(prepared, &estimates, true)?),
+        ("state.csv", table(prepared, &estimates, false)?),
         ("plot.svg", plot.svg().into()),
     ])
+}
+
+/// Cuts an estimate after its first `count` points and returns the rest.
+fn split(estimate: &mut Estimate, count: usize) -> Estimate {
+    let values = estimate.values.split_off(count);
+    let deviations = estimate.deviations.as_mut().map(|deviations| deviations.split_off(count));
+    Estimate { values, deviations, ..estimate.clone() }
 }
 
 /// Sources or fields over time, each with its standard deviation where there is one.
@@ -32,21 +48,30 @@ fn table(prepared: &Prepared, estimates: &[Estimate], source: bool) -> Result<Ve
     Ok(bytes)
 }
 
-fn plot(prepared: &Prepared, estimates: &[Estimate]) -> Result<Picture, DataError> {
-    let mut sorted: Vec<&Estimate> = estimates.iter().collect();
+fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estimate]) -> Result<Picture, DataError> {
+    let scene = solution.scene();
+    let mut sorted: Vec<&Estimate> = curves.iter().collect();
     sorted.sort_by_key(|estimate| !estimate.source);
     let panels = sorted.into_iter().map(|estimate| {
         let mut panel = LinePanel::new(Quantity::new(estimate.name, estimate.unit.text));
+        let head = scene.heads.iter().find(|head| head.name == estimate.name);
+        panel.caption = head.map_or_else(String::new, |head| first_line(head.docs).into());
         let measured = prepared.measured.iter().find(|(name, _)| *name == estimate.name);
         panel.measured = measured.map(|(_, values)| Curve::new(&prepared.times, values));
-        panel.estimate = Some(Curve::new(&prepared.times, &estimate.values));
+        panel.estimate = Some(Curve::new(fine, &estimate.values));
         panel.deviation.clone_from(&estimate.deviations);
         let truth = prepared.truth.as_ref();
         panel.truth = truth.and_then(|truth| Some(Curve::new(&truth.times, truth.of(estimate.name)?)));
         panel
     });
-    let scene = prepared.problem.scene().schema;
     let file = prepared.source.rsplit(['/', '\\']).next().unwrap_or(&prepared.source);
-    let title = format!("{}, {} from {file}", scene.module, scene.name);
-    line_plot(&LinePlot { title, x: Quantity::new("t", "s"), panels: panels.collect() })
+    let method = solution.optimizer.name();
+    let subtitle = format!("{}, scene {}; {file}; {method}, {:.1} s", scene.module, scene.name, solution.wall_s);
+    let title = first_line(scene.docs).trim_end_matches('.').replace('`', "");
+    let x = Quantity::new("t", "s");
+    line_plot(&LinePlot { title, subtitle, x, panels: panels.collect() })
+}
+
+fn first_line(docs: &str) -> &str {
+    docs.lines().next().unwrap_or_default().trim()
 }

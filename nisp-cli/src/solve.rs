@@ -8,7 +8,7 @@ use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Optimizer, Settings, Solution, Width, recover};
 use nisp_data::OutDir;
-use nisp_equations::{Prepared, Request};
+use nisp_equations::{Prepared, Request, Truth};
 
 use crate::args::Options;
 use crate::{interrupt, report, results, score};
@@ -35,9 +35,9 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     if solution.status == Status::Interrupted {
         warnings.push(format!("interrupted after {:.1} s: this is the best state so far", solution.wall_s));
     }
+    warnings.extend(prepared.truth.as_ref().and_then(unscored));
     let scores = prepared.truth.as_ref().map_or_else(Vec::new, |truth| score::score(&solution, truth));
-    let estimates = solution.evaluate_with_errors(&prepared.times);
-    let files = results::files(&prepared, &estimates).map_err(|error| error.to_string())?;
+    let files = results::files(&prepared, &mut solution).map_err(|error| error.to_string())?;
     out.write(&files).map_err(|error| error.to_string())?;
     let text = if options.json {
         report::json(&solution, options, &settings, &scores, &warnings)
@@ -49,11 +49,15 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     Ok(if failed { ExitCode::from(NOT_CONVERGED) } else { ExitCode::SUCCESS })
 }
 
+/// What of the truth is not scored.
+fn unscored(truth: &Truth) -> Option<String> {
+    let all = truth.times.len() + truth.outside;
+    (truth.outside > 0)
+        .then(|| format!("{} of {all} rows of the truth are outside the data's times: not scored", truth.outside))
+}
+
 fn settings(options: &Options) -> Result<Settings, String> {
-    let threads = match options.threads {
-        Some(threads) => threads,
-        None => std::thread::available_parallelism().map_or(1, usize::from),
-    };
+    let threads = options.threads.unwrap_or_else(processors);
     if threads > MOST_THREADS {
         return Err(format!("--threads {threads}: at most {MOST_THREADS}; leave it out for one per processor"));
     }
@@ -66,6 +70,11 @@ fn settings(options: &Options) -> Result<Settings, String> {
         iterations: options.iterations.map(|count| count as u64),
         threads,
     })
+}
+
+/// As many threads as the machine runs at once.
+pub(crate) fn processors() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
 }
 
 /// No machine has more, and asking the system for them would end badly.

@@ -128,7 +128,7 @@ fn truths() {
         says(&ran.stderr, parts);
         assert_eq!(place.names(), ["truth.csv"]);
     };
-    refused("t,f\n5,1\n6,1\n", &["the truth's times, 5 to 6 s, leave those of the data, 0 to 2 s"]);
+    refused("t,f\n5,1\n6,1\n", &["the truth's times, 5 to 6 s, are all outside those of the data, 0 to 2 s"]);
     refused("t,f\n0,1\n1,x\n", &["line 3, column `f`"]);
     refused("t,g\n0,1\n1,1\n", &["no column answers to any of v, f"]);
     refused("t,f\n1,1\n0,1\n", &["sort the rows"]);

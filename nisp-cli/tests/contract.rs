@@ -68,7 +68,7 @@ fn every_option_of_the_contract_is_taken() {
     place.put("data.csv", &("when,volts\n".to_string() + &circuit(60, |_, t, v| format!("{t},{v}\n"))));
     place.put(
         "truth.csv",
-        &("t [s],f [V]\n".to_string() + &circuit(9, |_, t, _| format!("{t},{}\n", 6.0 * (-3.0 * t).exp()))),
+        &("t [s],f [V]\n".to_string() + &circuit(9, |_, t, _| format!("{t},{}\n", 6.0 * (-3.0 * t).exp())) + "3,0\n"),
     );
     let ran = place.run(
         "solve rlc --scene recover --data data.csv --column t=when --column v=volts --truth truth.csv --set f0=6 --seed 1 \
@@ -76,6 +76,7 @@ fn every_option_of_the_contract_is_taken() {
     );
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     let object = object(&ran.stdout);
+    assert!(object["warnings"].to_string().contains("1 of 10 rows of the truth"), "{object}");
     // Only what the truth has is scored.
     assert_eq!(keys(&object["errors"]), ["f", "f_if_zero"]);
     assert!(object["errors"]["f"].as_f64().unwrap() < 1e-2, "{object}");
@@ -190,4 +191,23 @@ fn help_teaches() {
     assert!(help.stdout.lines().all(|line| line.chars().count() <= 120));
     assert_eq!(place.run("").code, Some(2));
     assert_eq!(place.run("--version").code, Some(0));
+}
+
+#[test]
+fn the_frontier_is_a_table_and_a_plot_with_rivals() {
+    let place = Place::new();
+    let repository = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
+    let line = "frontier rlc --budgets 0.05 --widths 4,6 --optimizers lbfgs,lm --noise 0.01 --repository";
+    let ran = place.run(&format!("{line} {repository} --out out"));
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    for row in ["| lbfgs f32 | 4 |", "| lbfgs | 6 |", "| lm | 6 |", "| f = 0 |", "| collocation |", "seeds from 2026"] {
+        assert!(ran.stdout.contains(row), "{row}: {}", ran.stdout);
+    }
+    assert!(!ran.stdout.contains("lm f32"));
+    assert_eq!(names(&place.path("out")), ["frontier.csv", "frontier.svg"]);
+    // Two widths of three methods, and four rivals, below the header.
+    assert_eq!(fs::read_to_string(place.path("out/frontier.csv")).unwrap().lines().count(), 11);
+    let lost = place.run("frontier rlc --repository nowhere --out lost");
+    assert_eq!((lost.code, lost.stderr.lines().count()), (Some(2), 1), "{}", lost.stderr);
+    assert!(lost.stderr.contains("--repository") && !place.path("lost").exists());
 }

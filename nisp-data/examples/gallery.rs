@@ -38,7 +38,12 @@ fn pendulum(data: &Path) -> Result<Picture, DataError> {
         }
         panels.push(panel);
     }
-    line_plot(&LinePlot { title: "Force on the cart, run 01".into(), x: Quantity::new("t", "s"), panels })
+    line_plot(&LinePlot {
+        title: "Force on the cart, run 01".into(),
+        subtitle: String::new(),
+        x: Quantity::new("t", "s"),
+        panels,
+    })
 }
 
 /// Contact pressure of one sample, with a shifted copy as the estimate.
@@ -79,6 +84,7 @@ fn frontier() -> Result<Picture, DataError> {
     let series = |name: &str, points: &[[f64; 2]]| Series { name: name.into(), points: points.to_vec(), joined: true };
     log_log(&LogLog {
         title: "Double pendulum, no noise".into(),
+        subtitle: "made-up numbers".into(),
         x: Quantity::new("wall time", "s"),
         y: Quantity::new("mean |error of f|", "N"),
         series: vec![

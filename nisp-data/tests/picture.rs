@@ -9,7 +9,7 @@ fn plot(y: &[f64]) -> LinePlot {
     let x: Vec<f64> = (0..y.len()).map(|i| i as f64).collect();
     let mut panel = LinePanel::new(Quantity::new("f", "N"));
     panel.estimate = Some(Curve::new(&x, y));
-    LinePlot { title: "a < b & c".into(), x: Quantity::new("t", "s"), panels: vec![panel] }
+    LinePlot { title: "a < b & c".into(), subtitle: "b".into(), x: Quantity::new("t", "s"), panels: vec![panel] }
 }
 
 #[test]
@@ -35,7 +35,14 @@ fn nonsense_is_refused() {
     uneven.panels[0].deviation = Some(vec![1.0]);
     assert!(line_plot(&uneven).unwrap_err().to_string().contains("the band does not fit the estimate"));
     let quantity = || Quantity::new("e", "N");
-    let empty = LogLog { title: String::new(), x: quantity(), y: quantity(), series: vec![], marks: vec![] };
+    let empty = LogLog {
+        title: String::new(),
+        subtitle: String::new(),
+        x: quantity(),
+        y: quantity(),
+        series: vec![],
+        marks: vec![],
+    };
     assert!(log_log(&empty).is_err());
     let series = vec![Series { name: "a".into(), points: vec![[0.0, 1.0]], joined: true }];
     assert!(log_log(&LogLog { series, ..empty.clone() }).is_err());

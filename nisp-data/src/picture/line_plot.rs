@@ -3,8 +3,8 @@
 use super::axis::{Panel, Scale, x_axis_height, y_axis_width};
 use super::canvas::{Anchor, Canvas, Frame, Stroke};
 use super::legend::{self, Swatch};
-use super::style::{ESTIMATE, GAP, MARGIN, MEASURED, PALETTE, TITLE, TRUTH, WIDTH};
-use super::{Picture, Quantity};
+use super::style::{ESTIMATE, GAP, MARGIN, MEASURED, PALETTE, QUIET, TICK, TRUTH, WIDTH};
+use super::{Picture, Quantity, heading};
 use crate::DataError;
 
 /// Panels over a common axis.
@@ -12,6 +12,8 @@ use crate::DataError;
 pub struct LinePlot {
     /// One line above everything.
     pub title: String,
+    /// A smaller line below it.
+    pub subtitle: String,
     /// The common axis, usually time.
     pub x: Quantity,
     /// From top to bottom. The first is drawn taller: put the source there.
@@ -23,6 +25,8 @@ pub struct LinePlot {
 pub struct LinePanel {
     /// What the panel shows.
     pub y: Quantity,
+    /// The same in words, above the panel.
+    pub caption: String,
     /// What was measured, as dots.
     pub measured: Option<Curve>,
     /// What was estimated, as a line.
@@ -54,7 +58,15 @@ impl Curve {
 impl LinePanel {
     /// An empty panel for a quantity.
     pub fn new(y: Quantity) -> LinePanel {
-        LinePanel { y, measured: None, estimate: None, deviation: None, truth: None, others: Vec::new() }
+        LinePanel {
+            y,
+            caption: String::new(),
+            measured: None,
+            estimate: None,
+            deviation: None,
+            truth: None,
+            others: Vec::new(),
+        }
     }
 
     fn curves(&self) -> impl Iterator<Item = &Curve> {
@@ -86,16 +98,17 @@ pub fn line_plot(plot: &LinePlot) -> Result<Picture, DataError> {
     let left = MARGIN + y_axis_width(widest);
     let width = WIDTH - left - 1.6 * MARGIN;
     let mut top = MARGIN;
-    if !plot.title.is_empty() {
-        canvas.bold_text([left, top + 0.8 * TITLE], TITLE, Anchor::Start, &plot.title);
-        top += 1.3 * TITLE;
-    }
+    top += heading::draw(&mut canvas, [left, top], width, &plot.title, &plot.subtitle);
     let entries = legend_entries(plot);
     legend::draw(&mut canvas, [left, top], width, &entries);
     top += legend::height(&entries, width) + GAP;
 
     for (index, (panel, shown)) in plot.panels.iter().zip(shown).enumerate() {
         let height = heights[index];
+        if !panel.caption.is_empty() {
+            canvas.coloured_text([left, top + TICK], TICK, Anchor::Start, &panel.caption, QUIET);
+            top += 1.4 * TICK;
+        }
         let x = Scale::linear(low / shown_x.factor, high / shown_x.factor, width / 90.0);
         let area = Panel { frame: Frame { left, top, width, height }, x, y: shown.scale };
         let last = index + 1 == plot.panels.len();

@@ -4,8 +4,8 @@ use super::axis::{Panel, Scale, x_axis_height, y_axis_width};
 use super::canvas::{Anchor, Canvas, Frame, Stroke};
 use super::legend::{self, Swatch};
 use super::line_plot::extent;
-use super::style::{GAP, INK, MARGIN, PALETTE, TICK, TITLE, WIDTH};
-use super::{Picture, Quantity, text};
+use super::style::{GAP, INK, MARGIN, PALETTE, QUIET, TICK, WIDTH};
+use super::{Picture, Quantity, heading, text};
 use crate::DataError;
 
 /// Series and marks on logarithmic axes.
@@ -13,6 +13,8 @@ use crate::DataError;
 pub struct LogLog {
     /// One line above everything.
     pub title: String,
+    /// A smaller line below it.
+    pub subtitle: String,
     /// The horizontal axis, usually time.
     pub x: Quantity,
     /// The vertical axis, usually an error.
@@ -45,7 +47,7 @@ pub enum Mark {
 
 const HEIGHT: f64 = 420.0;
 const RADIUS: f64 = 4.5;
-const MARK: Stroke<'_> = Stroke { colour: "#6e7781", width: 1.4, dash: "6 4" };
+const MARK: Stroke<'_> = Stroke { colour: QUIET, width: 1.4, dash: "6 4" };
 
 /// Draws the plot.
 pub fn log_log(plot: &LogLog) -> Result<Picture, DataError> {
@@ -60,10 +62,7 @@ pub fn log_log(plot: &LogLog) -> Result<Picture, DataError> {
     let width = WIDTH - left - right;
     let mut canvas = Canvas::new();
     let mut top = MARGIN;
-    if !plot.title.is_empty() {
-        canvas.bold_text([left, top + 0.8 * TITLE], TITLE, Anchor::Start, &plot.title);
-        top += 1.3 * TITLE;
-    }
+    top += heading::draw(&mut canvas, [left, top], WIDTH - left - MARGIN, &plot.title, &plot.subtitle);
     let entries: Vec<_> =
         plot.series.iter().enumerate().map(|(k, series)| (swatch(k, series.joined), series.name.clone())).collect();
     legend::draw(&mut canvas, [left, top], WIDTH - left - MARGIN, &entries);

@@ -9,6 +9,7 @@ mod canvas;
 mod contour;
 mod field_map;
 mod grid;
+mod heading;
 mod legend;
 mod line_plot;
 mod log_log;

@@ -16,6 +16,8 @@ pub(super) const TICK_LENGTH: f64 = 5.0;
 pub(super) const FONT: &str = "Helvetica, Arial, 'Liberation Sans', 'DejaVu Sans', sans-serif";
 
 pub(super) const INK: &str = "#1f2328";
+/// Text of the second rank, and levels to compare with.
+pub(super) const QUIET: &str = "#57606a";
 pub(super) const FAINT: &str = "#e4e7eb";
 pub(super) const FRAME: &str = "#8b949e";
 

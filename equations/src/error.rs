@@ -1,0 +1,77 @@
+//! What a user may have got wrong. Each message is one line and says what to do next.
+
+use std::path::PathBuf;
+
+use nisp::BindError;
+use nisp_data::DataError;
+
+/// Why a scene cannot be prepared.
+#[derive(Debug, thiserror::Error)]
+pub enum PrepareError {
+    /// The table.
+    #[error(transparent)]
+    Data(#[from] DataError),
+    /// The binding.
+    #[error(transparent)]
+    Bind(#[from] BindError),
+    /// A scene that the entry does not have.
+    #[error("`{entry}` has no scene `{scene}`{hint}; it has: {have}")]
+    Scene {
+        /// The entry.
+        entry: &'static str,
+        /// The scene asked for.
+        scene: String,
+        /// The scene that may have been meant.
+        hint: String,
+        /// The scenes there are.
+        have: String,
+    },
+    /// A name in `--column` that nothing observes.
+    #[error("--column {name}=...: the scene observes no `{name}`{hint}; it observes: {have}")]
+    Column {
+        /// The name given.
+        name: String,
+        /// The name that may have been meant.
+        hint: String,
+        /// The names there are.
+        have: String,
+    },
+    /// A measurement so large that its square is no number.
+    #[error("`{name}` goes up to {largest:e} {unit}; check its column and its unit")]
+    Size {
+        /// What was measured.
+        name: &'static str,
+        /// Its largest magnitude.
+        largest: f64,
+        /// Its declared unit.
+        unit: &'static str,
+    },
+    /// A truth at times of which the data say nothing.
+    #[error(
+        "{}: the truth's times, {} to {} s, are all outside those of the data, {} to {} s; check the file and the unit of \
+         its times",
+        .path.display(), .truth[0], .truth[1], .data[0], .data[1]
+    )]
+    TruthRange {
+        /// The truth's file.
+        path: PathBuf,
+        /// Its first and last time.
+        truth: [f64; 2],
+        /// The data's.
+        data: [f64; 2],
+    },
+    /// A truth that has nothing to score.
+    #[error(
+        "{}: no column answers to any of {heads}; name one like the quantity, with its unit, as in `f [N]` or `f_N` \
+         (columns: {columns})",
+        .path.display()
+    )]
+    TruthHeads {
+        /// The truth's file.
+        path: PathBuf,
+        /// What could be scored.
+        heads: String,
+        /// The headers there are.
+        columns: String,
+    },
+}

@@ -1,0 +1,75 @@
+//! One way to solve, over all samples.
+
+use std::time::Duration;
+
+use nisp::network::Architecture;
+use nisp::solve::driver::Flow;
+use nisp::{Optimizer, Settings, Width, recover};
+use nisp_equations::Prepared;
+use nisp_equations::rivals::{mean_abs_error, zero_error};
+
+use crate::interrupt;
+use crate::score::score;
+
+/// A method with its network.
+#[derive(Clone)]
+pub(crate) struct Trial {
+    pub(super) optimizer: Optimizer,
+    pub(super) precision: Width,
+    pub(super) width: usize,
+    pub(super) threads: usize,
+    pub(super) seed: u64,
+}
+
+impl Trial {
+    /// Mean error of the sources and mean wall time.
+    pub(super) fn over(&self, samples: &[Prepared], budget: f64) -> Result<(f64, f64), String> {
+        let settings = Settings {
+            precision: self.precision,
+            optimizer: self.optimizer,
+            architecture: Architecture::modified(self.width, 2),
+            seed: self.seed,
+            budget: Some(Duration::from_secs_f64(budget)),
+            iterations: None,
+            threads: self.threads,
+        };
+        let (mut errors, mut seconds) = (0.0, 0.0);
+        for sample in samples {
+            let go_on = &mut |_| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
+            let solution = recover(&sample.problem, &settings, go_on).map_err(|error| error.to_string())?;
+            let scores = sample.truth.as_ref().map_or_else(Vec::new, |truth| score(&solution, truth));
+            let sources = || scores.iter().filter(|score| score.if_zero.is_some());
+            errors += sources().map(|score| score.mean_abs).sum::<f64>() / sources().count() as f64;
+            seconds += solution.wall_s;
+        }
+        let count = samples.len() as f64;
+        Ok((errors / count, seconds / count))
+    }
+}
+
+/// A rival's name, its mean error and its mean time.
+pub(crate) type Rival = (String, f64, f64);
+
+/// The answer zero and the classical rivals.
+pub(super) fn rivals(samples: &[Prepared]) -> Vec<Rival> {
+    let mut rivals: Vec<Rival> = Vec::new();
+    let mut add = |name: String, error: f64, seconds: f64| match rivals.iter_mut().find(|rival| rival.0 == name) {
+        Some(rival) => (rival.1, rival.2) = (rival.1 + error, rival.2 + seconds),
+        None => rivals.push((name, error, seconds)),
+    };
+    for sample in samples {
+        let heads = sample.problem.scene().schema.heads;
+        for head in heads.iter().filter(|head| head.source) {
+            let Some((at, truth)) = sample.truth.as_ref().and_then(|truth| Some((&truth.times, truth.of(head.name)?)))
+            else {
+                continue;
+            };
+            add(format!("{} = 0", head.name), zero_error(truth), 0.0);
+            for answer in sample.contest(at, truth) {
+                add(answer.name.into(), mean_abs_error(&answer.source, truth), answer.wall_s);
+            }
+        }
+    }
+    let count = samples.len() as f64;
+    rivals.into_iter().map(|(name, error, seconds)| (name, error / count, seconds / count)).collect()
+}
