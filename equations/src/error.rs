@@ -36,6 +36,22 @@ pub enum PrepareError {
         /// The names there are.
         have: String,
     },
+    /// An equation that takes more than the command line can read.
+    #[error(
+        "`{entry}` is solved from a program so far: bind its points, columns and clouds, which `nisp explain {entry}` lists"
+    )]
+    Library {
+        /// The entry.
+        entry: &'static str,
+    },
+    /// A file of parameters that cannot be read.
+    #[error("{}: {reason}", .path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// What is wrong with it.
+        reason: String,
+    },
     /// A measurement so large that its square is no number.
     #[error("`{name}` goes up to {largest:e} {unit}; check its column and its unit")]
     Size {

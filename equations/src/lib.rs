@@ -1,14 +1,18 @@
 //! The equations that NISP ships, and how each is bound to tables of measurements.
 
+pub mod catalogue;
 mod copies;
 mod error;
+pub mod membrane;
 pub mod pendulum;
+pub mod plate;
 pub mod rivals;
 pub mod rlc;
 pub mod series;
+pub mod sponge;
 pub mod truth;
 
+pub use catalogue::{Binding, Entry, Prepared, Request, catalogue};
 pub use copies::noisy_copy;
 pub use error::PrepareError;
-pub use series::{Entry, Prepared, Request, catalogue};
 pub use truth::Truth;

@@ -1,10 +1,44 @@
 //! Double pendulum on a cart, pushed by an unknown force (paper, section 4.1, with its errata corrected).
 
+use nisp::scene;
+
+use crate::catalogue::{Binding, Entry};
 use crate::rivals::{Pendulum, System};
-use crate::series::Given;
+use crate::series::{Given, Series};
+
+/// The pendulum on the command line.
+pub(crate) const ENTRY: Entry = Entry {
+    name: "pendulum",
+    about: "the force on a cart with two links, from noisy positions and angles",
+    scenes: &[scene::<pendulum::recover::Scene>],
+    data: "data/pendulum/run_07_obs.csv",
+    binding: Binding::Series(SERIES),
+};
+
+const SERIES: Series = Series {
+    data: include_bytes!("../../data/pendulum/run_07_obs.csv"),
+    truth: include_bytes!("../../data/pendulum/run_07_truth.csv"),
+    columns: &[("q", "q_m_sigma0.01"), ("psi", "psi_rad_sigma0.01"), ("phi", "phi_rad_sigma0.01")],
+    truths: &[
+        "data/pendulum/run_01_truth.csv",
+        "data/pendulum/run_03_truth.csv",
+        "data/pendulum/run_05_truth.csv",
+        "data/pendulum/run_07_truth.csv",
+        "data/pendulum/run_09_truth.csv",
+        "data/pendulum/run_11_truth.csv",
+        "data/pendulum/run_13_truth.csv",
+        "data/pendulum/run_15_truth.csv",
+        "data/pendulum/run_17_truth.csv",
+        "data/pendulum/run_19_truth.csv",
+        "data/pendulum/run_21_truth.csv",
+        "data/pendulum/run_23_truth.csv",
+    ],
+    every: 4,
+    rival,
+};
 
 /// What classical rivals solve.
-pub(crate) fn rival(_scene: &str, given: Given<'_>) -> Option<Box<dyn System>> {
+fn rival(_scene: &str, given: Given<'_>) -> Option<Box<dyn System>> {
     let [m0, m1, m2, l1, l2, g] = ["m0", "m1", "m2", "l1", "l2", "g"].map(given.parameter);
     Some(Box::new(Pendulum { masses: [m0, m1, m2], lengths: [l1, l2], gravity: g }))
 }

@@ -2,11 +2,32 @@
 
 #![allow(deprecated, reason = "scene `free` leaves the source under a null space on purpose")]
 
+use nisp::scene;
+
+use crate::catalogue::{Binding, Entry};
 use crate::rivals::{Rlc, System};
-use crate::series::Given;
+use crate::series::{Given, Series};
+
+/// The circuit on the command line.
+pub(crate) const ENTRY: Entry = Entry {
+    name: "rlc",
+    about: "the voltage that drives a circuit, from the voltage that answers",
+    scenes: &[scene::<rlc::recover::Scene>, scene::<rlc::free::Scene>],
+    data: "data/rlc/rlc_exponential.csv",
+    binding: Binding::Series(SERIES),
+};
+
+const SERIES: Series = Series {
+    data: include_bytes!("../../data/rlc/rlc_exponential.csv"),
+    truth: include_bytes!("../../data/rlc/rlc_exponential.csv"),
+    columns: &[("v", "v_V")],
+    truths: &["data/rlc/rlc_exponential.csv"],
+    every: 3,
+    rival,
+};
 
 /// What classical rivals solve: they need the source at the start.
-pub(crate) fn rival(scene: &str, given: Given<'_>) -> Option<Box<dyn System>> {
+fn rival(scene: &str, given: Given<'_>) -> Option<Box<dyn System>> {
     let [damping, stiffness, rate_gain, gain, source_at_start] = ["a", "b", "c", "e", "f0"].map(given.parameter);
     let system = Rlc { damping, stiffness, rate_gain, gain, start: given.start, source_at_start };
     (scene == "recover").then(|| Box::new(system) as Box<dyn System>)

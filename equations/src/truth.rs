@@ -5,34 +5,42 @@ use nisp_data::{DataError, Table};
 
 use crate::PrepareError;
 
-/// True values of some heads at its own times.
+/// True values of some heads at its own points.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Truth {
-    /// Times, rising.
-    pub times: Vec<f64>,
-    /// Values by head, in the declared unit, one for each time.
+    /// Points, one after the other, in declared units: rising times, or places.
+    pub points: Vec<f64>,
+    /// Values by head, in the declared unit, one for each point.
     pub heads: Vec<(&'static str, Vec<f64>)>,
     /// How many rows were left out, being at times of which the data say nothing.
     pub outside: usize,
 }
 
 impl Truth {
-    /// Reads whichever heads the table has, at its times within `range`.
+    /// Reads whichever heads the table has; over time, at its times within `range`.
     ///
     /// # Errors
     /// A table without any of them, a cell that is no number, times that do not rise or are all outside.
-    pub fn read(table: &Table, scene: &Scene, range: [f64; 2]) -> Result<Truth, PrepareError> {
-        let times = table.quantity("t", "s")?;
-        table.require_increasing("t")?;
-        // A time that was rounded on its way into a file still counts.
-        let slack = 1e-6 * (range[1] - range[0]);
-        let inside = |t: f64| t >= range[0] - slack && t <= range[1] + slack;
-        let keep = |values: Vec<f64>| times.iter().zip(values).filter(|(t, _)| inside(**t)).map(|(_, x)| x).collect();
-        let kept: Vec<f64> = keep(times.clone());
-        if kept.is_empty() {
-            let truth = [times[0], times[times.len() - 1]];
-            return Err(PrepareError::TruthRange { path: table.path().into(), truth, data: range });
+    pub fn read(table: &Table, scene: &Scene, range: Option<[f64; 2]>) -> Result<Truth, PrepareError> {
+        let coordinates = scene.coordinates.iter().map(|c| table.quantity(c.name, c.unit.text));
+        let coordinates = coordinates.collect::<Result<Vec<_>, _>>()?;
+        let inside = |row: usize| match range {
+            // A time that was rounded on its way into a file still counts.
+            Some([first, last]) => {
+                let slack = 1e-6 * (last - first);
+                coordinates[0][row] >= first - slack && coordinates[0][row] <= last + slack
+            }
+            None => true,
+        };
+        let kept: Vec<usize> = (0..table.rows()).filter(|&row| inside(row)).collect();
+        if let Some(data) = range {
+            table.require_increasing(scene.coordinates[0].name)?;
+            if kept.is_empty() {
+                let truth = [coordinates[0][0], coordinates[0][table.rows() - 1]];
+                return Err(PrepareError::TruthRange { path: table.path().into(), truth, data });
+            }
         }
+        let keep = |values: Vec<f64>| kept.iter().map(|&row| values[row]).collect();
         let mut heads = Vec::new();
         for head in scene.heads {
             match table.quantity(head.name, head.unit.text) {
@@ -46,7 +54,8 @@ impl Truth {
             let columns = table.headers().collect::<Vec<_>>().join(", ");
             return Err(PrepareError::TruthHeads { path: table.path().into(), heads, columns });
         }
-        Ok(Truth { outside: times.len() - kept.len(), times: kept, heads })
+        let points = kept.iter().flat_map(|&row| coordinates.iter().map(move |values| values[row])).collect();
+        Ok(Truth { outside: table.rows() - kept.len(), points, heads })
     }
 
     /// The true values of a head, if they are known.

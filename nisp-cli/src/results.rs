@@ -2,7 +2,10 @@
 
 use nisp::{Estimate, Solution};
 use nisp_data::atomic::Content;
-use nisp_data::picture::{Curve, LinePanel, LinePlot, Picture, Quantity, line_plot};
+use nisp_data::colour::ColourScale;
+use nisp_data::picture::{
+    Curve, FieldMap, Grid, LinePanel, LinePlot, MapPanel, Picture, Quantity, field_map, line_plot,
+};
 use nisp_data::{DataError, Table};
 use nisp_equations::Prepared;
 
@@ -11,16 +14,25 @@ const CURVE: usize = 600;
 
 /// Names and contents, to be written together.
 pub(crate) fn files(prepared: &Prepared, solution: &mut Solution) -> Result<Vec<Content>, DataError> {
-    let times = &prepared.times;
+    let times = &prepared.points;
+    if let [_, _] = solution.scene().coordinates {
+        let estimates = solution.evaluate_with_errors(times);
+        let plot = maps(prepared, solution, &estimates)?;
+        return contents(prepared, &estimates, &plot);
+    }
     let (first, last) = (times[0], times[times.len() - 1]);
     let fine: Vec<f64> = (0..CURVE).map(|i| first + (last - first) * i as f64 / (CURVE - 1) as f64).collect();
     // Together, because the factorisation behind the error bars is the dear part.
     let mut estimates = solution.evaluate_with_errors(&[times.as_slice(), &fine].concat());
     let curves: Vec<_> = estimates.iter_mut().map(|estimate| split(estimate, times.len())).collect();
     let plot = plot(prepared, solution, &fine, &curves)?;
+    contents(prepared, &estimates, &plot)
+}
+
+fn contents(prepared: &Prepared, estimates: &[Estimate], plot: &Picture) -> Result<Vec<Content>, DataError> {
     Ok(vec![
-        ("source.csv", table(prepared, &estimates, true)?),
-        ("state.csv", table(prepared, &estimates, false)?),
+        ("source.csv", table(prepared, estimates, true)?),
+        ("state.csv", table(prepared, estimates, false)?),
         ("plot.svg", plot.svg().into()),
     ])
 }
@@ -32,10 +44,14 @@ fn split(estimate: &mut Estimate, count: usize) -> Estimate {
     Estimate { values, deviations, ..estimate.clone() }
 }
 
-/// Sources or fields over time, each with its standard deviation where there is one.
+/// Sources or fields over the coordinates, each with its standard deviation where there is one.
 fn table(prepared: &Prepared, estimates: &[Estimate], source: bool) -> Result<Vec<u8>, DataError> {
     let mut table = Table::empty();
-    table.push("t", "s", &prepared.times)?;
+    let coordinates = prepared.problem.scene().schema.coordinates;
+    for (at, coordinate) in coordinates.iter().enumerate() {
+        let values: Vec<f64> = prepared.points.iter().skip(at).step_by(coordinates.len()).copied().collect();
+        table.push(coordinate.name, coordinate.unit.text, &values)?;
+    }
     for estimate in estimates.iter().filter(|estimate| estimate.source == source) {
         table.push(estimate.name, estimate.unit.text, &estimate.values)?;
         if let Some(deviations) = &estimate.deviations {
@@ -57,19 +73,50 @@ fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estima
         let head = scene.heads.iter().find(|head| head.name == estimate.name);
         panel.caption = head.map_or_else(String::new, |head| first_line(head.docs).into());
         let measured = prepared.measured.iter().find(|(name, _)| *name == estimate.name);
-        panel.measured = measured.map(|(_, values)| Curve::new(&prepared.times, values));
+        panel.measured = measured.map(|(_, values)| Curve::new(&prepared.points, values));
         panel.estimate = Some(Curve::new(fine, &estimate.values));
         panel.deviation.clone_from(&estimate.deviations);
         let truth = prepared.truth.as_ref();
-        panel.truth = truth.and_then(|truth| Some(Curve::new(&truth.times, truth.of(estimate.name)?)));
+        panel.truth = truth.and_then(|truth| Some(Curve::new(&truth.points, truth.of(estimate.name)?)));
         panel
     });
+    let x = Quantity::new("t", "s");
+    line_plot(&LinePlot { title: title(solution), subtitle: subtitle(prepared, solution), x, panels: panels.collect() })
+}
+
+/// Sources, or fields if there are none, over a plane domain.
+fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Result<Picture, DataError> {
+    let scene = solution.scene();
+    let (points, _) = prepared.points.as_chunks::<2>();
+    let sources = estimates.iter().any(|estimate| estimate.source);
+    let panels = estimates.iter().filter(|estimate| estimate.source == sources).take(3).map(|estimate| {
+        Ok(MapPanel {
+            title: "estimate".into(),
+            value: Quantity::new(estimate.name, estimate.unit.text),
+            grid: Grid::from_points(points, &estimate.values)?,
+            scale: ColourScale::sequential(&estimate.values),
+            contours: Vec::new(),
+        })
+    });
+    let quantity = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
+    field_map(&FieldMap {
+        title: title(solution),
+        x: quantity(0),
+        y: quantity(1),
+        outline: prepared.outline.clone(),
+        panels: panels.collect::<Result<_, DataError>>()?,
+    })
+}
+
+fn title(solution: &Solution) -> String {
+    first_line(solution.scene().docs).trim_end_matches('.').replace('`', "")
+}
+
+fn subtitle(prepared: &Prepared, solution: &Solution) -> String {
+    let scene = solution.scene();
     let file = prepared.source.rsplit(['/', '\\']).next().unwrap_or(&prepared.source);
     let method = solution.optimizer.name();
-    let subtitle = format!("{}, scene {}; {file}; {method}, {:.1} s", scene.module, scene.name, solution.wall_s);
-    let title = first_line(scene.docs).trim_end_matches('.').replace('`', "");
-    let x = Quantity::new("t", "s");
-    line_plot(&LinePlot { title, subtitle, x, panels: panels.collect() })
+    format!("{}, scene {}; {file}; {method}, {:.1} s", scene.module, scene.name, solution.wall_s)
 }
 
 fn first_line(docs: &str) -> &str {

@@ -14,7 +14,7 @@ pub(crate) struct Score {
 
 /// Mean absolute errors of every head that the truth has, over the truth's times; sources first.
 pub(crate) fn score(solution: &Solution, truth: &Truth) -> Vec<Score> {
-    let scored = solution.evaluate(&truth.times).into_iter().filter_map(|estimate| {
+    let scored = solution.evaluate(&truth.points).into_iter().filter_map(|estimate| {
         let values = truth.of(estimate.name)?;
         let mean = |of: &dyn Fn(usize) -> f64| (0..values.len()).map(of).sum::<f64>() / values.len() as f64;
         Some(Score {

@@ -51,7 +51,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
 
 /// What of the truth is not scored.
 fn unscored(truth: &Truth) -> Option<String> {
-    let all = truth.times.len() + truth.outside;
+    let all = truth.points.len() + truth.outside;
     (truth.outside > 0)
         .then(|| format!("{} of {all} rows of the truth are outside the data's times: not scored", truth.outside))
 }

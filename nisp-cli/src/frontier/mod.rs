@@ -114,14 +114,17 @@ fn trials(options: &Options) -> Vec<Trial> {
 /// Fresh copies of the truths, bound to the scene.
 fn samples(entry: &Entry, options: &Options) -> Result<Vec<Prepared>, String> {
     let request = Request { scene: options.scene.clone(), ..Request::default() };
+    let series = entry
+        .series()
+        .ok_or_else(|| format!("`{}` has no measurements over time to make noisy copies of", entry.name))?;
     let schema = entry.scene(options.scene.as_deref()).map_err(|error| error.to_string())?.schema;
     let prepare = |(index, path): (usize, &&str)| {
         let truth = Table::read(options.repository.join(path)).map_err(|error| {
             format!("{error}; the frontier needs the repository's data: name its folder with --repository")
         })?;
         let seed = options.seed.wrapping_add(index as u64);
-        let copy = noisy_copy(&truth, schema, entry.every, options.noise, seed).map_err(|error| error.to_string())?;
-        entry.bind(&request, &copy, Some(&truth)).map_err(|error| error.to_string())
+        let copy = noisy_copy(&truth, schema, series.every, options.noise, seed).map_err(|error| error.to_string())?;
+        series.bind(entry, &request, &copy, Some(&truth)).map_err(|error| error.to_string())
     };
-    entry.truths.iter().take(options.runs).enumerate().map(prepare).collect()
+    series.truths.iter().take(options.runs).enumerate().map(prepare).collect()
 }

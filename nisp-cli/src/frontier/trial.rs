@@ -60,7 +60,7 @@ pub(super) fn rivals(samples: &[Prepared]) -> Vec<Rival> {
     for sample in samples {
         let heads = sample.problem.scene().schema.heads;
         for head in heads.iter().filter(|head| head.source) {
-            let Some((at, truth)) = sample.truth.as_ref().and_then(|truth| Some((&truth.times, truth.of(head.name)?)))
+            let Some((at, truth)) = sample.truth.as_ref().and_then(|truth| Some((&truth.points, truth.of(head.name)?)))
             else {
                 continue;
             };

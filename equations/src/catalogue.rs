@@ -1,0 +1,132 @@
+//! The equations by name, and how a user's request becomes a bound problem.
+//!
+//! A new equation is one new file with its `pde!` and its `ENTRY`, and one line in [`catalogue`].
+
+use std::path::PathBuf;
+
+use nisp::{Problem, SceneRef};
+use nisp_data::nearest_name;
+
+use crate::error::PrepareError;
+use crate::rivals::{Answer, Measurements, System, contest, noise_level};
+use crate::series::Series;
+use crate::truth::Truth;
+use crate::{membrane, pendulum, plate, rlc, sponge};
+
+/// Everything that the command line knows.
+pub fn catalogue() -> [Entry; 5] {
+    [pendulum::ENTRY, rlc::ENTRY, plate::ENTRY, membrane::ENTRY, sponge::ENTRY]
+}
+
+/// An equation that the command line knows by name.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// One line about it.
+    pub about: &'static str,
+    /// Its scenes; the first is the default.
+    pub scenes: &'static [fn() -> SceneRef],
+    /// Path of the example's data in the repository; empty if there is none.
+    pub data: &'static str,
+    /// How it is bound.
+    pub binding: Binding,
+}
+
+/// How an entry's scenes are bound to what a user asks for.
+#[derive(Clone, Copy, Debug)]
+pub enum Binding {
+    /// To tables over time.
+    Series(Series),
+    /// In a way of its own.
+    Own(fn(&Entry, &Request) -> Result<Prepared, PrepareError>),
+    /// By a program that uses the library.
+    Library,
+}
+
+impl Entry {
+    /// The scene of a name, or the default.
+    ///
+    /// # Errors
+    /// No such scene.
+    pub fn scene(&self, name: Option<&str>) -> Result<SceneRef, PrepareError> {
+        let mut scenes = self.scenes.iter().map(|scene| scene());
+        let Some(name) = name else { return Ok(self.scenes[0]()) };
+        scenes.find(|scene| scene.schema.name == name).ok_or_else(|| {
+            let have: Vec<_> = self.scenes.iter().map(|scene| scene().schema.name).collect();
+            PrepareError::Scene { entry: self.name, scene: name.into(), hint: hint(name, &have), have: have.join(", ") }
+        })
+    }
+
+    /// Reads what is asked for and binds a scene to it.
+    ///
+    /// # Errors
+    /// A file, a column, a scene or a parameter that does not fit.
+    pub fn prepare(&self, request: &Request) -> Result<Prepared, PrepareError> {
+        match &self.binding {
+            Binding::Series(series) => series.prepare(self, request),
+            Binding::Own(prepare) => prepare(self, request),
+            Binding::Library => Err(PrepareError::Library { entry: self.name }),
+        }
+    }
+
+    /// How its scenes over time are bound to tables, if that is what they are.
+    pub fn series(&self) -> Option<&Series> {
+        match &self.binding {
+            Binding::Series(series) => Some(series),
+            Binding::Own(_) | Binding::Library => None,
+        }
+    }
+}
+
+/// What a user asks for.
+#[derive(Clone, Debug, Default)]
+pub struct Request {
+    /// Scene of the entry, or its default.
+    pub scene: Option<String>,
+    /// Table of measurements, or the example's.
+    pub data: Option<PathBuf>,
+    /// Truth to score against.
+    pub truth: Option<PathBuf>,
+    /// Names and the headers that hold them; the last word on a name counts.
+    pub columns: Vec<(String, String)>,
+    /// Parameters in their declared units; the last word on a name counts.
+    pub parameters: Vec<(String, f64)>,
+}
+
+/// A bound problem, what was measured, and what is true if that is known.
+pub struct Prepared {
+    /// The problem.
+    pub problem: Problem,
+    /// Where the answer is wanted, point by point, in declared units: times of measurements, places in a domain.
+    pub points: Vec<f64>,
+    /// The edge of a plane domain, for pictures; empty otherwise.
+    pub outline: Vec<[f64; 2]>,
+    /// Measured values by field.
+    pub measured: Vec<(&'static str, Vec<f64>)>,
+    /// Truth, for scoring only.
+    pub truth: Option<Truth>,
+    /// Where the data came from.
+    pub source: String,
+    /// What classical rivals solve, if they know this scene.
+    pub rival: Option<Box<dyn System>>,
+}
+
+impl Prepared {
+    /// What the classical rivals answer at times `at`, where `truth` is true; nothing where none knows this scene. They
+    /// are given the noise that they find themselves.
+    pub fn contest(&self, at: &[f64], truth: &[f64]) -> Vec<Answer> {
+        let Some(system) = &self.rival else { return Vec::new() };
+        let states: Vec<&[f64]> = self.measured.iter().map(|(_, values)| values.as_slice()).collect();
+        let noise: Result<Vec<f64>, _> = states.iter().map(|values| noise_level(&self.points, values)).collect();
+        let answers = noise.and_then(|noise| {
+            contest(system.as_ref(), &Measurements { times: &self.points, states: &states, noise: &noise }, at, truth)
+        });
+        // Rivals that cannot answer have no row in a table.
+        answers.unwrap_or_default()
+    }
+}
+
+pub(crate) fn hint(name: &str, have: &[&str]) -> String {
+    nearest_name(name, have.iter().copied()).map_or_else(String::new, |near| format!(", did you mean `{near}`?"))
+}

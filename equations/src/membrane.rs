@@ -1,0 +1,89 @@
+//! An inflated elliptical membrane, pressed by an unknown object (paper, section 4.4).
+
+use nisp::scene;
+
+use crate::catalogue::{Binding, Entry};
+
+/// The membrane on the command line.
+pub(crate) const ENTRY: Entry = Entry {
+    name: "membrane",
+    about: "the contact pressure on an inflated membrane, or its modulus, from a point cloud",
+    scenes: &[
+        scene::<membrane::contact::Scene>,
+        scene::<membrane::identify::Scene>,
+        scene::<membrane::contact_no_inplane::Scene>,
+        scene::<membrane::identify_no_inplane::Scene>,
+        scene::<membrane::contact_thin::Scene>,
+        scene::<membrane::identify_thin::Scene>,
+    ],
+    data: "",
+    binding: Binding::Library,
+};
+
+nisp::pde! {
+    /// Von Karman's plate: small strains, finite slopes. A point at rest at `(alpha, beta, 0)` moves to
+    /// `(alpha + u, beta + v, w)`; `f` is the contact pressure over the area at rest.
+    pub mod membrane {
+        coordinates:
+            /// place at rest, along the long axis
+            alpha [m],
+            /// place at rest, along the short axis
+            beta [m];
+        fields:
+            /// displacement along `alpha`
+            u [mm],
+            /// displacement along `beta`
+            v [mm],
+            /// height
+            w [mm];
+        sources:
+            /// contact pressure
+            f [Pa] >= 0;
+        parameters:
+            /// Young's modulus
+            E [Pa] in 1e4 .. 1e7 = 341260,
+            /// Poisson's ratio
+            nu in 0 .. 0.5 = 0.5,
+            /// thickness
+            t [mm] = 0.45,
+            /// gauge pressure
+            p [Pa];
+
+        let D = E * t^3 / (12 * (1 - nu^2));
+        let C = E * t / (1 - nu^2);
+        let E_aa = d(u, alpha) + d(w, alpha)^2 / 2;
+        let E_bb = d(v, beta) + d(w, beta)^2 / 2;
+        let E_ab = (d(u, beta) + d(v, alpha) + d(w, alpha) * d(w, beta)) / 2;
+        let N_a = C * (E_aa + nu * E_bb);
+        let N_b = C * (E_bb + nu * E_aa);
+        let N_ab = C * (1 - nu) * E_ab;
+        let tension = N_a * d(w, alpha, 2) + 2 * N_ab * d(w, alpha, beta) + N_b * d(w, beta, 2);
+
+        on interior {
+            /// the plate, bending included
+            balance: D * biharmonic(w) - tension == p - f;
+            /// the plate without bending, which matters within a quarter of a millimetre of rims
+            thin: -tension == p - f;
+            /// no friction: in-plane forces balance
+            inplane_a: d(N_a, alpha) + d(N_ab, beta) == 0;
+            inplane_b: d(N_ab, alpha) + d(N_b, beta) == 0;
+        }
+        on surface { cloud: chamfer [alpha + u, beta + v, w]; }
+        on rim { clamp: u == 0, v == 0, w == 0; no_contact: f == 0; }
+
+        /// The contact pressure, from a cloud of the pressed membrane.
+        scene contact { without interior.thin; }
+        /// Young's modulus, from a cloud of the inflated membrane that nothing touches.
+        scene identify { f = 0; learn E; without interior.thin, rim.no_contact; }
+        /// The contact pressure without in-plane equilibrium, as the paper has it: the cloud alone ties down `u` and `v`.
+        scene contact_no_inplane { without interior.thin, interior.inplane_a, interior.inplane_b; }
+        /// Young's modulus without in-plane equilibrium.
+        scene identify_no_inplane {
+            f = 0; learn E; without interior.thin, interior.inplane_a, interior.inplane_b, rim.no_contact;
+        }
+        /// The contact pressure of a membrane that does not resist bending: second derivatives are enough.
+        scene contact_thin { without interior.balance; }
+        /// Young's modulus of a membrane that does not resist bending.
+        scene identify_thin { f = 0; learn E; without interior.balance, rim.no_contact; }
+    }
+}
