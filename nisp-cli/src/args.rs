@@ -66,11 +66,11 @@ pub(crate) struct Options {
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = optimizers(), help_heading = METHOD)]
     pub(crate) optimizer: String,
     /// Hidden units of a layer.
-    #[arg(long, value_name = "N", default_value_t = 16, value_parser = count, allow_negative_numbers = true,
+    #[arg(long, value_name = "N", default_value_t = 16, value_parser = size, allow_negative_numbers = true,
           help_heading = METHOD)]
     pub(crate) width: usize,
     /// Layers.
-    #[arg(long, value_name = "N", default_value_t = 2, value_parser = count, allow_negative_numbers = true,
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = size, allow_negative_numbers = true,
           help_heading = METHOD)]
     pub(crate) layers: usize,
     /// Threads [default: one per processor]. The answer does not depend on them.
@@ -155,6 +155,15 @@ const MOST: usize = 1_000_000_000;
 pub(crate) fn count(text: &str) -> Result<usize, String> {
     let number = text.parse::<usize>().ok().filter(|number| (1..=MOST).contains(number));
     number.ok_or_else(|| "give a whole number of at least 1".into())
+}
+
+/// Networks wider or deeper than this are a slip.
+const WIDEST: usize = 4096;
+
+/// A size of a network.
+pub(crate) fn size(text: &str) -> Result<usize, String> {
+    let number = text.parse::<usize>().ok().filter(|number| (1..=WIDEST).contains(number));
+    number.ok_or_else(|| format!("give a whole number of at least 1 and at most {WIDEST}"))
 }
 
 /// A time above zero.

@@ -14,7 +14,7 @@ use nisp::{Optimizer, Width};
 use nisp_data::{OutDir, Table};
 use nisp_equations::{Entry, Prepared, Request, noisy_copy};
 
-use crate::args::{count, number, optimizers, seconds};
+use crate::args::{count, number, optimizers, seconds, size};
 use crate::interrupt;
 use report::{Figures, Point};
 use trial::Trial;
@@ -36,7 +36,7 @@ pub(crate) struct Options {
           default_value = "adam,lbfgs,broyden,lm,evidence")]
     optimizers: Vec<String>,
     /// Widths of the network, separated by commas.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "8,16,32", value_parser = count)]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "8,16,32", value_parser = size)]
     widths: Vec<usize>,
     /// Element types, separated by commas; a method that needs f64 is tried in it only.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "f32,f64", value_parser = ["f32", "f64"])]

@@ -76,7 +76,9 @@ pub enum BindError {
         term: &'static str,
     },
     /// A network that cannot be.
-    #[error("a network of {layers} layers of {width} units cannot be built; both must be at least 1")]
+    #[error(
+        "a network of {layers} layers of {width} units cannot be built; both must be at least 1, and their product not huge"
+    )]
     Architecture {
         /// Layers asked for.
         layers: usize,
@@ -284,6 +286,9 @@ fn learned(schema: &schema::Scene, system: &UnitSystem, scalars: &[f64]) -> Vec<
         .collect()
 }
 
+/// Solvers keep some vectors of this length, of a gigabyte each.
+const MOST_PARAMETERS: usize = 100_000_000;
+
 impl Bound {
     /// The engine of this problem in precision `E`, for a network of the given shape.
     pub(crate) fn engine<E: Precision>(&self, architecture: Architecture) -> Result<Engine<E>, BindError> {
@@ -299,6 +304,9 @@ impl Bound {
         let inputs = scene.schema.coordinates.len();
         let lanes = isa.lanes::<E>();
         let layout = Layout::new(architecture, inputs, scene.schema.heads.len(), self.learned.len(), lanes);
+        if layout.len > MOST_PARAMETERS {
+            return Err(BindError::Architecture { layers: architecture.layers, width: architecture.width });
+        }
         let mut groups = Vec::new();
         for (at, kernel) in E::kernels(&scene).into_iter().enumerate().take(scene.schema.groups.len()) {
             let schema = &scene.schema.groups[at];

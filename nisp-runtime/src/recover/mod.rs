@@ -42,6 +42,19 @@ pub enum RecoverError {
         /// The method.
         optimizer: &'static str,
     },
+    /// Matrices too large for the method.
+    #[error(
+        "optimizer {optimizer} is too costly for {parameters} parameters and {rows} rows; choose a smaller width, or \
+         optimizer lbfgs or adam"
+    )]
+    Size {
+        /// The method.
+        optimizer: &'static str,
+        /// Parameters of the network.
+        parameters: usize,
+        /// Residuals.
+        rows: usize,
+    },
     /// Threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -108,7 +121,11 @@ fn solve_double(
 ) -> Result<Solution, RecoverError> {
     let mut engine: Engine<f64> = bound.engine(settings.architecture)?;
     let noise = noise::estimate(&bound);
-    let optimizer = settings.optimizer.choose(&noise);
+    let (parameters, rows) = (engine.parameters(), engine.row_count());
+    let optimizer = settings.optimizer.choose(&noise, parameters, rows);
+    if !optimizer.fits(parameters, rows) {
+        return Err(RecoverError::Size { optimizer: optimizer.name(), parameters, rows });
+    }
     let theta = initialise(engine.layout(), settings.seed);
     let monitor = &mut forward(monitor);
     let len = engine.parameters();

@@ -95,12 +95,30 @@ impl Optimizer {
         Self::ALL.into_iter().find(|optimizer| optimizer.name() == name)
     }
 
-    /// What `Auto` stands for, given the data.
-    pub(super) fn choose(self, noise: &Noise) -> Self {
+    /// What `Auto` stands for, given the data and the number of parameters.
+    pub(super) fn choose(self, noise: &Noise, parameters: usize, rows: usize) -> Self {
+        let fast = |optimizer: Self| 3 * parameters <= MOST_DENSE && optimizer.fits(parameters, rows);
         match self {
-            Self::Auto if noise.is_exact() => Self::Broyden,
-            Self::Auto => Self::Evidence,
+            Self::Auto if noise.is_exact() && fast(Self::Broyden) => Self::Broyden,
+            Self::Auto if !noise.is_exact() && fast(Self::Evidence) => Self::Evidence,
+            Self::Auto => Self::Lbfgs,
             chosen => chosen,
         }
     }
+
+    /// Whether the method's matrices can be worked with.
+    pub(super) fn fits(self, parameters: usize, rows: usize) -> bool {
+        match self {
+            Self::Adam | Self::Lbfgs => true,
+            Self::Auto | Self::Broyden => parameters <= MOST_DENSE,
+            Self::Marquardt | Self::Evidence => {
+                parameters <= MOST_DENSE && parameters.saturating_mul(rows) <= MOST_DERIVATIVES
+            }
+        }
+    }
 }
+
+/// Side of the largest matrix that a step or an error bar may factorise: a gigabyte, and seconds.
+const MOST_DENSE: usize = 12_000;
+/// Derivatives of all rows by all parameters, at most: four gigabytes.
+const MOST_DERIVATIVES: usize = 500_000_000;
