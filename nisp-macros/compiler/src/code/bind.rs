@@ -112,6 +112,7 @@ fn step(model: &Model, at: usize, group: &GroupPlan) -> TokenStream {
         pub struct #this(::nisp::Problem);
         impl #this {
             #[doc = #doc]
+            #[allow(clippy::too_many_arguments)]
             pub fn #method(
                 self, points: impl Into<::nisp::Points>, #partners #(#arguments,)* #(#cloud_arguments,)*
             ) -> #next {
