@@ -6,11 +6,12 @@ use std::process::ExitCode;
 pub(crate) fn list() -> Result<ExitCode, String> {
     let mut text = String::new();
     for entry in nisp_equations::catalogue() {
-        text += &format!("{:12} {}\n", entry.name, entry.about);
-        for scene in entry.scenes {
-            let schema = scene().schema;
+        text += &format!("{:10} {}\n", entry.name, entry.about);
+        let schemas: Vec<_> = entry.scenes.iter().map(|scene| scene().schema).collect();
+        let widest = schemas.iter().map(|schema| schema.name.len()).max().unwrap_or(0);
+        for schema in schemas {
             let about = schema.docs.lines().next().unwrap_or_default();
-            text += &format!("{:12} --scene {:10} {about}\n", "", schema.name);
+            text += &format!("{:10} --scene {:widest$}  {about}\n", "", schema.name);
         }
     }
     crate::print(&text)?;
