@@ -4,7 +4,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 use nisp::engine::Engine;
-use nisp::network::{Architecture, Fourier, initialise};
+use nisp::network::{Architecture, Fourier, Inputs, initialise};
 use nisp::simd::Isa;
 use nisp::solve::adam::{Adam, AdamSettings};
 use nisp::solve::method::Method;
@@ -79,11 +79,11 @@ fn allocations_of_steps<E: Precision>(problem: &Problem, architecture: Architect
 #[test]
 fn a_warm_step_allocates_nothing() {
     let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("threads");
-    let mapped = Some(Fourier { frequencies: 6, deviation: 1.0 });
+    let mapped = Inputs::Fourier(Fourier { frequencies: 6, deviation: 1.0 });
     // The last is wide enough for the optimizer's update to be shared out.
     for architecture in [
         Architecture::modified(24, 3),
-        Architecture { factorised: true, fourier: mapped, ..Architecture::plain(16, 2) },
+        Architecture { factorised: true, inputs: mapped, ..Architecture::plain(16, 2) },
         Architecture::modified(128, 3),
     ] {
         let problem = problem();

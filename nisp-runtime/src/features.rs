@@ -1,24 +1,31 @@
-//! Random Fourier features of the coordinates, with all their channels, on a tile of points.
+//! Fixed features of the coordinates, with all their channels, on a tile of points.
 //!
-//! The argument is affine, so a channel of `sin(b . x + phase)` is a shifted sine times a polynomial in `b`: the same rule
-//! as for an affine layer, with the derivatives of the sine in place of those of `tanh`.
+//! The argument is affine, so a channel of `phi(b . x + phase)` is a derivative of `phi` times a polynomial in `b`: the
+//! same rule as for an affine layer, with another function in the place of `tanh`.
 
 use std::marker::PhantomData;
 
 use crate::kernel::Rules;
 use crate::layer::Shape;
+use crate::network::Function;
 use crate::real::Real;
 use crate::simd::{Kernel, Simd};
 
-/// Features `sin(b . x + phase)`; a cosine is a sine a quarter turn ahead.
+/// Features `phi(b . x + phase) + c . x + offset`.
 #[derive(Debug)]
 pub struct Features<'a, E> {
     /// Shape of the tile, with features in the place of units.
     pub shape: Shape,
+    /// The function `phi`.
+    pub function: Function,
     /// Projections `b`, `[coordinate][feature]`, `width` apart.
     pub projections: &'a [E],
     /// Phases, one per feature.
     pub phases: &'a [E],
+    /// Linear parts `c`, as the projections.
+    pub linear: &'a [E],
+    /// Offsets, one per feature.
+    pub offsets: &'a [E],
     /// Network coordinates, `[point][coordinate]`.
     pub coordinates: &'a [E],
     /// Output: channels, `[point][channel][feature]`.
@@ -30,6 +37,36 @@ pub(crate) struct FeaturesKernel<'a, E, R, const K: usize, const D: usize, const
     pub(crate) PhantomData<R>,
 );
 
+/// Smallest argument of a logarithm: features are constant below, where no point of the domain lies.
+const SMALLEST: f64 = 0.5;
+
+/// `phi(a)` and its derivatives.
+#[inline(always)]
+fn derivatives<V: Simd, const D: usize>(function: Function, a: V) -> [V; D] {
+    let zero = V::splat(V::Elem::ZERO);
+    let mut phi = [zero; D];
+    match function {
+        Function::Sine => {
+            let (sin, cos) = (a.map(f64::sin), a.map(f64::cos));
+            for (n, phi) in phi.iter_mut().enumerate() {
+                *phi = [sin, cos, zero.sub(sin), zero.sub(cos)][n % 4];
+            }
+        }
+        Function::Logarithm { scale } => {
+            let a = a.max(V::splat(V::Elem::from_f64(SMALLEST)));
+            let scale = V::splat(V::Elem::from_f64(scale));
+            phi[0] = scale.mul(a.map(f64::ln));
+            // Derivative n is scale (-1)^(n - 1) (n - 1)! / a^n.
+            let mut last = scale.div(a);
+            for (n, phi) in phi.iter_mut().enumerate().skip(1) {
+                *phi = last;
+                last = last.mul(V::splat(V::Elem::from_f64(-(n as f64)))).div(a);
+            }
+        }
+    }
+    phi
+}
+
 impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize> Kernel<E>
     for FeaturesKernel<'_, E, R, K, D, S>
 {
@@ -37,28 +74,34 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
 
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
-        let Features { shape, projections, phases, coordinates, output } = self.0;
+        let Features { shape, function, projections, phases, linear, offsets, coordinates, output } = self.0;
         shape.holds(output, K);
-        assert!(projections.len() >= S * shape.width && phases.len() >= shape.width);
+        assert!([projections, linear].iter().all(|x| x.len() >= S * shape.width));
+        assert!([phases, offsets].iter().all(|x| x.len() >= shape.width));
         assert!(coordinates.len() >= shape.points * S && shape.width % V::LANES == 0);
         for u in (0..shape.width).step_by(V::LANES) {
             // SAFETY: lengths were checked above; u + LANES <= width.
             unsafe {
                 let mut b = [V::splat(E::ZERO); S];
-                for (i, b) in b.iter_mut().enumerate() {
-                    *b = V::load(projections.as_ptr().add(i * shape.width + u));
+                let mut c = b;
+                for i in 0..S {
+                    b[i] = V::load(projections.as_ptr().add(i * shape.width + u));
+                    c[i] = V::load(linear.as_ptr().add(i * shape.width + u));
                 }
                 for p in 0..shape.points {
                     let mut a = V::load(phases.as_ptr().add(u));
-                    for (i, &b) in b.iter().enumerate() {
-                        a = b.mul_add(V::splat(*coordinates.get_unchecked(p * S + i)), a);
+                    let mut line = [V::splat(E::ZERO); D];
+                    line[0] = V::load(offsets.as_ptr().add(u));
+                    for i in 0..S {
+                        let x = V::splat(*coordinates.get_unchecked(p * S + i));
+                        a = b[i].mul_add(x, a);
+                        line[0] = c[i].mul_add(x, line[0]);
                     }
-                    let (sin, cos) = (a.map(f64::sin), a.map(f64::cos));
-                    let (zero, mut phi) = (V::splat(E::ZERO), [sin; D]);
-                    for (n, phi) in phi.iter_mut().enumerate() {
-                        *phi = [sin, cos, zero.sub(sin), zero.sub(cos)][n % 4];
+                    if D > 1 {
+                        line[1] = V::splat(E::ONE);
                     }
-                    for (k, y) in R::affine(&phi, &b).into_iter().enumerate() {
+                    let curved = R::affine(&derivatives::<V, D>(function, a), &b);
+                    for (k, y) in curved.into_iter().zip(R::affine(&line, &c)).map(|(x, y)| x.add(y)).enumerate() {
                         y.store(output.as_mut_ptr().add((p * K + k) * shape.ld + u));
                     }
                 }

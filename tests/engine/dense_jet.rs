@@ -118,6 +118,17 @@ impl<'s, T: Number> Jet<'s, T> {
         (self.compose(&series(0)), self.compose(&series(1)))
     }
 
+    /// Natural logarithm.
+    pub(crate) fn ln(&self) -> Self {
+        let a = self.coefficients[0];
+        let value = a.chain(a.value().ln(), 1.0 / a.value());
+        // Derivative n is (-1)^(n - 1) (n - 1)! / a^n.
+        let rest = std::iter::successors(Some((1.0, T::of(1.0) / a)), |&(n, f)| Some((n + 1.0, T::of(-n) * f / a)));
+        let derivatives: Vec<T> =
+            std::iter::once(value).chain(rest.map(|(_, f)| f)).take(self.space.order + 1).collect();
+        self.compose(&derivatives)
+    }
+
     /// The value.
     pub(crate) fn value(&self) -> T {
         self.coefficients[0]

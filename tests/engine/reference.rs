@@ -1,7 +1,7 @@
 //! The network and the loss in plain loops over dense jets: what the engine is compared with.
 
 use nisp::engine::{Engine, Scaling};
-use nisp::network::{Architecture, Fourier, Kind, Layout, Matrix, initialise};
+use nisp::network::{Architecture, Fourier, Inputs, Kind, Layout, Matrix, Stretched, initialise};
 use nisp::schema::{self, Loss, TermKind};
 use nisp::simd::Isa;
 use nisp::solve::objective::LeastSquares;
@@ -115,9 +115,10 @@ impl<'m, M: Model> Reference<'m, M> {
             .enumerate()
             .map(|(i, (x, (centre, half)))| Jet::variable(&self.space, i, (x - centre) / half, 1.0 / half))
             .collect();
-        let inputs = match layout.architecture.fourier {
-            None => inputs,
-            Some(fourier) => features(&fourier.projections(x.len()), &inputs),
+        let inputs = match layout.architecture.inputs {
+            Inputs::Fourier(fourier) => turns(&fourier.projections(x.len()), &inputs),
+            Inputs::Stretched(stretched) => logarithms(stretched.ratio, inputs),
+            _ => inputs,
         };
         let lifted: Vec<Vec<Jet<'s, T>>> = layout.affine.iter().map(|m| activate(affine(m, theta, &inputs))).collect();
         let gate = |z: Vec<Jet<'s, T>>| -> Vec<Jet<'s, T>> {
@@ -230,13 +231,21 @@ fn affine<'s, T: Number>(m: &Matrix, theta: &[T], input: &[Jet<'s, T>]) -> Vec<J
 }
 
 /// Cosines, then sines, of the projections of the coordinates.
-fn features<'s, T: Number>(projections: &[f64], inputs: &[Jet<'s, T>]) -> Vec<Jet<'s, T>> {
+fn turns<'s, T: Number>(projections: &[f64], inputs: &[Jet<'s, T>]) -> Vec<Jet<'s, T>> {
     let angles = projections.chunks_exact(inputs.len()).map(|b| {
         let products = inputs.iter().zip(b).map(|(x, &b)| x.clone().scale(T::of(b)));
         products.reduce(|a, b| a + b).expect("a coordinate")
     });
     let (sines, cosines): (Vec<_>, Vec<_>) = angles.map(|angle| angle.sin_cos()).unzip();
     cosines.into_iter().chain(sines).collect()
+}
+
+/// The coordinates, and `ln(1 + ratio (x + 1) / 2)` of each, brought to [-1, 1].
+fn logarithms<'s, T: Number>(ratio: f64, inputs: Vec<Jet<'s, T>>) -> Vec<Jet<'s, T>> {
+    let of = |x: &Jet<'s, T>| x.clone().scale(T::of(ratio / 2.0)).shift(T::of(1.0 + ratio / 2.0)).ln();
+    let ends = (1.0 + ratio).ln();
+    let stretched: Vec<_> = inputs.iter().map(|x| of(x).scale(T::of(2.0 / ends)).shift(T::of(-1.0))).collect();
+    inputs.into_iter().chain(stretched).collect()
 }
 
 fn activate<T: Number>(arguments: Vec<Jet<'_, T>>) -> Vec<Jet<'_, T>> {
@@ -248,7 +257,8 @@ pub(crate) fn engine<E: nisp::Precision>(problem: &Problem, architecture: Archit
     problem.engine(Isa::detect(), architecture).expect("a bound problem")
 }
 
-/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, with and without Fourier mapping, widths that need padding.
+/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, all inputs, widths that
+/// need padding.
 pub(crate) fn architectures() -> Vec<Architecture> {
     (1..=5)
         .flat_map(|layers| {
@@ -258,7 +268,11 @@ pub(crate) fn architectures() -> Vec<Architecture> {
         .enumerate()
         .map(|(at, architecture)| Architecture {
             factorised: at % 3 == 1,
-            fourier: (at % 4 == 2).then_some(Fourier { frequencies: 5, deviation: 1.0 }),
+            inputs: match at % 4 {
+                2 => Inputs::Fourier(Fourier { frequencies: 5, deviation: 1.0 }),
+                3 => Inputs::Stretched(Stretched { ratio: 20.0 }),
+                _ => Inputs::Coordinates,
+            },
             ..architecture
         })
         .collect()

@@ -1,6 +1,6 @@
 //! Rows and their derivatives, as second-order methods use them.
 
-use nisp::network::{Architecture, Fourier};
+use nisp::network::{Architecture, Fourier, Inputs};
 use nisp::solve::objective::LeastSquares;
 
 use crate::models::each_model;
@@ -12,7 +12,10 @@ fn rows_are_consistent<M: Model>(model: &M) {
         Architecture::modified(11, 3),
         Architecture { factorised: true, ..Architecture::plain(8, 2) },
         Architecture::plain(13, 1),
-        Architecture { fourier: Some(Fourier { frequencies: 4, deviation: 0.8 }), ..Architecture::modified(7, 2) },
+        Architecture {
+            inputs: Inputs::Fourier(Fourier { frequencies: 4, deviation: 0.8 }),
+            ..Architecture::modified(7, 2)
+        },
     ] {
         let reference = Reference::new(model, architecture);
         let theta = reference.theta(17);

@@ -1,7 +1,7 @@
 //! From coordinates to the channels of the first layer and the gates, and back to their weights.
 //!
-//! On raw coordinates these layers are affine maps under a `tanh`, whose channels have closed forms. After a Fourier
-//! mapping they are ordinary layers on the features' channels; the features themselves are fixed and need no adjoint.
+//! On raw coordinates these layers are affine maps under a `tanh`, whose channels have closed forms. On
+//! features of the coordinates they are ordinary layers; the features themselves are fixed and need no adjoint.
 
 use super::tile::{Buffers, Network, Parts, Tile};
 use crate::features::Features;
@@ -17,8 +17,11 @@ impl<E: Real> Network<'_, E> {
         if let Some(features) = &self.weights.features {
             let layer = Features {
                 shape: Shape { points: shape.points, ..features.shape },
+                function: features.function,
                 projections: &features.projections,
                 phases: &features.phases,
+                linear: &features.linear,
+                offsets: &features.offsets,
                 coordinates: &buffers.coordinates,
                 output: &mut buffers.features,
             };

@@ -17,9 +17,9 @@ pub(crate) const POINT_LANES: usize = 16;
 /// Scratch of one worker, large enough for a tile of any group.
 pub(crate) struct Buffers<E: Real> {
     pub(super) coordinates: AlignedVec<E>,
-    /// Channels of the Fourier features, if there are any.
+    /// Channels of the features of the coordinates, if there are any.
     pub(super) features: AlignedVec<E>,
-    /// `tanh` of the first layer and the gates (after a Fourier mapping, their arguments), and its slope.
+    /// `tanh` of the first layer and the gates (on features of the coordinates, their arguments), and its slope.
     pub(super) values: Vec<AlignedVec<E>>,
     pub(super) slopes: Vec<AlignedVec<E>>,
     /// Channels of the first layer, of `c - d`, and of `d`.
@@ -77,10 +77,7 @@ impl<E: Real> Buffers<E> {
         let rows = || AlignedVec::zeros(extent.rows * ld);
         let values = || AlignedVec::zeros(extent.points * ld);
         let quantities = |count: usize| AlignedVec::zeros(count * stride);
-        let features = match layout.architecture.fourier {
-            None => 0,
-            Some(_) => extent.rows * row_distance(layout.affine[0].padded_row),
-        };
+        let features = if layout.is_mapped() { extent.rows * row_distance(layout.affine[0].padded_row) } else { 0 };
         Self {
             coordinates: AlignedVec::zeros(extent.points * layout.inputs),
             features: AlignedVec::zeros(features),

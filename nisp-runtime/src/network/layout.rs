@@ -91,11 +91,11 @@ impl Layout {
         let units = architecture.width;
         let affine = ["first layer", "gate c", "gate d"][..1 + architecture.gates()]
             .iter()
-            .map(|&name| match architecture.fourier {
+            .map(|&name| match architecture.inputs.features(inputs) {
                 None => at.matrix(name.into(), [units, inputs], [width, inputs], true),
-                Some(fourier) => {
-                    let features = 2 * fourier.frequencies;
-                    at.matrix(name.into(), [units, features], [width, features.next_multiple_of(lanes)], false)
+                Some((_, features)) => {
+                    let padded = [width, features.len().next_multiple_of(lanes)];
+                    at.matrix(name.into(), [units, features.len()], padded, false)
                 }
             })
             .collect();
@@ -117,6 +117,11 @@ impl Layout {
             len: at.theta + learned,
             padded_len: (learned_at + learned).next_multiple_of(lanes),
         }
+    }
+
+    /// True if the network sees features of the coordinates instead of the coordinates.
+    pub(crate) fn is_mapped(&self) -> bool {
+        self.architecture.inputs.features(self.inputs).is_some()
     }
 
     /// All matrices, in order.

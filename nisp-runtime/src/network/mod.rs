@@ -1,11 +1,12 @@
 //! The network: its architecture, where its parameters live, and the working form of its weights.
 
 mod init;
+mod inputs;
 mod layout;
 mod weights;
 
 pub use init::initialise;
-use rand::{SeedableRng, rngs::StdRng};
+pub use inputs::{Fourier, Function, Inputs, Stretched};
 
 #[cfg(test)]
 pub(crate) use init::normal;
@@ -24,8 +25,8 @@ pub struct Architecture {
     pub layers: usize,
     /// Weight matrices as `diag(exp s) V` (random weight factorisation).
     pub factorised: bool,
-    /// A random Fourier mapping of the coordinates ahead of the first layer.
-    pub fourier: Option<Fourier>,
+    /// What the first layer and the gates see of the coordinates.
+    pub inputs: Inputs,
 }
 
 /// How a hidden layer ends.
@@ -37,27 +38,10 @@ pub enum Kind {
     Plain,
 }
 
-/// Random Fourier features: cosines, then sines, of `frequencies` random projections of the coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Fourier {
-    /// Number of projections; there are twice as many features.
-    pub frequencies: usize,
-    /// Standard deviation of the projections, in radians per half the domain.
-    pub deviation: f64,
-}
-
-impl Fourier {
-    /// The projections, `[projection][coordinate]`: normal numbers that depend on nothing but these settings.
-    pub fn projections(&self, coordinates: usize) -> Vec<f64> {
-        let mut random = StdRng::seed_from_u64(0);
-        (0..self.frequencies * coordinates).map(|_| self.deviation * init::normal(&mut random)).collect()
-    }
-}
-
 impl Architecture {
-    /// The gated network of a given size, without factorisation or Fourier mapping.
+    /// The gated network of a given size, on the plain coordinates, without factorisation.
     pub fn modified(width: usize, layers: usize) -> Self {
-        Self { kind: Kind::Modified, width, layers, factorised: false, fourier: None }
+        Self { kind: Kind::Modified, width, layers, factorised: false, inputs: Inputs::Coordinates }
     }
 
     /// The plain network of a given size.

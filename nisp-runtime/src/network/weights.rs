@@ -1,6 +1,7 @@
 //! The working form of the weights: materialised and packed once per step, for all tiles.
 
-use super::{Fourier, Layout, Matrix};
+use super::inputs::{Feature, Function};
+use super::{Layout, Matrix};
 use crate::aligned::AlignedVec;
 use crate::gemm::{self, Left, Packed, Right, Write, gemm};
 use crate::layer::{Shape, row_distance};
@@ -15,34 +16,48 @@ pub struct Weights<E: Real> {
     pub(crate) features: Option<Mapping<E>>,
 }
 
-/// A Fourier mapping, and the matrices on its features.
+/// Features of the coordinates, and the matrices on them.
 #[derive(Debug)]
 pub(crate) struct Mapping<E: Real> {
     /// Features in the place of units, no points.
     pub(crate) shape: Shape,
+    pub(crate) function: Function,
     /// `[coordinate][feature]`, padded.
     pub(crate) projections: AlignedVec<E>,
     pub(crate) phases: AlignedVec<E>,
+    /// `[coordinate][feature]`, padded.
+    pub(crate) linear: AlignedVec<E>,
+    pub(crate) offsets: AlignedVec<E>,
     /// `W^T` of the first layer and the gates.
     pub(crate) matrices: Vec<Packed<E>>,
 }
 
 impl<E: Real> Mapping<E> {
-    fn new(isa: Isa, layout: &Layout, fourier: Fourier) -> Self {
+    fn new(isa: Isa, layout: &Layout, (function, features): (Function, Vec<Feature>)) -> Self {
         let width = layout.affine[0].padded_row;
-        let mut projections = AlignedVec::zeros(layout.inputs * width);
-        let mut phases = AlignedVec::zeros(width);
-        for (f, projection) in fourier.projections(layout.inputs).chunks_exact(layout.inputs).enumerate() {
-            // The cosines come first.
-            phases[f] = E::from_f64(std::f64::consts::FRAC_PI_2);
-            for (i, &b) in projection.iter().enumerate() {
-                for feature in [f, fourier.frequencies + f] {
-                    projections[i * width + feature] = E::from_f64(b);
+        let by_feature = |value: &dyn Fn(&Feature) -> f64| {
+            let mut values = AlignedVec::zeros(width);
+            values.iter_mut().zip(&features).for_each(|(to, feature)| *to = E::from_f64(value(feature)));
+            values
+        };
+        let by_coordinate = |value: &dyn Fn(&Feature) -> &[f64]| {
+            let mut values = AlignedVec::zeros(layout.inputs * width);
+            for (f, feature) in features.iter().enumerate() {
+                for (i, &x) in value(feature).iter().enumerate() {
+                    values[i * width + f] = E::from_f64(x);
                 }
             }
+            values
+        };
+        Self {
+            shape: Shape { points: 0, width, ld: row_distance(width) },
+            function,
+            projections: by_coordinate(&|feature| &feature.projection),
+            phases: by_feature(&|feature| feature.phase),
+            linear: by_coordinate(&|feature| &feature.linear),
+            offsets: by_feature(&|feature| feature.offset),
+            matrices: layout.affine.iter().map(|_| Packed::zeros(isa, width, layout.width)).collect(),
         }
-        let matrices = layout.affine.iter().map(|_| Packed::zeros(isa, width, layout.width)).collect();
-        Self { shape: Shape { points: 0, width, ld: row_distance(width) }, projections, phases, matrices }
     }
 }
 
@@ -62,7 +77,11 @@ impl<E: Real> Weights<E> {
         Self {
             padded: AlignedVec::zeros(layout.padded_len),
             hidden: layout.hidden.iter().map(|_| Hidden { forward: pack(), backward: pack() }).collect(),
-            features: layout.architecture.fourier.map(|fourier| Mapping::new(isa, layout, fourier)),
+            features: layout
+                .architecture
+                .inputs
+                .features(layout.inputs)
+                .map(|features| Mapping::new(isa, layout, features)),
         }
     }
 
