@@ -22,6 +22,22 @@ pub(crate) struct Given<'a> {
 /// Times at which the equations are asked to hold.
 const COLLOCATION: usize = 300;
 
+/// Range over the thinnest layer at the start that is to be resolved, as in `nisp::network::Inputs::Automatic`.
+const RATIO: f64 = 100.0;
+
+/// Place `i` of the collocation points in [0, 1]: half of them spread evenly, half evenly in the logarithm of the time
+/// since the start.
+fn collocation(i: usize) -> f64 {
+    let share = i as f64 / (COLLOCATION - 1) as f64;
+    let (mut low, mut high) = (0.0, 1.0);
+    while high - low > f64::EPSILON {
+        let middle: f64 = 0.5 * (low + high);
+        let so_far = 0.5 * (middle + (RATIO * middle).ln_1p() / RATIO.ln_1p());
+        *(if so_far < share { &mut low } else { &mut high }) = middle;
+    }
+    high
+}
+
 /// Products of a few numbers up to this size are finite.
 const LARGEST: f64 = 1e60;
 
@@ -107,9 +123,7 @@ impl Series {
             let points: Vec<f64> = match (group.columns.is_empty(), group.name) {
                 (false, _) => times.clone(),
                 (true, "start") => vec![first],
-                (true, _) => {
-                    (0..COLLOCATION).map(|i| first + (last - first) * i as f64 / (COLLOCATION - 1) as f64).collect()
-                }
+                (true, _) => (0..COLLOCATION).map(|i| first + (last - first) * collocation(i)).collect(),
             };
             problem.set_group(group.name, points.into(), columns)?;
         }

@@ -85,7 +85,7 @@ impl<'m, M: Model> Reference<'m, M> {
     pub(crate) fn new(model: &'m M, architecture: Architecture) -> Self {
         let problem = model.problem();
         let engine = engine::<f64>(&problem, architecture);
-        let scaling = problem.scaling().expect("a bound problem");
+        let scaling = problem.scaling(architecture.inputs).expect("a bound problem");
         Self {
             model,
             layout: engine.layout().clone(),

@@ -77,6 +77,15 @@ impl Inputs {
         }
     }
 
+    /// How much steeper than across the whole range functions of these inputs are expected to be: between the slopes at
+    /// the ends of a stretched coordinate, the geometric mean.
+    pub(crate) fn steepness(self, coordinates: usize) -> f64 {
+        match self.resolved(coordinates) {
+            Self::Stretched(stretched) => stretched.ratio.sqrt(),
+            _ => 1.0,
+        }
+    }
+
     /// The features, and the function they share; none where the network sees the coordinates.
     pub(crate) fn features(self, coordinates: usize) -> Option<(Function, Vec<Feature>)> {
         match self.resolved(coordinates) {

@@ -6,7 +6,7 @@ use super::scale::{Data, Scales, scales};
 use super::{Binding, Problem, UnitSystem};
 use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling};
 use crate::kernel::Precision;
-use crate::network::{Architecture, Layout};
+use crate::network::{Architecture, Inputs, Layout};
 use crate::schema::{self, Origin};
 use crate::simd::Isa;
 
@@ -119,7 +119,7 @@ pub(crate) struct Bound {
 
 impl Problem {
     /// Checks what is bound and expresses it in the engine's units.
-    pub(crate) fn bound(&self) -> Result<Bound, BindError> {
+    pub(crate) fn bound(&self, inputs: Inputs) -> Result<Bound, BindError> {
         let schema = self.scene.schema;
         let bindings = self.bindings()?;
         for (scalar, value) in schema.scalars.iter().zip(&self.scalars) {
@@ -153,6 +153,7 @@ impl Problem {
             &self.scene,
             &mut scalars,
             Data { coordinates: &coordinates, partners: &partners, columns: &columns, clouds: &clouds },
+            inputs,
         );
         let learned = learned(schema, &system, &scalars);
         Ok(Bound {

@@ -3,7 +3,7 @@
 use super::{BindError, Problem};
 use crate::engine::{Engine, Scaling};
 use crate::kernel::Precision;
-use crate::network::Architecture;
+use crate::network::{Architecture, Inputs};
 use crate::recover::weigh;
 use crate::simd::Isa;
 
@@ -16,16 +16,17 @@ impl Problem {
     /// # Errors
     /// A problem that is not fully or not sensibly bound, or a network that cannot be.
     pub fn engine<E: Precision>(&self, isa: Isa, architecture: Architecture) -> Result<Engine<E>, BindError> {
-        let mut engine = self.bound()?.engine_on(isa, architecture)?;
+        let mut engine = self.bound(architecture.inputs)?.engine_on(isa, architecture)?;
         weigh::by_size(&mut engine);
         Ok(engine)
     }
 
-    /// How the network's inputs and outputs stand to coordinates and heads, in the engine's units.
+    /// How the network's inputs and outputs stand to coordinates and heads, in the engine's units, for a network with the
+    /// given inputs.
     ///
     /// # Errors
     /// A problem that is not fully or not sensibly bound.
-    pub fn scaling(&self) -> Result<Scaling, BindError> {
-        Ok(self.bound()?.scaling)
+    pub fn scaling(&self, inputs: Inputs) -> Result<Scaling, BindError> {
+        Ok(self.bound(inputs)?.scaling)
     }
 }

@@ -5,6 +5,7 @@
 
 use crate::engine::Scaling;
 use crate::kernel::{GroupKernel, Precision, SceneRef};
+use crate::network::Inputs;
 use crate::residual::Points;
 use crate::schema::{self, Origin, TermKind};
 use crate::simd::Isa;
@@ -35,9 +36,13 @@ const SAMPLE: usize = 256;
 const LANES: usize = 16;
 
 /// Finds natural sizes; fills in the scalars that hold them.
-pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>) -> Scales {
+pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>, inputs: Inputs) -> Scales {
     let schema = scene.schema;
     let (centre, half) = extents(schema, data.coordinates);
+    // What the network is steep enough for is what derivatives are sized by.
+    let extents = half.clone();
+    let steepness = inputs.steepness(half.len());
+    let half: Vec<f64> = half.iter().map(|half| half / steepness).collect();
     let probes: Vec<Probe> = <f64 as Precision>::kernels(scene)
         .into_iter()
         .zip(schema.groups)
@@ -71,7 +76,7 @@ pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>) -> S
     let free = |head: usize, value: f64, otherwise: f64| if schema.heads[head].transformed { otherwise } else { value };
     let scaling = Scaling {
         centre,
-        half,
+        half: extents,
         offset: found.iter().enumerate().map(|(h, s)| free(h, s.0, 0.0)).collect(),
         scale: found.iter().enumerate().map(|(h, s)| free(h, s.1, 1.0)).collect(),
     };

@@ -6,11 +6,14 @@
 mod noise;
 mod settings;
 mod solution;
+mod undetermined;
 pub(crate) mod weigh;
 
 use std::time::Instant;
 
 use thiserror::Error;
+
+use undetermined::View;
 
 pub use settings::{Optimizer, Settings, Width};
 pub use solution::{Estimate, LearnedValue, Solution, TermReport};
@@ -22,10 +25,18 @@ use crate::solve::adam::{Adam, AdamSettings};
 use crate::solve::broyden::{Broyden, Update};
 use crate::solve::driver::{self, Flow, Limits, Outcome, Progress};
 use crate::solve::empirical_bayes::{EmpiricalBayes, EmpiricalBayesSettings};
+use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
 use crate::solve::lbfgs::Lbfgs;
 use crate::solve::marquardt::Marquardt;
 use crate::solve::prior::WeightPrior;
+
+/// What is believed of the precision of the weights before any row is seen: a network whose heads change by a few times
+/// their natural size.
+const BELIEF: Belief = Belief { precision: 0.1, count: 30.0 };
+
+/// Parameters up to which the curvature is factorised for error bars: a few seconds.
+const MOST_FOR_CURVATURE: usize = 4000;
 
 /// Why there is no solution.
 #[derive(Debug, Error)]
@@ -86,7 +97,7 @@ pub fn recover(
     monitor: &mut (dyn FnMut(Report) -> Flow + Send),
 ) -> Result<Solution, RecoverError> {
     let start = Instant::now();
-    let bound = problem.bound()?;
+    let bound = problem.bound(settings.architecture.inputs)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
     let pool = pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
     pool.install(|| match settings.precision {
@@ -130,19 +141,18 @@ fn solve_double(
     let monitor = &mut forward(monitor);
     let len = engine.parameters();
     let limits = limits(settings, start);
-    let mut used = None;
-    let outcome = match optimizer {
+    let mut prior = WeightPrior::uniform(BELIEF.precision, len);
+    let mut outcome = match optimizer {
         Optimizer::Evidence | Optimizer::Marquardt => {
             weigh::by_noise(&mut engine, &bound, &noise);
-            let prior = WeightPrior::uniform(1e-3, len);
             if optimizer == Optimizer::Evidence {
-                let mut method = EmpiricalBayes::new(theta, prior, EmpiricalBayesSettings::default());
+                let settings = EmpiricalBayesSettings { belief: BELIEF, ..EmpiricalBayesSettings::default() };
+                let mut method = EmpiricalBayes::new(theta, prior, settings);
                 let outcome = driver::run(&mut method, &mut engine, limits, monitor);
-                used = Some(method.prior().clone());
+                prior = method.prior().clone();
                 outcome
             } else {
-                used = Some(prior.clone());
-                driver::run(&mut Marquardt::new(theta, prior), &mut engine, limits, monitor)
+                driver::run(&mut Marquardt::new(theta, prior.clone()), &mut engine, limits, monitor)
             }
         }
         Optimizer::Broyden => {
@@ -159,7 +169,17 @@ fn solve_double(
             driver::run(&mut Adam::new(theta, AdamSettings::default()), &mut engine, limits, monitor)
         }
     };
-    Ok(Solution::new(bound, engine, outcome, settings, optimizer, start, used))
+    let prior = (len <= MOST_FOR_CURVATURE && Optimizer::Evidence.fits(len, rows)).then_some(prior);
+    if let Some(prior) = &prior {
+        if !matches!(optimizer, Optimizer::Evidence | Optimizer::Marquardt) {
+            weigh::by_noise(&mut engine, &bound, &noise);
+        }
+        let architecture = settings.architecture;
+        let theta = &outcome.theta;
+        let mut view = View { bound: &bound, engine: &mut engine, theta, prior, architecture };
+        outcome.warnings.extend(view.warnings());
+    }
+    Ok(Solution::new(bound, engine, outcome, settings, optimizer, start, prior))
 }
 
 fn solve_single(

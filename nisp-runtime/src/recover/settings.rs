@@ -3,7 +3,7 @@
 use std::time::Duration;
 
 use super::noise::Noise;
-use crate::network::Architecture;
+use crate::network::{Architecture, Inputs};
 
 /// How a problem is solved.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Default for Settings {
         Self {
             precision: Width::F64,
             optimizer: Optimizer::Auto,
-            architecture: Architecture::modified(16, 2),
+            architecture: Architecture { inputs: Inputs::Automatic, ..Architecture::modified(16, 2) },
             seed: 0,
             budget: Some(Duration::from_secs(10)),
             iterations: None,

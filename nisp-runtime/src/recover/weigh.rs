@@ -10,7 +10,7 @@ use crate::solve::objective::LeastSquares;
 
 /// Tolerance of equations where data are noisy, as a share of the equation's natural size: so small that the equation
 /// adds nothing to the error, so large that the problem stays well conditioned.
-const EQUATION_TOLERANCE: f64 = 3e-3;
+const EQUATION_TOLERANCE: f64 = 1e-2;
 
 /// Smallest noise that data are credited with, as a share of their natural size.
 const LEAST_NOISE: f64 = 1e-6;

@@ -104,6 +104,10 @@ pub enum WarningKind {
     Stagnation,
     /// The accuracy of single precision is reached.
     SinglePrecision,
+    /// A direction of the answer that neither equations nor data determine.
+    Undetermined,
+    /// A condition that the answer rests on: the data alone would leave a direction open.
+    Settled,
 }
 
 /// What a run remembers of its steps.

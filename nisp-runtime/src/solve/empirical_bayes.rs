@@ -1,7 +1,7 @@
 //! Levenberg-Marquardt with the weights of its priors, and noise that is not known, chosen from the data.
 
 use super::curvature::Curvature;
-use super::evidence::{self, Evidence};
+use super::evidence::{self, Belief, Evidence};
 use super::fault::Fault;
 use super::marquardt::Marquardt;
 use super::method::{FAULTS_IN_A_ROW, Method, Step, Verdict};
@@ -19,11 +19,13 @@ pub struct EmpiricalBayesSettings {
     /// Relative change of precisions and sigmas below which they are left alone; a few per cent have no consequences,
     /// and every change begins the judgement of convergence anew.
     pub tolerance: f64,
+    /// What is believed of the precisions beforehand.
+    pub belief: Belief,
 }
 
 impl Default for EmpiricalBayesSettings {
     fn default() -> Self {
-        Self { warm_up: 15, every: 4, tolerance: 0.05 }
+        Self { warm_up: 15, every: 4, tolerance: 0.05, belief: Belief { precision: 1.0, count: 0.0 } }
     }
 }
 
@@ -94,9 +96,9 @@ impl EmpiricalBayes {
         };
         for (index, group) in found.groups.iter().enumerate() {
             let old = prior.groups()[index].precision;
-            // Neither a flat prior nor a group without any effect has a scale to update.
-            if old > 0.0 && group.precision > 0.0 && group.precision.is_finite() {
-                prior.set_precision(index, limited(old, group.precision, LARGEST_CHANGE));
+            // A flat prior has no scale to update.
+            if let Some(new) = group.precision(self.settings.belief).filter(|_| old > 0.0) {
+                prior.set_precision(index, limited(old, new, LARGEST_CHANGE));
             }
         }
         let mut sigmas = Vec::new();

@@ -28,8 +28,28 @@ pub struct GroupEvidence {
     pub name: String,
     /// Directions of the group that rows determine (gamma): 0 for none, the size of the group for all.
     pub effective: f64,
-    /// Precision that these parameters speak for: `gamma / |theta|^2`.
+    /// Squared length of these parameters.
+    pub square: f64,
+}
+
+/// What is believed of a precision before any row is seen: a Gamma distribution, as if `count` parameters of just this
+/// precision had been seen already. Without it a source that noise hides goes to zero with error bars of zero.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Belief {
+    /// The precision believed in.
     pub precision: f64,
+    /// Parameters that the belief is worth; 0 for none.
+    pub count: f64,
+}
+
+impl GroupEvidence {
+    /// Precision that these parameters speak for, with what was believed before: `gamma / |theta|^2` without a belief
+    /// (MacKay 1992). Absent where neither says anything.
+    pub fn precision(&self, belief: Belief) -> Option<f64> {
+        let seen = self.effective + belief.count;
+        let precision = seen / (self.square + belief.count / belief.precision);
+        (seen > 0.0 && precision.is_finite()).then_some(precision)
+    }
 }
 
 /// What the parameters say about a block of rows.
@@ -56,8 +76,7 @@ pub fn evidence(curvature: &Curvature, prior: &WeightPrior, theta: &[f64], block
             let size = group.range.len() as f64;
             let trace: f64 = inverse[group.range.clone()].iter().sum();
             let effective = (size - group.precision * trace).clamp(0.0, size);
-            let precision = effective / group.square(theta).max(f64::MIN_POSITIVE);
-            GroupEvidence { name: group.name.clone(), effective, precision }
+            GroupEvidence { name: group.name.clone(), effective, square: group.square(theta) }
         })
         .collect();
     let effective_parameters = blocks.iter().map(|(_, block)| block.effective).sum();
