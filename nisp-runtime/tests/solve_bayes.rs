@@ -90,7 +90,8 @@ fn precisions_and_noise_settle_where_the_evidence_is_largest() {
     rows.blocks[0].kind = BlockKind::ObservationOfUnknownNoise;
     let group = |name: &str, range| PriorGroup { name: name.into(), range, precision: 1.0 };
     let prior = WeightPrior::new(vec![group("low", 0..6), group("high", 6..LEN)], LEN).unwrap();
-    let settings = EmpiricalBayesSettings { warm_up: 3, every: 1, tolerance: 1e-7 };
+    let settings =
+        EmpiricalBayesSettings { warm_up: 3, every: 1, tolerance: 1e-7, ..EmpiricalBayesSettings::default() };
     let mut method = EmpiricalBayes::new(vec![0.0; LEN], prior, settings);
     for _ in 0..400 {
         if method.step(&mut rows).unwrap().verdict == Verdict::Exhausted {
