@@ -1,6 +1,9 @@
 //! Recover unknown sources from noisy measurements and a governing equation that is checked when the program compiles.
 //!
-//! Write the equation in [`pde!`]; bind points and data to one of its scenes; solve; read the source back.
+//! Write the equation in [`pde!`] (its [language]); bind points and data to one of its scenes; solve; read the source back.
+
+#[doc = include_str!("language.md")]
+pub mod language {}
 
 pub use nisp_macros::pde;
 pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene};

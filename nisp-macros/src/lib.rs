@@ -2,7 +2,7 @@
 
 use proc_macro::TokenStream;
 
-/// Declares the equations of an inverse source problem; see the `nisp` crate for the language.
+/// Declares the equations of an inverse source problem; the module `nisp::language` describes the language.
 #[proc_macro]
 pub fn pde(tokens: TokenStream) -> TokenStream {
     nisp_compiler::compile(tokens.into()).into()

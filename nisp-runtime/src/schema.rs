@@ -177,6 +177,9 @@ pub struct Term {
     pub loss: Loss,
     /// The user's weight.
     pub weight: f64,
+    /// How far rows may be off, in SI units, if the user says so: the noise of data, the tolerance of a condition, the
+    /// spread of a prior.
+    pub within: Option<f64>,
     /// First row.
     pub first: usize,
     /// Number of rows.

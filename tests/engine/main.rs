@@ -9,4 +9,5 @@ mod models;
 mod number;
 mod reference;
 mod rows;
+mod tolerance;
 mod values;

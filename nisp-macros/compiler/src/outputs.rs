@@ -20,6 +20,7 @@ pub(crate) fn append(model: &mut Model, plan: &Plan) {
         kind: TermKind::Residual(vec![Rc::new(Node::Field(at))]),
         loss: Loss::Square,
         weight: 1.0,
+        within: None,
         unit: field.unit.clone(),
         equation: field.name.text.clone(),
         latex: field.name.text.clone(),

@@ -88,6 +88,9 @@ impl<E: Real> Engine<E> {
                 blocks.push(Block {
                     term: format!("{}.{}", group.schema.name, term.schema.name),
                     kind: match term.schema.kind {
+                        TermKind::Observation | TermKind::Chamfer { .. } if term.schema.within.is_some() => {
+                            BlockKind::Observation
+                        }
                         TermKind::Observation | TermKind::Chamfer { .. } => BlockKind::ObservationOfUnknownNoise,
                         TermKind::Residual | TermKind::Integral => BlockKind::Equation,
                     },

@@ -149,12 +149,17 @@ impl Problem {
             .zip(&self.scalars)
             .map(|(scalar, value)| value.map_or(1.0, |value| value / system.size(&scalar.unit)))
             .collect();
-        let Scales { scaling, sizes } = scales(
+        let Scales { scaling, mut sizes } = scales(
             &self.scene,
             &mut scalars,
             Data { coordinates: &coordinates, partners: &partners, columns: &columns, clouds: &clouds },
             inputs,
         );
+        for (sizes, group) in sizes.iter_mut().zip(schema.groups) {
+            for (size, term) in sizes.iter_mut().zip(group.terms) {
+                *size = term.within.map_or(*size, |within| within / system.size(&term.unit));
+            }
+        }
         let learned = learned(schema, &system, &scalars);
         Ok(Bound {
             problem: self.clone(),

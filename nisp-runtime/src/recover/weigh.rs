@@ -36,6 +36,7 @@ pub(super) fn by_noise(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
         for (term, schema) in group.terms.iter().enumerate() {
             let size = bound.sizes[at][term];
             let sigma = match schema.kind {
+                _ if schema.within.is_some() => size / schema.weight.sqrt(),
                 TermKind::Observation => observed(bound, noise, at, term).unwrap_or(size).max(LEAST_NOISE * size),
                 _ => EQUATION_TOLERANCE * size / schema.weight.sqrt(),
             };

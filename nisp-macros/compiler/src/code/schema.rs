@@ -182,11 +182,12 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
         model::Loss::Welsch(at) => quote!(schema::Loss::Welsch(#at)),
     };
     let weight = declared.weights[group.group][plan.term];
+    let within = optional(term.within);
     let (first, rows) = (plan.first, plan.rows);
     quote! {
         schema::Term {
             name: #name, equation: #equation, latex: #latex, unit: #unit, kind: #kind, loss: #loss,
-            weight: #weight, first: #first, rows: #rows,
+            weight: #weight, within: #within, first: #first, rows: #rows,
         }
     }
 }

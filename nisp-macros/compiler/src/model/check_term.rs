@@ -42,11 +42,22 @@ impl TermInput<'_, '_> {
             kind: body.kind,
             loss,
             weight: term.weight.unwrap_or(1.0),
+            within: term.within.as_ref().map(|within| self.within(within, &body.unit)).transpose()?,
             unit: body.unit,
             equation: body.equation,
             latex: body.latex,
             docs: term.docs.clone(),
         })
+    }
+
+    /// What rows may be off by, in SI units.
+    fn within(&mut self, within: &syntax::Within, of: &Unit) -> Checked<f64> {
+        let unit = within.unit.as_deref().cloned().unwrap_or_else(|| Unit::si(Dimension::default()));
+        if self.elaborator.units_checked && unit.dimension != of.dimension {
+            let message = catalogue::within_unit(&unit.dimension, &of.dimension);
+            return Err(self.elaborator.errors.report(within.place, message));
+        }
+        Ok(within.value * unit.factor)
     }
 
     pub(super) fn latex(&self, expr: &syntax::Expr) -> String {
@@ -146,7 +157,8 @@ impl TermInput<'_, '_> {
         let kind = TermKind::Complementarity { a: a_expr, b: b_expr, a_dimension: a_dimension.clone(), b_dimension };
         Ok(Body {
             kind,
-            unit: Unit::si(a_dimension),
+            // Rows compare sides over their natural sizes.
+            unit: Unit::si(Dimension::default()),
             equation: format!("{} _|_ {}", equation(a), equation(b)),
             latex: format!(r"{} \perp {}", self.equation_latex(a), self.equation_latex(b)),
         })

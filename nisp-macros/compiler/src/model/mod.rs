@@ -161,6 +161,8 @@ pub struct Term {
     pub loss: Loss,
     /// The user's weight (1 if none is written).
     pub weight: f64,
+    /// How far rows may be off, in SI units: the noise of data, the tolerance of a condition, the spread of a prior.
+    pub within: Option<f64>,
     /// The unit shared by all rows; dimension and text of both sides.
     pub unit: Unit,
     /// The condition as plain text.

@@ -25,7 +25,7 @@
 //! condition   EXPR (== | >= | <=) EXPR
 //!           | integral(EXPR) == EXPR
 //!           | 0 <= EXPR _|_ EXPR >= 0                           `complements` for `_|_` reads as well
-//! suffix      (with huber(3) | with welsch(3))? (weight 2)?
+//! suffix      (with huber(3) | with welsch(3))? (weight 2)? (within 5 UNIT?)?
 //! choice      NAME = EXPR;  | learn NAME, ... ;  | without PATH, ... ;  | only PATH, ... ;  | weight PATH = NUMBER;
 //! PATH        GROUP | GROUP.TERM
 //! EXPR        + - * / ^, sign, parentheses; `a^b^c` is `a^(b^c)`, `-x^2` is `-(x^2)`

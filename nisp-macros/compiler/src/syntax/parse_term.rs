@@ -4,7 +4,7 @@ use proc_macro2::Delimiter;
 
 use super::recover::{self, end_statement};
 use super::stream::{Context, Stream};
-use super::tree::{Comparison, Condition, Expr, ExprKind, GroupItem, Name, Relation, Term, TermBody};
+use super::tree::{Comparison, Condition, Expr, ExprKind, GroupItem, Name, Relation, Term, TermBody, Within};
 use super::{parse_expression, parse_number, parse_unit};
 use crate::error::{Checked, Place, catalogue};
 
@@ -41,7 +41,7 @@ pub(super) fn observe(
     while stream.take(",").is_some() {
         names.push(recover::name(stream, context, "what is observed")?);
     }
-    let (loss, weight) = suffixes(stream, context)?;
+    let (loss, weight, within) = suffixes(stream, context)?;
     if stream.at("~") || stream.at("==") {
         return Err(context.errors.report(stream.place(), catalogue::unnamed_observation()));
     }
@@ -50,7 +50,15 @@ pub(super) fn observe(
         let place = name.span.into();
         let value = Expr { kind: ExprKind::Name(name.text.clone()), place };
         let body = TermBody::Observe { value, column: None, unit: None };
-        GroupItem::Term(Box::new(Term { name, body, loss: loss.clone(), weight, docs: docs.clone(), place }))
+        GroupItem::Term(Box::new(Term {
+            name,
+            body,
+            loss: loss.clone(),
+            weight,
+            within: within.clone(),
+            docs: docs.clone(),
+            place,
+        }))
     });
     Ok(terms.collect())
 }
@@ -74,20 +82,28 @@ fn finish(
     docs: Vec<String>,
 ) -> Checked<GroupItem> {
     let place = start.to(stream.previous());
-    let (loss, weight) = suffixes(stream, context)?;
+    let (loss, weight, within) = suffixes(stream, context)?;
     end_statement(stream, context)?;
-    Ok(GroupItem::Term(Box::new(Term { name, body, loss, weight, docs, place })))
+    Ok(GroupItem::Term(Box::new(Term { name, body, loss, weight, within, docs, place })))
 }
 
-/// What stands after `with` and after `weight`.
-type Suffixes = (Option<(Name, f64)>, Option<f64>);
+/// What stands after `with`, after `weight` and after `within`.
+type Suffixes = (Option<(Name, f64)>, Option<f64>, Option<Within>);
 
-/// `with huber(3)`, `weight 2`.
+/// `with huber(3)`, `weight 2`, `within 5 [mm]`.
 fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffixes> {
-    let (mut loss, mut weight) = (None, None);
+    let (mut loss, mut weight, mut within) = (None, None, None);
     loop {
         if stream.take_word("weight") {
             weight = Some(positive(stream, context)?);
+        } else if stream.take_word("within") {
+            let place = stream.place();
+            let value = positive(stream, context)?;
+            if value == 0.0 {
+                return Err(context.errors.report(place, catalogue::expected_positive("what rows may be off by")));
+            }
+            let unit = parse_unit::parse_optional(stream, context).transpose()?.map(Box::new);
+            within = Some(Within { value, unit, place });
         } else if stream.take_word("with") {
             let name = recover::name(stream, context, "a loss")?;
             if !["huber", "welsch"].contains(&name.text.as_str()) {
@@ -103,7 +119,7 @@ fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffi
             }
             loss = Some((name, threshold));
         } else {
-            return Ok((loss, weight));
+            return Ok((loss, weight, within));
         }
     }
 }

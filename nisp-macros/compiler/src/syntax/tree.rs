@@ -147,6 +147,8 @@ pub struct Term {
     pub loss: Option<(Name, f64)>,
     /// The number after `weight`.
     pub weight: Option<f64>,
+    /// The quantity after `within`: how far rows may be off.
+    pub within: Option<Within>,
     /// Doc comment lines.
     pub docs: Vec<String>,
     /// The whole statement without its suffixes.
@@ -176,6 +178,17 @@ pub enum TermBody {
         /// Only across the surface.
         plane: bool,
     },
+}
+
+/// `within 2 [mm]`
+#[derive(Clone, Debug)]
+pub struct Within {
+    /// The number.
+    pub value: f64,
+    /// Its unit, if one is written.
+    pub unit: Option<Box<Unit>>,
+    /// The number's place.
+    pub place: Place,
 }
 
 /// One condition.

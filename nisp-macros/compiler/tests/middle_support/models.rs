@@ -128,6 +128,7 @@ impl Build for Model {
             kind,
             loss: Loss::Square,
             weight: 1.0,
+            within: None,
             unit: unit(NONE),
             equation: String::new(),
             latex: String::new(),

@@ -50,6 +50,13 @@ pub(crate) fn constant_without_value(name: &str) -> String {
     help(format!("the constant `{name}` has no value"), format!("write `{name} = 3`, or declare it under `parameters`"))
 }
 
+pub(crate) fn within_unit(given: &Dimension, rows: &Dimension) -> String {
+    help(
+        format!("units differ: rows may be off by {}, but they are {}", bracketed(given), bracketed(rows)),
+        "give what follows `within` the unit of the condition's sides",
+    )
+}
+
 pub(crate) fn observed_unit(observed: (&str, &Dimension), column: (&str, &Dimension)) -> String {
     format!(
         "units differ: `{}` is {}, but the column `{}` is {}",
