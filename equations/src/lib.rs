@@ -11,8 +11,10 @@ pub mod rlc;
 pub mod series;
 pub mod sponge;
 pub mod truth;
+mod yardsticks;
 
 pub use catalogue::{Binding, Entry, Prepared, Request, catalogue};
 pub use copies::noisy_copy;
 pub use error::PrepareError;
 pub use truth::Truth;
+pub use yardsticks::{Yardstick, yardsticks};

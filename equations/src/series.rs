@@ -6,6 +6,7 @@ use nisp_data::Table;
 use std::path::Path;
 
 use crate::catalogue::{Entry, Prepared, Request, hint};
+use crate::copies::noisy_copy;
 use crate::error::PrepareError;
 use crate::rivals::System;
 use crate::truth::Truth;
@@ -59,6 +60,28 @@ pub struct Series {
 }
 
 impl Series {
+    /// The repository's first truths as if measured anew: that of number k with noise of seed `seed + k`.
+    ///
+    /// # Errors
+    /// No such files in the folder `repository`, or a scene that the entry does not have.
+    pub fn copies(
+        &self,
+        entry: &Entry,
+        request: &Request,
+        repository: &Path,
+        noise: f64,
+        seed: u64,
+        most: usize,
+    ) -> Result<Vec<Prepared>, PrepareError> {
+        let schema = entry.scene(request.scene.as_deref())?.schema;
+        let copy = |(index, path): (usize, &&str)| {
+            let truth = Table::read(repository.join(path))?;
+            let copy = noisy_copy(&truth, schema, self.every, noise, seed.wrapping_add(index as u64))?;
+            self.bind(entry, request, &copy, Some(&truth))
+        };
+        self.truths.iter().take(most).enumerate().map(copy).collect()
+    }
+
     /// Reads the data and binds the scene.
     ///
     /// # Errors

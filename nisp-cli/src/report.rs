@@ -138,5 +138,6 @@ fn rivals(prepared: &Prepared, score: &Score) -> Vec<(String, f64)> {
     let known = prepared.truth.as_ref().and_then(|truth| Some((&truth.points, truth.of(score.name)?)));
     let Some((at, values)) = known.filter(|_| prepared.points.len() <= ROWS_FOR_RIVALS) else { return Vec::new() };
     let answers = prepared.contest(at, values).into_iter();
-    answers.map(|answer| (answer.name.into(), mean_abs_error(&answer.source, values))).collect()
+    let errors = answers.map(|answer| (answer.name.into(), mean_abs_error(&answer.source, values)));
+    errors.filter(|(_, error)| error.is_finite()).collect()
 }

@@ -11,8 +11,8 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use nisp::{Optimizer, Width};
-use nisp_data::{OutDir, Table};
-use nisp_equations::{Entry, Prepared, Request, noisy_copy};
+use nisp_data::OutDir;
+use nisp_equations::{Entry, PrepareError, Prepared, Request, yardsticks};
 
 use crate::args::{count, number, optimizers, seconds, size};
 use crate::interrupt;
@@ -82,7 +82,7 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
             points.push(Point { trial: trial.clone(), budget, error, seconds });
         }
     }
-    let figures = Figures { points, rivals: trial::rivals(&samples), samples: samples.len(), noise: options.noise };
+    let figures = Figures { points, rivals: yardsticks(&samples), samples: samples.len(), noise: options.noise };
     let title = format!("{}: error of the source against wall time", entry.name);
     let subtitle = figures.about(options.seed);
     let head = samples[0].problem.scene().schema.heads.iter().find(|head| head.source);
@@ -117,14 +117,11 @@ fn samples(entry: &Entry, options: &Options) -> Result<Vec<Prepared>, String> {
     let series = entry
         .series()
         .ok_or_else(|| format!("`{}` has no measurements over time to make noisy copies of", entry.name))?;
-    let schema = entry.scene(options.scene.as_deref()).map_err(|error| error.to_string())?.schema;
-    let prepare = |(index, path): (usize, &&str)| {
-        let truth = Table::read(options.repository.join(path)).map_err(|error| {
+    let copies = series.copies(entry, &request, &options.repository, options.noise, options.seed, options.runs);
+    copies.map_err(|error| match error {
+        PrepareError::Data(error) => {
             format!("{error}; the frontier needs the repository's data: name its folder with --repository")
-        })?;
-        let seed = options.seed.wrapping_add(index as u64);
-        let copy = noisy_copy(&truth, schema, series.every, options.noise, seed).map_err(|error| error.to_string())?;
-        series.bind(entry, &request, &copy, Some(&truth)).map_err(|error| error.to_string())
-    };
-    series.truths.iter().take(options.runs).enumerate().map(prepare).collect()
+        }
+        error => error.to_string(),
+    })
 }

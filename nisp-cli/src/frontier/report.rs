@@ -5,8 +5,9 @@ use std::fmt::Write;
 use nisp::Width;
 use nisp_data::DataError;
 use nisp_data::picture::{LogLog, Mark, Picture, Quantity, Series, log_log};
+use nisp_equations::Yardstick;
 
-use super::trial::{Rival, Trial};
+use super::trial::Trial;
 
 /// What a trial reached within a budget.
 pub(crate) struct Point {
@@ -19,7 +20,7 @@ pub(crate) struct Point {
 /// Everything that was measured.
 pub(crate) struct Figures {
     pub(super) points: Vec<Point>,
-    pub(super) rivals: Vec<Rival>,
+    pub(super) rivals: Vec<Yardstick>,
     pub(super) samples: usize,
     pub(super) noise: f64,
 }
@@ -72,7 +73,7 @@ pub(crate) fn table(figures: &Figures, about: &str, name: &str, unit: &str, budg
         }
     }
     text.push_str("\n| rival | error | seconds |\n|---|---|---|\n");
-    for (rival, error, seconds) in &figures.rivals {
+    for Yardstick { name: rival, error, seconds } in &figures.rivals {
         let _ = writeln!(text, "| {rival} | {error:.2e} | {seconds:.2} |");
     }
     text
@@ -85,7 +86,7 @@ pub(crate) fn csv(figures: &Figures, unit: &str) -> String {
         let (method, precision) = (trial.optimizer.name(), trial.precision.name());
         let _ = writeln!(text, "{method},{},{precision},{budget},{seconds},{error:e}", trial.width);
     }
-    for (rival, error, seconds) in &figures.rivals {
+    for Yardstick { name: rival, error, seconds } in &figures.rivals {
         let _ = writeln!(text, "{rival},,f64,,{seconds},{error:e}");
     }
     text
@@ -104,8 +105,8 @@ pub(crate) fn plot(
         series.push(Series { name: method, points: frontier(&points), joined: true });
     }
     let mut marks: Vec<Mark> =
-        figures.rivals.iter().map(|(rival, error, _)| Mark::Horizontal(rival.clone(), *error)).collect();
-    let slowest = figures.rivals.iter().map(|rival| rival.2).fold(0.0, f64::max);
+        figures.rivals.iter().map(|rival| Mark::Horizontal(rival.name.clone(), rival.error)).collect();
+    let slowest = figures.rivals.iter().map(|rival| rival.seconds).fold(0.0, f64::max);
     if slowest > 0.0 {
         marks.push(Mark::Vertical("slowest rival".into(), slowest));
     }

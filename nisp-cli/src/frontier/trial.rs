@@ -6,7 +6,6 @@ use nisp::network::Architecture;
 use nisp::solve::driver::Flow;
 use nisp::{Optimizer, Settings, Width, recover};
 use nisp_equations::Prepared;
-use nisp_equations::rivals::{mean_abs_error, zero_error};
 
 use crate::interrupt;
 use crate::score::score;
@@ -45,31 +44,4 @@ impl Trial {
         let count = samples.len() as f64;
         Ok((errors / count, seconds / count))
     }
-}
-
-/// A rival's name, its mean error and its mean time.
-pub(crate) type Rival = (String, f64, f64);
-
-/// The answer zero and the classical rivals.
-pub(super) fn rivals(samples: &[Prepared]) -> Vec<Rival> {
-    let mut rivals: Vec<Rival> = Vec::new();
-    let mut add = |name: String, error: f64, seconds: f64| match rivals.iter_mut().find(|rival| rival.0 == name) {
-        Some(rival) => (rival.1, rival.2) = (rival.1 + error, rival.2 + seconds),
-        None => rivals.push((name, error, seconds)),
-    };
-    for sample in samples {
-        let heads = sample.problem.scene().schema.heads;
-        for head in heads.iter().filter(|head| head.source) {
-            let Some((at, truth)) = sample.truth.as_ref().and_then(|truth| Some((&truth.points, truth.of(head.name)?)))
-            else {
-                continue;
-            };
-            add(format!("{} = 0", head.name), zero_error(truth), 0.0);
-            for answer in sample.contest(at, truth) {
-                add(answer.name.into(), mean_abs_error(&answer.source, truth), answer.wall_s);
-            }
-        }
-    }
-    let count = samples.len() as f64;
-    rivals.into_iter().map(|(name, error, seconds)| (name, error / count, seconds / count)).collect()
 }
