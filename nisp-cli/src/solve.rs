@@ -32,6 +32,9 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     interrupt::listen()?;
     let mut solution = run(&prepared, &settings)?;
     let mut warnings: Vec<_> = solution.warnings.iter().map(|warning| warning.message.clone()).collect();
+    // What the compiler found: one line each, without its advice to whoever writes the equations.
+    let open = solution.scene().warnings.iter().filter_map(|message| message.lines().next());
+    warnings.extend(open.map(|message| format!("{message}: the problem may be underdetermined")));
     if solution.status == Status::Interrupted {
         warnings.push(format!("interrupted after {:.1} s: this is the best state so far", solution.wall_s));
     }

@@ -35,6 +35,8 @@ pub struct Scene {
     pub outputs: Group,
     /// What was left out and why.
     pub skipped: &'static [&'static str],
+    /// What the terms leave open: fields and sources that no condition pins down.
+    pub warnings: &'static [&'static str],
 }
 
 /// An independent variable.

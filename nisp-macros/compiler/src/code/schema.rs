@@ -23,7 +23,7 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
     let scalars = scene.scalars.iter().map(|s| scalar(model, scene, declared, s));
     let mut groups: Vec<TokenStream> = scene.groups.iter().map(|g| group(model, plan, scene, declared, g)).collect();
     let outputs = groups.pop();
-    let skipped = &scene.skipped;
+    let (skipped, warnings) = (&scene.skipped, &declared.warnings);
     quote! {
         schema::Scene {
             module: #module,
@@ -35,6 +35,7 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
             groups: &[#(#groups),*],
             outputs: #outputs,
             skipped: &[#(#skipped),*],
+            warnings: &[#(#warnings),*],
         }
     }
 }

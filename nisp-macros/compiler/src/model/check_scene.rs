@@ -17,6 +17,7 @@ pub(super) fn everything(model: &Model, name: Name) -> Scene {
         fixed_fields: vec![None; model.fields.len()],
         fixed_parameters: vec![None; model.parameters.len()],
         learned: vec![false; model.parameters.len()],
+        warnings: Vec::new(),
         weights: model.groups.iter().map(|group| group.terms.iter().map(|term| term.weight).collect()).collect(),
         docs: Vec::new(),
     }

@@ -34,8 +34,10 @@ pub(super) fn check(elaborator: &mut Elaborator<'_>, model: &mut Model) {
         .collect();
     sources_without_equation(elaborator, model, &rows);
     let mut said = BTreeSet::new();
-    for scene in &model.scenes {
-        for (message, field) in unpinned(scene, model, &rows) {
+    let open: Vec<Vec<(String, usize)>> = model.scenes.iter().map(|scene| unpinned(scene, model, &rows)).collect();
+    for (scene, open) in model.scenes.iter_mut().zip(open) {
+        scene.warnings = open.iter().map(|(message, _)| message.clone()).collect();
+        for (message, field) in open {
             if said.insert((field, message.clone())) {
                 model.warnings.push((message, model.fields[field].name.span));
             }

@@ -239,6 +239,8 @@ pub struct Scene {
     pub learned: Vec<bool>,
     /// Weight overrides: for each group, for each term.
     pub weights: Vec<Vec<f64>>,
+    /// What its terms leave open: fields and sources that no condition pins down.
+    pub warnings: Vec<String>,
     /// Doc comment.
     pub docs: Vec<String>,
 }

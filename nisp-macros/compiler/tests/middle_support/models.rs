@@ -151,6 +151,7 @@ impl Build for Model {
             fixed_fields: vec![None; self.fields.len()],
             fixed_parameters: vec![None; self.parameters.len()],
             learned: vec![false; self.parameters.len()],
+            warnings: Vec::new(),
             weights: self.groups.iter().map(|group| vec![1.0; group.terms.len()]).collect(),
             docs: Vec::new(),
         });
