@@ -37,6 +37,9 @@ use crate::solve::objective::Block;
 /// Most chunks that a step is cut into; more threads than this find no work.
 const CHUNKS: usize = 16;
 
+/// Rows that a chunk should have at least, for its products to outweigh the addition of its gradient.
+const CHUNK_ROWS: usize = 400;
+
 /// Bytes that the rows of a tile may take together: within the second-level cache of one core.
 const TILE_BYTES: usize = 640 << 10;
 
@@ -403,7 +406,8 @@ fn cut<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
         })
         .collect();
     let total: usize = tiles.iter().map(|(_, cost)| cost).sum();
-    let mut chunks: Vec<Vec<TileRange>> = vec![Vec::new(); CHUNKS.min(tiles.len()).max(1)];
+    let chunks = (total / CHUNK_ROWS).clamp(CHUNKS / 2, CHUNKS);
+    let mut chunks: Vec<Vec<TileRange>> = vec![Vec::new(); chunks.min(tiles.len()).max(1)];
     let mut done = 0;
     let count = chunks.len();
     for (tile, cost) in tiles {

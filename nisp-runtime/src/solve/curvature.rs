@@ -31,7 +31,7 @@ impl Curvature {
         let mut precision = vec![0.0; len];
         prior.write_diagonal(&mut precision);
         let mut normal = vec![0.0; len * len];
-        dense::gram(dense::row_major(&jacobian, count, len).transpose(), &mut normal);
+        dense::gram_of_columns(&jacobian, count, len, &mut normal);
         for (i, a) in precision.iter().enumerate() {
             normal[i * (len + 1)] += a;
         }

@@ -85,8 +85,7 @@ impl Normal {
         prior.add_gradient(theta, &mut self.gradient);
         prior.write_diagonal(&mut self.precision);
         if let Space::Parameters { matrix, .. } = &mut self.space {
-            let j = dense::row_major(&self.j, self.rows, self.len);
-            dense::gram(j.transpose(), matrix);
+            dense::gram_of_columns(&self.j, self.rows, self.len, matrix);
             let diagonal = matrix.iter().step_by(self.len + 1);
             self.scale.iter_mut().zip(diagonal).for_each(|(d, x)| *d = *x);
         } else {
@@ -129,7 +128,7 @@ impl Normal {
             Space::Unknown => false,
             Space::Parameters { matrix, cholesky } => {
                 let solvable = cholesky.factorise(|factor| {
-                    factor.copy_from_slice(matrix);
+                    dense::copy_lower(matrix, factor, len);
                     for i in 0..len {
                         factor[i * (len + 1)] += self.precision[i] + damping * self.scale[i];
                     }
@@ -162,7 +161,7 @@ impl RowSpace {
         }
         dense::gram(dense::row_major(k, rows, len), matrix);
         let solvable = cholesky.factorise(|factor| {
-            factor.copy_from_slice(matrix);
+            dense::copy_lower(matrix, factor, rows);
             (0..rows).for_each(|i| factor[i * (rows + 1)] += 1.0);
         });
         if !solvable {
