@@ -13,11 +13,19 @@ struct Tables<const K: usize, const S: usize> {
     parents: [(usize, usize); K],
     /// `products[a][b]` is the monomial of the product, or `K` if it is beyond the order.
     products: [[usize; K]; K],
+    /// Number of monomials up to each degree.
+    up_to: [usize; 16],
 }
 
 impl<const K: usize, const S: usize> Tables<K, S> {
     const fn new(order: usize) -> Self {
-        let mut tables = Self { exponents: [[0; S]; K], degrees: [0; K], parents: [(0, 0); K], products: [[K; K]; K] };
+        let mut tables = Self {
+            exponents: [[0; S]; K],
+            degrees: [0; K],
+            parents: [(0, 0); K],
+            products: [[K; K]; K],
+            up_to: [K; 16],
+        };
         let mut count = 1;
         let mut parent = 0;
         // Every monomial extends its parent by a variable that is not before the parent's last.
@@ -38,6 +46,13 @@ impl<const K: usize, const S: usize> Tables<K, S> {
             parent += 1;
         }
         assert!(count == K);
+        let mut k = K;
+        while k > 0 {
+            k -= 1;
+            if tables.degrees[k] > 0 {
+                tables.up_to[tables.degrees[k] - 1] = k;
+            }
+        }
         let mut a = 0;
         while a < K {
             let mut b = 0;
@@ -83,17 +98,16 @@ pub(crate) struct Dense<const K: usize, const D: usize, const S: usize>;
 const FACTORIALS: [f64; 10] = [1.0, 1.0, 2.0, 6.0, 24.0, 120.0, 720.0, 5040.0, 40320.0, 362_880.0];
 
 impl<const K: usize, const D: usize, const S: usize> Dense<K, D, S> {
-    const TABLES: Tables<K, S> = Tables::new(D - 2);
+    const TABLES: &Tables<K, S> = &Tables::new(D - 2);
 
-    /// Adds `f g`, without the constant of `g`.
+    /// Adds `f g` up to degree `top`, leaving out the monomials of `g` before `from`.
     #[inline(always)]
-    fn add_product<V: Simd>(out: &mut [V; K], f: &[V; K], g: &[V; K], from: usize) {
-        for b in from..K {
-            for a in 0..K {
-                let c = Self::TABLES.products[a][b];
-                if c < K {
-                    out[c] = f[a].mul_add(g[b], out[c]);
-                }
+    fn add_product<V: Simd>(out: &mut [V; K], f: &[V; K], g: &[V; K], from: usize, top: usize) {
+        let t = Self::TABLES;
+        for b in from..t.up_to[top] {
+            for a in 0..t.up_to[top - t.degrees[b]] {
+                let c = t.products[a][b];
+                out[c] = f[a].mul_add(g[b], out[c]);
             }
         }
     }
@@ -101,20 +115,18 @@ impl<const K: usize, const D: usize, const S: usize> Dense<K, D, S> {
     /// Adds the adjoints of both factors.
     #[inline(always)]
     fn add_product_adjoint<V: Simd>(
-        f: &[V; K],
-        g: &[V; K],
+        [f, g]: [&[V; K]; 2],
         seed: &[V; K],
-        f_bar: &mut [V; K],
-        g_bar: &mut [V; K],
+        [f_bar, g_bar]: [&mut [V; K]; 2],
         from: usize,
+        top: usize,
     ) {
-        for b in from..K {
-            for a in 0..K {
-                let c = Self::TABLES.products[a][b];
-                if c < K {
-                    f_bar[a] = seed[c].mul_add(g[b], f_bar[a]);
-                    g_bar[b] = seed[c].mul_add(f[a], g_bar[b]);
-                }
+        let t = Self::TABLES;
+        for b in from..t.up_to[top] {
+            for a in 0..t.up_to[top - t.degrees[b]] {
+                let c = t.products[a][b];
+                f_bar[a] = seed[c].mul_add(g[b], f_bar[a]);
+                g_bar[b] = seed[c].mul_add(f[a], g_bar[b]);
             }
         }
     }
@@ -137,10 +149,11 @@ impl<const K: usize, const D: usize, const S: usize> Rules<K, D, S> for Dense<K,
 
     #[inline(always)]
     fn compose<V: Simd>(phi: &[V; D], a: &[V; K]) -> [V; K] {
+        // What is left to be multiplied n times by a series without constant needs the lower degrees alone.
         let mut sum = [V::lit(0.0); K];
         for n in (0..D - 1).rev() {
             let mut next = [V::lit(0.0); K];
-            Self::add_product(&mut next, &sum, a, 1);
+            Self::add_product(&mut next, &sum, a, 1, D - 2 - n);
             next[0] = phi[n].mul(V::lit(1.0 / FACTORIALS[n]));
             sum = next;
         }
@@ -153,7 +166,7 @@ impl<const K: usize, const D: usize, const S: usize> Rules<K, D, S> for Dense<K,
         let mut sums = [zero; D];
         for n in (0..D - 1).rev() {
             let mut next = zero;
-            Self::add_product(&mut next, &sums[n + 1], a, 1);
+            Self::add_product(&mut next, &sums[n + 1], a, 1, D - 2 - n);
             next[0] = phi[n].mul(V::lit(1.0 / FACTORIALS[n]));
             sums[n] = next;
         }
@@ -163,7 +176,7 @@ impl<const K: usize, const D: usize, const S: usize> Rules<K, D, S> for Dense<K,
             value = sum_bar[0].mul_add(phi[n + 1].mul(V::lit(1.0 / FACTORIALS[n])), value);
             sum_bar[0] = V::lit(0.0);
             let mut next = zero;
-            Self::add_product_adjoint(&sums[n + 1], a, &sum_bar, &mut next, &mut bar, 1);
+            Self::add_product_adjoint([&sums[n + 1], a], &sum_bar, [&mut next, &mut bar], 1, D - 2 - n);
             sum_bar = next;
         }
         bar[0] = value;
@@ -202,14 +215,14 @@ impl<const K: usize, const D: usize, const S: usize> Rules<K, D, S> for Dense<K,
     #[inline(always)]
     fn product<V: Simd>(f: &[V; K], g: &[V; K]) -> [V; K] {
         let mut product = [V::lit(0.0); K];
-        Self::add_product(&mut product, f, g, 0);
+        Self::add_product(&mut product, f, g, 0, D - 2);
         product
     }
 
     #[inline(always)]
     fn product_adjoint<V: Simd>(f: &[V; K], g: &[V; K], seed: &[V; K]) -> ([V; K], [V; K]) {
         let (mut f_bar, mut g_bar) = ([V::lit(0.0); K], [V::lit(0.0); K]);
-        Self::add_product_adjoint(f, g, seed, &mut f_bar, &mut g_bar, 0);
+        Self::add_product_adjoint([f, g], seed, [&mut f_bar, &mut g_bar], 0, D - 2);
         (f_bar, g_bar)
     }
 }

@@ -81,6 +81,7 @@ impl<const JETS: usize> Residuals for Sum<JETS> {
         rows.put::<V>(0, (0..JETS).fold(V::lit(1.0), |sum, jet| sum.add(at.jet(jet).abs())));
     }
     fn target(_: &[f64], _: &mut [f64]) {}
+    fn target_slopes(_: &[f64], _: &mut [f64]) {}
 }
 
 const NO_UNIT: schema::Unit = schema::Unit { exponents: [0.0; 7], factor: 1.0, text: "" };
