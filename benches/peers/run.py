@@ -23,7 +23,7 @@ except ImportError as missing:
 
 jax.config.update("jax_enable_x64", True)
 
-LAYERS, POINTS, BUDGET = 3, 512, 3.0
+LAYERS, POINTS, BUDGET = 3, 512, 1.0
 
 
 def parameters(inputs, outputs, width, key):
