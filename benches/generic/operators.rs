@@ -94,6 +94,7 @@ const TERM: schema::Term = schema::Term {
     kind: schema::TermKind::Residual,
     loss: schema::Loss::Square,
     weight: 1.0,
+    within: None,
     first: 0,
     rows: 1,
 };
