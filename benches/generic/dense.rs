@@ -3,6 +3,8 @@
 //! It runs in the same engine, on the same tiles and matrix products as generated code, so that what differs is the
 //! rules alone. Channels are Taylor coefficients: `1 / alpha!` times the partial derivative.
 
+#![allow(clippy::needless_range_loop, reason = "indices are those of monomials, in several arrays at once")]
+
 use nisp::__private::{Rules, Simd};
 
 /// Monomials of `S` variables up to some order, `K` in number, lowest order first, and the products that stay within it.

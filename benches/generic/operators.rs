@@ -86,18 +86,8 @@ impl<const JETS: usize> Residuals for Sum<JETS> {
 
 const NO_UNIT: schema::Unit = schema::Unit { exponents: [0.0; 7], factor: 1.0, text: "" };
 
-const TERM: schema::Term = schema::Term {
-    name: "balance",
-    equation: "",
-    latex: "",
-    unit: NO_UNIT,
-    kind: schema::TermKind::Residual,
-    loss: schema::Loss::Square,
-    weight: 1.0,
-    within: None,
-    first: 0,
-    rows: 1,
-};
+/// Whatever a schema holds beside channels, jets and coordinates is that of the simplest emitted scene.
+const SIMPLEST: schema::Scene = *<second::generated::Scene as Scene>::SCHEMA;
 
 /// A scene of one group whose residual is the sum of the jets listed: `head: degree, [monomial: coefficient, ..];`
 macro_rules! dense_scene {
@@ -110,15 +100,9 @@ macro_rules! dense_scene {
             const SCHEMA: &'static schema::Scene = &schema::Scene {
                 module: "dense",
                 name: stringify!($name),
-                docs: "",
                 coordinates: &[schema::Coordinate { name: "x", unit: NO_UNIT, scale_group: 0 }; $coordinates],
-                heads: &[schema::Head {
-                    name: "u", unit: NO_UNIT, source: false, lower: None, upper: None, transformed: false, docs: "",
-                }; $heads],
-                scalars: &[],
+                heads: &[SIMPLEST.heads[0]; $heads],
                 groups: &[schema::Group {
-                    name: "inside",
-                    docs: "",
                     channels: &[""; $channels],
                     order: $order,
                     dense: $channels,
@@ -131,17 +115,9 @@ macro_rules! dense_scene {
                         ),*],
                         site: 0,
                     }),*],
-                    columns: &[],
-                    terms: &[TERM],
-                    rows: 1,
-                    paired: false,
-                    flops: [0, 0],
+                    ..SIMPLEST.groups[0]
                 }],
-                outputs: schema::Group {
-                    name: "(outputs)", docs: "", channels: &[], order: 0, dense: 1, jets: &[], columns: &[], terms: &[],
-                    rows: 0, paired: false, flops: [0, 0],
-                },
-                skipped: &[],
+                ..SIMPLEST
             };
             fn kernels<E: Real>() -> Vec<Box<dyn GroupKernel<E>>> {
                 type Rules = Dense<$channels, { $order + 2 }, $coordinates>;
