@@ -4,6 +4,7 @@ use std::ops::Range;
 
 use super::Architecture;
 use crate::real::Real;
+use crate::solve::prior::{PriorGroup, WeightPrior};
 
 /// Positions of all parameters in the compact vector `theta` and in the padded working vector.
 #[derive(Clone, Debug)]
@@ -117,6 +118,13 @@ impl Layout {
             len: at.theta + learned,
             padded_len: (learned_at + learned).next_multiple_of(lanes),
         }
+    }
+
+    /// A prior of one precision to begin with on two groups that may learn different ones: how wiggly the last layer's
+    /// units are, and how much of them the heads take.
+    pub(crate) fn prior(&self, precision: f64) -> WeightPrior {
+        let group = |name: &str, range| PriorGroup { name: name.into(), range, precision };
+        WeightPrior::of([group("layers", 0..self.head.weights), group("heads", self.head.weights..self.len)])
     }
 
     /// True if the network sees features of the coordinates instead of the coordinates.

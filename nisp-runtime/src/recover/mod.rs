@@ -29,11 +29,10 @@ use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
 use crate::solve::lbfgs::Lbfgs;
 use crate::solve::marquardt::Marquardt;
-use crate::solve::prior::WeightPrior;
 
-/// What is believed of the precision of the weights before any row is seen: a network whose heads change by a few times
-/// their natural size.
-const BELIEF: Belief = Belief { precision: 0.1, count: 30.0 };
+/// What is believed of the precision of weights before any row is seen: a network whose heads change by a few times their
+/// natural size. Worth so few parameters, it matters only where the data say next to nothing.
+const BELIEF: Belief = Belief { precision: 0.3, count: 4.0 };
 
 /// Parameters up to which the curvature is factorised for error bars: a few seconds.
 const MOST_FOR_CURVATURE: usize = 4000;
@@ -141,7 +140,7 @@ fn solve_double(
     let monitor = &mut forward(monitor);
     let len = engine.parameters();
     let limits = limits(settings, start);
-    let mut prior = WeightPrior::uniform(BELIEF.precision, len);
+    let mut prior = engine.layout().prior(BELIEF.precision);
     let mut outcome = match optimizer {
         Optimizer::Evidence | Optimizer::Marquardt => {
             weigh::by_noise(&mut engine, &bound, &noise);

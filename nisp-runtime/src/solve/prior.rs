@@ -40,6 +40,11 @@ impl WeightPrior {
         Ok(Self { groups })
     }
 
+    /// A prior on groups that are known to be disjoint and sound.
+    pub(crate) fn of<const N: usize>(groups: [PriorGroup; N]) -> Self {
+        Self { groups: groups.into() }
+    }
+
     /// One precision for all of `len` parameters.
     pub fn uniform(precision: f64, len: usize) -> Self {
         Self { groups: vec![PriorGroup { name: "weights".into(), range: 0..len, precision }] }
