@@ -67,7 +67,7 @@ fn settings(options: &Options) -> Result<Settings, String> {
     Ok(Settings {
         precision: if options.precision == "f32" { Width::F32 } else { Width::F64 },
         optimizer: Optimizer::from_name(&options.optimizer).unwrap_or(Optimizer::Auto),
-        architecture: Architecture::modified(options.width, options.layers),
+        architecture: Architecture { width: options.width, layers: options.layers, ..Settings::default().architecture },
         seed: options.seed,
         budget: Some(Duration::from_secs_f64(options.budget)),
         iterations: options.iterations.map(|count| count as u64),

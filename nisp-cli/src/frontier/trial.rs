@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use nisp::network::Architecture;
+use nisp::network::{Architecture, Inputs};
 use nisp::solve::driver::Flow;
 use nisp::{Optimizer, Settings, Width, recover};
 use nisp_equations::Prepared;
@@ -23,10 +23,15 @@ pub(crate) struct Trial {
 impl Trial {
     /// Mean error of the sources and mean wall time.
     pub(super) fn over(&self, samples: &[Prepared], budget: f64) -> Result<(f64, f64), String> {
+        // Adam stands for the paper, which sees the plain coordinates.
+        let inputs = match self.optimizer {
+            Optimizer::Adam => Inputs::Coordinates,
+            _ => Inputs::Automatic,
+        };
         let settings = Settings {
             precision: self.precision,
             optimizer: self.optimizer,
-            architecture: Architecture::modified(self.width, 2),
+            architecture: Architecture { inputs, ..Architecture::modified(self.width, 2) },
             seed: self.seed,
             budget: Some(Duration::from_secs_f64(budget)),
             iterations: None,
