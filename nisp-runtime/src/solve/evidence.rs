@@ -123,3 +123,20 @@ fn log_evidence<'a>(
 pub(crate) fn is_free(block: &Block) -> bool {
     block.kind == BlockKind::ObservationOfUnknownNoise
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_belief_counts_as_so_many_parameters_more() {
+        let none = Belief { precision: 0.25, count: 0.0 };
+        let some = Belief { precision: 0.25, count: 4.0 };
+        let group = |effective, square| GroupEvidence { name: "weights".into(), effective, square };
+        assert_eq!(group(6.0, 2.0).precision(none), Some(3.0));
+        assert_eq!(group(6.0, 2.0).precision(some), Some(10.0 / 18.0));
+        // Rows that say nothing leave what was believed, or nothing.
+        assert_eq!(group(0.0, 0.0).precision(some), Some(0.25));
+        assert_eq!(group(0.0, 0.0).precision(none), None);
+    }
+}
