@@ -1,6 +1,7 @@
 //! Scenes over time: bound to a table with one column for the time and one for each observed field.
 
 use nisp::Problem;
+use nisp::network::Stretched;
 use nisp::schema::{Origin, Scene};
 use nisp_data::Table;
 use std::path::Path;
@@ -23,17 +24,15 @@ pub(crate) struct Given<'a> {
 /// Times at which the equations are asked to hold.
 const COLLOCATION: usize = 300;
 
-/// Range over the thinnest layer at the start that is to be resolved, as in `nisp::network::Inputs::Automatic`.
-const RATIO: f64 = 100.0;
-
 /// Place `i` of the collocation points in [0, 1]: half of them spread evenly, half evenly in the logarithm of the time
-/// since the start.
+/// since the start, as the network sees it.
 fn collocation(i: usize) -> f64 {
+    let ratio = Stretched::default().ratio;
     let share = i as f64 / (COLLOCATION - 1) as f64;
     let (mut low, mut high) = (0.0, 1.0);
     while high - low > f64::EPSILON {
         let middle: f64 = 0.5 * (low + high);
-        let so_far = 0.5 * (middle + (RATIO * middle).ln_1p() / RATIO.ln_1p());
+        let so_far = 0.5 * (middle + (ratio * middle).ln_1p() / ratio.ln_1p());
         *(if so_far < share { &mut low } else { &mut high }) = middle;
     }
     high

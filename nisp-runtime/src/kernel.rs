@@ -63,7 +63,7 @@ pub trait GroupKernel<E: Real>: Send + Sync {
     fn affine(&self, isa: Isa, layer: Affine<'_, E>);
     /// Adjoint of [`GroupKernel::affine`].
     fn affine_adjoint(&self, isa: Isa, layer: AffineAdjoint<'_, E>);
-    /// Channels of Fourier features.
+    /// Channels of fixed features of the coordinates.
     fn features(&self, isa: Isa, features: Features<'_, E>);
     /// A hidden layer after its matrix product; `last` delivers only the channels that heads read.
     fn layer(&self, isa: Isa, layer: Layer<'_, E>, gate: Option<Gate<'_, E>>, last: bool);

@@ -90,7 +90,7 @@ impl<E: Real> Network<'_, E> {
         }
     }
 
-    /// The same after a Fourier mapping: a layer's adjoint, then a product with the features.
+    /// The same on features of the coordinates: a layer's adjoint, then a product with the features.
     fn mapped_adjoint(
         &self,
         tile: &Tile<'_, E>,

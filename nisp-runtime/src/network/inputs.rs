@@ -71,7 +71,7 @@ impl Inputs {
     /// What `Automatic` stands for.
     pub(crate) fn resolved(self, coordinates: usize) -> Self {
         match self {
-            Self::Automatic if coordinates == 1 => Self::Stretched(Stretched { ratio: 100.0 }),
+            Self::Automatic if coordinates == 1 => Self::Stretched(Stretched::default()),
             Self::Automatic => Self::Coordinates,
             chosen => chosen,
         }
@@ -93,6 +93,13 @@ impl Inputs {
             Self::Stretched(stretched) => Some(stretched.features(coordinates)),
             Self::Fourier(fourier) => Some((Function::Sine, fourier.features(coordinates))),
         }
+    }
+}
+
+impl Default for Stretched {
+    /// Layers of a hundredth of the range.
+    fn default() -> Self {
+        Self { ratio: 100.0 }
     }
 }
 

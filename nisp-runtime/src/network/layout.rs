@@ -17,7 +17,7 @@ pub struct Layout {
     pub heads: usize,
     /// Hidden units, padded to whole vectors.
     pub width: usize,
-    /// Weights on the coordinates (or their Fourier features): the first layer, then the gates `c` and `d`.
+    /// Weights on the coordinates (or their features): the first layer, then the gates `c` and `d`.
     pub affine: Vec<Matrix>,
     /// Hidden layers 2, 3, ...
     pub hidden: Vec<Matrix>,

@@ -38,11 +38,10 @@ const LANES: usize = 16;
 /// Finds natural sizes; fills in the scalars that hold them.
 pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>, inputs: Inputs) -> Scales {
     let schema = scene.schema;
-    let (centre, half) = extents(schema, data.coordinates);
-    // What the network is steep enough for is what derivatives are sized by.
-    let extents = half.clone();
-    let steepness = inputs.steepness(half.len());
-    let half: Vec<f64> = half.iter().map(|half| half / steepness).collect();
+    let (centre, whole) = extents(schema, data.coordinates);
+    // Derivatives are sized by the steepest change that is expected, not by the whole range.
+    let steepness = inputs.steepness(whole.len());
+    let half: Vec<f64> = whole.iter().map(|half| half / steepness).collect();
     let probes: Vec<Probe> = <f64 as Precision>::kernels(scene)
         .into_iter()
         .zip(schema.groups)
@@ -76,7 +75,7 @@ pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>, inpu
     let free = |head: usize, value: f64, otherwise: f64| if schema.heads[head].transformed { otherwise } else { value };
     let scaling = Scaling {
         centre,
-        half: extents,
+        half: whole,
         offset: found.iter().enumerate().map(|(h, s)| free(h, s.0, 0.0)).collect(),
         scale: found.iter().enumerate().map(|(h, s)| free(h, s.1, 1.0)).collect(),
     };

@@ -138,7 +138,6 @@ fn solve_double(
     }
     let theta = initialise(engine.layout(), settings.seed);
     let monitor = &mut forward(monitor);
-    let len = engine.parameters();
     let limits = limits(settings, start);
     let mut prior = engine.layout().prior(BELIEF.precision);
     let mut outcome = match optimizer {
@@ -168,7 +167,7 @@ fn solve_double(
             driver::run(&mut Adam::new(theta, AdamSettings::default()), &mut engine, limits, monitor)
         }
     };
-    let prior = (len <= MOST_FOR_CURVATURE && Optimizer::Evidence.fits(len, rows)).then_some(prior);
+    let prior = (parameters <= MOST_FOR_CURVATURE && Optimizer::Evidence.fits(parameters, rows)).then_some(prior);
     if let Some(prior) = &prior {
         if !matches!(optimizer, Optimizer::Evidence | Optimizer::Marquardt) {
             weigh::by_noise(&mut engine, &bound, &noise);
