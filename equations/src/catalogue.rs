@@ -5,8 +5,10 @@
 use std::path::PathBuf;
 
 use nisp::{Problem, SceneRef};
+use nisp_data::cloud::LengthUnit;
 use nisp_data::nearest_name;
 
+use crate::contact::Contact;
 use crate::error::PrepareError;
 use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::series::Series;
@@ -40,8 +42,8 @@ pub enum Binding {
     Series(Series),
     /// In a way of its own.
     Own(fn(&Entry, &Request) -> Result<Prepared, PrepareError>),
-    /// By a program that uses the library.
-    Library,
+    /// To a point cloud.
+    Cloud(fn(&Entry, &Request) -> Result<Prepared, PrepareError>),
 }
 
 impl Entry {
@@ -63,10 +65,12 @@ impl Entry {
     /// # Errors
     /// A file, a column, a scene or a parameter that does not fit.
     pub fn prepare(&self, request: &Request) -> Result<Prepared, PrepareError> {
+        if !matches!(self.binding, Binding::Cloud(_)) {
+            self.refuse_clouds(request)?;
+        }
         match &self.binding {
             Binding::Series(series) => series.prepare(self, request),
-            Binding::Own(prepare) => prepare(self, request),
-            Binding::Library => Err(PrepareError::Library { entry: self.name }),
+            Binding::Own(prepare) | Binding::Cloud(prepare) => prepare(self, request),
         }
     }
 
@@ -74,7 +78,23 @@ impl Entry {
     pub fn series(&self) -> Option<&Series> {
         match &self.binding {
             Binding::Series(series) => Some(series),
-            Binding::Own(_) | Binding::Library => None,
+            Binding::Own(_) | Binding::Cloud(_) => None,
+        }
+    }
+
+    /// Options that are about clouds.
+    fn refuse_clouds(&self, request: &Request) -> Result<(), PrepareError> {
+        let given = [
+            ("sample", request.sample.is_some()),
+            ("cloud", request.cloud.is_some()),
+            ("unit", request.unit.is_some()),
+        ];
+        match given.into_iter().find(|(_, given)| *given) {
+            Some((option, _)) => {
+                let instead = "give its file with --data, and parameters with --set";
+                Err(PrepareError::Option { entry: self.name, option, instead })
+            }
+            None => Ok(()),
         }
     }
 }
@@ -84,8 +104,14 @@ impl Entry {
 pub struct Request {
     /// Scene of the entry, or its default.
     pub scene: Option<String>,
-    /// Table of measurements, or the example's.
+    /// Table or cloud of measurements, or the example's.
     pub data: Option<PathBuf>,
+    /// File with a sample's parameters and the names of its clouds.
+    pub sample: Option<PathBuf>,
+    /// Which of the sample's clouds, counted from zero.
+    pub cloud: Option<usize>,
+    /// Unit of the cloud's coordinates; metres if not given.
+    pub unit: Option<LengthUnit>,
     /// Truth to score against.
     pub truth: Option<PathBuf>,
     /// Names and the headers that hold them; the last word on a name counts.
@@ -108,8 +134,12 @@ pub struct Prepared {
     pub truth: Option<Truth>,
     /// Where the data came from.
     pub source: String,
+    /// What the user should know of the data. One line each.
+    pub warnings: Vec<String>,
     /// What classical rivals solve, if they know this scene.
     pub rival: Option<Box<dyn System>>,
+    /// The body whose surface was seen, where the data are a cloud.
+    pub contact: Option<Contact>,
 }
 
 impl Prepared {

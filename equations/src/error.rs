@@ -36,13 +36,82 @@ pub enum PrepareError {
         /// The names there are.
         have: String,
     },
-    /// An equation that takes more than the command line can read.
-    #[error(
-        "`{entry}` is solved from a program so far: bind its points, columns and clouds, which `nisp explain {entry}` lists"
-    )]
-    Library {
+    /// An option that an entry has no use for.
+    #[error("`{entry}` takes no --{option}; {instead}")]
+    Option {
         /// The entry.
         entry: &'static str,
+        /// The option.
+        option: &'static str,
+        /// What to give instead.
+        instead: &'static str,
+    },
+    /// Options that speak of different clouds.
+    #[error("--cloud {index} chooses among a sample's clouds; {instead}")]
+    Cloud {
+        /// The number asked for.
+        index: usize,
+        /// What to do.
+        instead: String,
+    },
+    /// A parameter that nobody gave.
+    #[error(
+        "parameter `{name}` has no value; give it with --set {name}=VALUE in {unit}, or name a sample with --sample"
+    )]
+    Missing {
+        /// The parameter.
+        name: &'static str,
+        /// Its declared unit.
+        unit: &'static str,
+    },
+    /// A sample without a number that the scene needs.
+    #[error("{}: no `{key}`, from which `{name}` is taken; add it, or give --set {name}=VALUE in {unit}", .path.display())]
+    SampleKey {
+        /// The sample.
+        path: PathBuf,
+        /// Table and key.
+        key: &'static str,
+        /// The parameter.
+        name: &'static str,
+        /// Its declared unit.
+        unit: &'static str,
+    },
+    /// A parameter with which the scene makes no sense.
+    #[error("`{name}` is {value} {unit}; {must}")]
+    Range {
+        /// The parameter.
+        name: &'static str,
+        /// Its value in its declared unit.
+        value: f64,
+        /// The unit.
+        unit: &'static str,
+        /// What it must be, and how to mend it.
+        must: &'static str,
+    },
+    /// A cloud that is somewhere else.
+    #[error(
+        "{}: only {share:.0} % of the points lie where the {body} can be, {place}: is it a cloud of another object, or in \
+         another frame?",
+        .path.display()
+    )]
+    Elsewhere {
+        /// The cloud.
+        path: PathBuf,
+        /// Points where they can be, in per cent.
+        share: f64,
+        /// What was observed.
+        body: &'static str,
+        /// Where it can be.
+        place: String,
+    },
+    /// A scene that asks for the terrain.
+    #[error(
+        "scene `{scene}` needs the terrain under the face, which no cloud of the sides tells; bind its clearance in a \
+         program, or choose --scene unknown_terrain"
+    )]
+    Terrain {
+        /// The scene.
+        scene: &'static str,
     },
     /// A file of parameters that cannot be read.
     #[error("{}: {reason}", .path.display())]

@@ -1,6 +1,7 @@
-//! The equations that NISP ships, and how each is bound to tables of measurements.
+//! The equations that NISP ships, and how each is bound to measurements.
 
 pub mod catalogue;
+pub mod contact;
 mod copies;
 mod error;
 pub mod membrane;
@@ -14,6 +15,7 @@ pub mod truth;
 mod yardsticks;
 
 pub use catalogue::{Binding, Entry, Prepared, Request, catalogue};
+pub use contact::Contact;
 pub use copies::noisy_copy;
 pub use error::PrepareError;
 pub use truth::Truth;

@@ -3,6 +3,7 @@
 use nisp::scene;
 
 use crate::catalogue::{Binding, Entry};
+use crate::contact;
 
 /// The membrane on the command line.
 pub(crate) const ENTRY: Entry = Entry {
@@ -16,8 +17,8 @@ pub(crate) const ENTRY: Entry = Entry {
         scene::<membrane::contact_thin::Scene>,
         scene::<membrane::identify_thin::Scene>,
     ],
-    data: "",
-    binding: Binding::Library,
+    data: "data/membrane/y_shape_1.toml",
+    binding: Binding::Cloud(contact::prepare_membrane),
 };
 
 nisp::pde! {

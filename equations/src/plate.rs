@@ -9,7 +9,7 @@ use serde::Deserialize;
 
 use crate::catalogue::{Binding, Entry, Prepared, Request};
 use crate::error::PrepareError;
-use crate::truth::Truth;
+use crate::truth::{Headers, Truth};
 
 /// The plate on the command line.
 pub(crate) const ENTRY: Entry = Entry {
@@ -68,10 +68,20 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         (None, None) => Some(Table::parse(std::path::Path::new("data/plate/plate_points.csv"), TRUTH)?),
         (None, Some(_)) => None,
     };
-    let truth = truth.map(|table| Truth::read(&table, scene.schema, None)).transpose()?;
+    let truth = truth.map(|table| Truth::read(&table, scene.schema, None, Headers::default())).transpose()?;
     let points = grid(sample.radius).filter(|point| disc.contains(point)).flatten().collect();
     let source = path.display().to_string();
-    Ok(Prepared { problem, points, outline: disc.outline(200), measured: Vec::new(), truth, source, rival: None })
+    Ok(Prepared {
+        problem,
+        points,
+        outline: disc.outline(200),
+        measured: Vec::new(),
+        truth,
+        source,
+        warnings: Vec::new(),
+        rival: None,
+        contact: None,
+    })
 }
 
 /// A grid over the plate.

@@ -10,7 +10,7 @@ use crate::catalogue::{Entry, Prepared, Request, hint};
 use crate::copies::noisy_copy;
 use crate::error::PrepareError;
 use crate::rivals::System;
-use crate::truth::Truth;
+use crate::truth::{Headers, Truth};
 
 /// What is given besides measurements.
 #[derive(Clone, Copy)]
@@ -149,11 +149,22 @@ impl Series {
             };
             problem.set_group(group.name, points.into(), columns)?;
         }
-        let truth = truth.map(|truth| Truth::read(truth, schema, Some([first, last]))).transpose()?;
+        let truth =
+            truth.map(|truth| Truth::read(truth, schema, Some([first, last]), Headers::default())).transpose()?;
         let source = table.path().display().to_string();
         let rival =
             (self.rival)(schema.name, Given { start: first, parameter: &|name| parameter(schema, request, name) });
-        Ok(Prepared { problem, points: times, outline: Vec::new(), measured, truth, source, rival })
+        Ok(Prepared {
+            problem,
+            points: times,
+            outline: Vec::new(),
+            measured,
+            truth,
+            source,
+            warnings: Vec::new(),
+            rival,
+            contact: None,
+        })
     }
 }
 

@@ -3,6 +3,7 @@
 use nisp::scene;
 
 use crate::catalogue::{Binding, Entry};
+use crate::contact;
 
 /// The sponge on the command line.
 pub(crate) const ENTRY: Entry = Entry {
@@ -13,13 +14,13 @@ pub(crate) const ENTRY: Entry = Entry {
         scene::<sponge::known_terrain::Scene>,
         scene::<sponge::displacement::Scene>,
     ],
-    data: "",
-    binding: Binding::Library,
+    data: "data/sponge/plane_1.toml",
+    binding: Binding::Cloud(contact::prepare_sponge),
 };
 
 nisp::pde! {
     /// A cube held at its top face. The contact pressure `f` presses along `m`: the terrain's normal where it is known,
-    /// minus the face's own normal where it is not. Pressure `q` is a field of its own, so that nothing locks as `nu`
+    /// elsewhere the direction of the force that was measured, which frictionless terrain has on average. Pressure `q` is a field of its own, so that nothing locks as `nu`
     /// approaches one half: `q / lambda` stays finite.
     pub mod sponge {
         coordinates:

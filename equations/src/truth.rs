@@ -16,13 +16,43 @@ pub struct Truth {
     pub outside: usize,
 }
 
+/// Under which headers a truth's quantities stand.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Headers<'a> {
+    /// Names and the headers that the user chose for them; the last word on a name counts.
+    pub chosen: &'a [(String, String)],
+    /// Names and what else they are called.
+    pub also: &'a [(&'a str, &'a str)],
+}
+
+impl Headers<'_> {
+    /// The values of a quantity in a unit.
+    ///
+    /// # Errors
+    /// No column, or no single one, answers to the name, or a cell is no number.
+    pub fn read(&self, table: &Table, name: &str, unit: &str) -> Result<Vec<f64>, DataError> {
+        if let Some((_, header)) = self.chosen.iter().rev().find(|(own, _)| own == name) {
+            return table.chosen(name, header, unit);
+        }
+        match (table.quantity(name, unit), self.also.iter().find(|(own, _)| *own == name)) {
+            (Err(DataError::Column { .. }), Some((_, also))) => table.quantity(also, unit),
+            (found, _) => found,
+        }
+    }
+}
+
 impl Truth {
     /// Reads whichever heads the table has; over time, at its times within `range`.
     ///
     /// # Errors
     /// A table without any of them, a cell that is no number, times that do not rise or are all outside.
-    pub fn read(table: &Table, scene: &Scene, range: Option<[f64; 2]>) -> Result<Truth, PrepareError> {
-        let coordinates = scene.coordinates.iter().map(|c| table.quantity(c.name, c.unit.text));
+    pub fn read(
+        table: &Table,
+        scene: &Scene,
+        range: Option<[f64; 2]>,
+        headers: Headers<'_>,
+    ) -> Result<Truth, PrepareError> {
+        let coordinates = scene.coordinates.iter().map(|c| headers.read(table, c.name, c.unit.text));
         let coordinates = coordinates.collect::<Result<Vec<_>, _>>()?;
         let inside = |row: usize| match range {
             // A time that was rounded on its way into a file still counts.
@@ -43,7 +73,7 @@ impl Truth {
         let keep = |values: Vec<f64>| kept.iter().map(|&row| values[row]).collect();
         let mut heads = Vec::new();
         for head in scene.heads {
-            match table.quantity(head.name, head.unit.text) {
+            match headers.read(table, head.name, head.unit.text) {
                 Ok(values) => heads.push((head.name, keep(values))),
                 Err(DataError::Column { .. }) => {}
                 Err(error) => return Err(error.into()),

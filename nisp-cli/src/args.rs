@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as Group, Parser, Subcommand};
+use nisp_data::cloud::LengthUnit;
 
 /// Recover unknown sources from noisy measurements and a known governing equation.
 #[derive(Parser)]
@@ -41,9 +42,18 @@ pub(crate) struct Options {
     /// One of the equation's scenes [default: its first].
     #[arg(long, value_name = "NAME")]
     pub(crate) scene: Option<String>,
-    /// CSV of measurements, with a column for the time [default: the repository's example].
+    /// CSV of measurements with a column for the time, or a point cloud [default: the repository's example].
     #[arg(long, value_name = "FILE", help_heading = DATA)]
     pub(crate) data: Option<PathBuf>,
+    /// TOML of a sample: its parameters, and the names of its point clouds.
+    #[arg(long, value_name = "FILE", help_heading = DATA)]
+    pub(crate) sample: Option<PathBuf>,
+    /// Which of the sample's clouds, counted from 0 [default: 0].
+    #[arg(long, value_name = "K", allow_negative_numbers = true, help_heading = DATA)]
+    pub(crate) cloud: Option<usize>,
+    /// Unit of the cloud's coordinates: m, cm, mm, um or in [default: m].
+    #[arg(long, value_name = "UNIT", help_heading = DATA)]
+    pub(crate) unit: Option<LengthUnit>,
     /// Header of the column that holds a quantity, for instance q=q_m_sigma0.01. Repeatable.
     #[arg(long, value_name = "NAME=HEADER", value_parser = pair, help_heading = DATA)]
     pub(crate) column: Vec<(String, String)>,
@@ -105,11 +115,18 @@ Examples:
       your measurements; the cart weighs 50 g
   nisp solve rlc --data volts.csv --set f0=6 --budget 4 --seed 3 --json > answer.json
   nisp solve pendulum --config run.toml --out results/run-7
+  nisp solve membrane --sample y_shape_1.toml --cloud 2 --truth y_shape_1_truth.csv
+      contact pressure on a membrane, from a cloud of the sample
+  nisp solve membrane --scene identify --data bubble.ply --unit mm --set p=5670
+      your cloud; nothing touches the membrane, and its modulus is wanted
+  nisp solve sponge --data sides.ply --set force_z=2.4 --set force_x=0 ...
 
 Data:
   A CSV with one header line, a time that rises, and a column for each observed quantity. For `q` in metres the headers
   `q`, `q [m]` and `q_m` are found by themselves; `q_mm` is converted. Any other header is chosen with --column. A
   header without a unit is taken in the declared one: `nisp explain SCENE` shows units and parameters.
+  For contact, a cloud: PLY, PCD, NPY, NPZ, CSV or XYZ, in metres or the unit of --unit, in the frame of the sample
+  (data/README.md). --column then names columns of the truth.
 
 Configuration (every option has a key of the same name; paths are taken from the file's folder):
   data = \"run.csv\"
@@ -121,6 +138,7 @@ Results, in the folder of --out:
   source.csv  the recovered source with its standard deviation, where the method gives one
   state.csv   the fields, likewise
   plot.svg    both, with measurements, truth and a band of two standard deviations
+  For contact also surface.vtu and surface.ply, the deformed surface with its pressure.
   All are written together at the end; files of those names are replaced.
 
 Ctrl-C (or SIGTERM) ends the run at the best state so far, which is written; the status is not_converged. A second

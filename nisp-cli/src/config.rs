@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 /// Options whose values are paths.
-const PATHS: [&str; 3] = ["data", "truth", "out"];
+const PATHS: [&str; 4] = ["data", "sample", "truth", "out"];
 
 /// The flags that a file stands for.
 ///

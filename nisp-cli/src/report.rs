@@ -5,11 +5,14 @@ use std::fmt::Write;
 use nisp::solve::driver::Status;
 use nisp::{Settings, Solution};
 use nisp_data::OutDir;
+use nisp_data::atomic::Content;
+use nisp_data::cloud::LengthUnit;
 use nisp_equations::Prepared;
+use nisp_equations::contact::ContactScore;
 use nisp_equations::rivals::mean_abs_error;
 
 use crate::args::Options;
-use crate::score::Score;
+use crate::score::{Found, Rival, Score};
 
 /// Rivals have no way to be quick on more measurements than this.
 const ROWS_FOR_RIVALS: usize = 2000;
@@ -37,14 +40,26 @@ pub(crate) fn json(
     solution: &Solution,
     options: &Options,
     settings: &Settings,
-    scores: &[Score],
+    found: &Found,
     warnings: &[String],
 ) -> String {
     let mut errors = serde_json::Map::new();
-    for score in scores {
+    for score in &found.scores {
         errors.insert(score.name.into(), score.mean_abs.into());
         if let Some(if_zero) = score.if_zero {
             errors.insert(format!("{}_if_zero", score.name), if_zero.into());
+        }
+    }
+    for learned in &found.learned {
+        errors.insert(learned.name.into(), learned.value.into());
+        errors.insert(format!("{}_sd", learned.name), learned.deviation.into());
+    }
+    if let Some(contact) = &found.contact {
+        errors.insert("force_N".into(), contact.force.into());
+        if let Some(against) = &contact.against {
+            errors.insert("iou".into(), against.iou.into());
+            errors.insert("patch_chamfer_mm2".into(), against.patch_chamfer_mm2.into());
+            errors.insert("force_error_N".into(), against.force_error.into());
         }
     }
     let object = serde_json::json!({
@@ -62,6 +77,9 @@ pub(crate) fn json(
         "settings": {
             "scene": solution.scene().name,
             "data": options.data,
+            "sample": options.sample,
+            "cloud": options.cloud,
+            "unit": options.unit.map(LengthUnit::symbol),
             "truth": options.truth,
             "columns": options.column.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
             "parameters": options.set.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
@@ -79,11 +97,11 @@ pub(crate) fn json(
 
 /// A short table: errors beside those of simpler answers, time, points, channels, what was skipped.
 pub(crate) fn table(
-    solution: &mut Solution,
+    solution: &Solution,
     prepared: &Prepared,
-    scores: &[Score],
+    found: &Found,
     warnings: &[String],
-    out: &OutDir,
+    written: &str,
 ) -> String {
     let mut text = String::new();
     let scene = solution.scene();
@@ -109,32 +127,61 @@ pub(crate) fn table(
     for skipped in scene.skipped {
         line(format!("  skipped    {skipped}"));
     }
-    if !scores.is_empty() {
+    if !found.scores.is_empty() {
         line("mean absolute error".into());
     }
-    for score in scores {
+    for score in &found.scores {
         line(format!("  {:26} {:.2e} {}", score.name, score.mean_abs, score.unit));
         if let Some(if_zero) = score.if_zero {
             for (name, error) in
-                std::iter::once((format!("{} = 0", score.name), if_zero)).chain(rivals(prepared, score))
+                std::iter::once((format!("{} = 0", score.name), if_zero)).chain(rivals(prepared, found, score))
             {
                 line(format!("    {name:24} {error:.2e} {}", score.unit));
             }
         }
     }
-    for learned in solution.learned() {
+    if let Some(contact) = &found.contact {
+        contact_rows(contact, found.rival.as_ref()).into_iter().for_each(&mut line);
+    }
+    for learned in &found.learned {
         let deviation = learned.deviation.map_or_else(String::new, |deviation| format!(" ± {deviation:.2e}"));
         line(format!("learned {} = {:.6e}{deviation} {}", learned.name, learned.value, learned.unit.text));
     }
     for warning in warnings {
         line(format!("warning: {warning}"));
     }
-    line(format!("wrote source.csv, state.csv and plot.svg to {}", out.path().display()));
+    line(written.into());
     text
 }
 
+/// Which files were written, and where.
+pub(crate) fn written(files: &[Content], out: &OutDir) -> String {
+    let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
+    let (last, others) = names.split_last().unwrap_or((&"", &[]));
+    format!("wrote {} and {last} to {}", others.join(", "), out.path().display())
+}
+
+/// A contact's net force and how well it was found, beside those of a classical way.
+fn contact_rows(contact: &ContactScore, rival: Option<&Rival>) -> Vec<String> {
+    let mut rows = vec!["contact".into()];
+    let mut add = |name: &str, unit: &str, value: &dyn Fn(&ContactScore) -> Option<f64>| {
+        let Some(own) = value(contact) else { return };
+        rows.push(format!("  {name:26} {own:.3} {unit}"));
+        let other = rival.and_then(|rival| Some((rival.name, value(&rival.contact)?)));
+        rows.extend(other.map(|(name, value)| format!("    {name:24} {value:.3} {unit}")));
+    };
+    add("net force", "N", &|contact| Some(contact.force));
+    add("error of the net force", "N", &|contact| Some(contact.against.as_ref()?.force_error));
+    add("overlap of the patch (IoU)", "", &|contact| Some(contact.against.as_ref()?.iou));
+    add("Chamfer distance, patch", "mm^2", &|contact| contact.against.as_ref()?.patch_chamfer_mm2);
+    rows
+}
+
 /// Errors of the classical rivals, where they can be asked.
-fn rivals(prepared: &Prepared, score: &Score) -> Vec<(String, f64)> {
+fn rivals(prepared: &Prepared, found: &Found, score: &Score) -> Vec<(String, f64)> {
+    if let Some((name, mean_abs)) = found.rival.as_ref().and_then(|rival| Some((rival.name, rival.mean_abs?))) {
+        return vec![(name.into(), mean_abs)];
+    }
     let known = prepared.truth.as_ref().and_then(|truth| Some((&truth.points, truth.of(score.name)?)));
     let Some((at, values)) = known.filter(|_| prepared.points.len() <= ROWS_FOR_RIVALS) else { return Vec::new() };
     let answers = prepared.contest(at, values).into_iter();

@@ -1,7 +1,67 @@
 //! Scores against a truth that no solver has seen.
 
-use nisp::Solution;
-use nisp_equations::Truth;
+use nisp::{LearnedValue, Solution};
+use nisp_equations::contact::ContactScore;
+use nisp_equations::rivals::mean_abs_error;
+use nisp_equations::{Contact, Prepared, Truth};
+
+/// All that is said of an answer.
+pub(crate) struct Found {
+    /// Against the truth, where it is known.
+    pub(crate) scores: Vec<Score>,
+    /// Of a contact, where the scene has one.
+    pub(crate) contact: Option<ContactScore>,
+    /// Of the contact by a classical way.
+    pub(crate) rival: Option<Rival>,
+    pub(crate) learned: Vec<LearnedValue>,
+}
+
+/// What a classical way finds of a contact.
+pub(crate) struct Rival {
+    pub(crate) name: &'static str,
+    /// Mean absolute error of the pressure, where the truth is known.
+    pub(crate) mean_abs: Option<f64>,
+    pub(crate) contact: ContactScore,
+}
+
+impl Found {
+    pub(crate) fn of(solution: &mut Solution, prepared: &Prepared) -> Self {
+        let truth = prepared.truth.as_ref();
+        let learned = solution.learned();
+        let solution = &*solution;
+        let values = |name: &str, points: &[f64]| {
+            let estimate = solution.evaluate(points).into_iter().find(|estimate| estimate.name == name);
+            estimate.map(|estimate| estimate.values)
+        };
+        Self {
+            scores: truth.map_or_else(Vec::new, |truth| score(solution, truth)),
+            contact: prepared.contact.as_ref().and_then(|contact| contact.score(&values, truth)),
+            rival: None,
+            learned,
+        }
+    }
+
+    /// Asks the classical way too, which is shown to people only.
+    pub(crate) fn with_rival(mut self, prepared: &Prepared) -> Self {
+        self.rival = prepared.contact.as_ref().and_then(|contact| rival(contact, prepared.truth.as_ref()));
+        self
+    }
+
+    /// What could not be measured, and why.
+    pub(crate) fn warnings(&self) -> Option<String> {
+        let against = self.contact.as_ref()?.against.as_ref()?;
+        let why = "no point, or no point of the truth, counts as touched: the patches have no distance";
+        against.patch_chamfer_mm2.is_none().then(|| why.into())
+    }
+}
+
+fn rival(contact: &Contact, truth: Option<&Truth>) -> Option<Rival> {
+    let (pressure, way) = (contact.pressure?, contact.rival.as_ref()?);
+    let values = |name: &str, points: &[f64]| (name == pressure).then(|| (way.pressure)(points));
+    let real = truth.and_then(|truth| Some((truth, truth.of(pressure)?)));
+    let mean_abs = real.map(|(truth, real)| mean_abs_error(&(way.pressure)(&truth.points), real));
+    Some(Rival { name: way.name, mean_abs, contact: contact.score(&values, truth)? })
+}
 
 /// Mean absolute errors of one head.
 pub(crate) struct Score {

@@ -1,4 +1,4 @@
-//! `nisp solve`: from a table to a source.
+//! `nisp solve`: from a table or a cloud to a source.
 
 use std::io::IsTerminal;
 use std::process::ExitCode;
@@ -11,7 +11,8 @@ use nisp_data::OutDir;
 use nisp_equations::{Prepared, Request, Truth};
 
 use crate::args::Options;
-use crate::{interrupt, report, results, score};
+use crate::score::Found;
+use crate::{interrupt, report, results};
 
 /// Not converged.
 const NOT_CONVERGED: u8 = 3;
@@ -22,6 +23,9 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let request = Request {
         scene: options.scene.clone(),
         data: options.data.clone(),
+        sample: options.sample.clone(),
+        cloud: options.cloud,
+        unit: options.unit,
         truth: options.truth.clone(),
         columns: options.column.clone(),
         parameters: options.set.clone(),
@@ -31,7 +35,8 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::listen()?;
     let mut solution = run(&prepared, &settings)?;
-    let mut warnings: Vec<_> = solution.warnings.iter().map(|warning| warning.message.clone()).collect();
+    let mut warnings = prepared.warnings.clone();
+    warnings.extend(solution.warnings.iter().map(|warning| warning.message.clone()));
     // What the compiler found: one line each, without its advice to whoever writes the equations.
     let open = solution.scene().warnings.iter().filter_map(|message| message.lines().next());
     warnings.extend(open.map(|message| format!("{message}: the problem may be underdetermined")));
@@ -39,13 +44,15 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         warnings.push(format!("interrupted after {:.1} s: this is the best state so far", solution.wall_s));
     }
     warnings.extend(prepared.truth.as_ref().and_then(unscored));
-    let scores = prepared.truth.as_ref().map_or_else(Vec::new, |truth| score::score(&solution, truth));
+    let found = Found::of(&mut solution, &prepared);
+    warnings.extend(found.warnings());
     let files = results::files(&prepared, &mut solution).map_err(|error| error.to_string())?;
     out.write(&files).map_err(|error| error.to_string())?;
+    let written = report::written(&files, &out);
     let text = if options.json {
-        report::json(&solution, options, &settings, &scores, &warnings)
+        report::json(&solution, options, &settings, &found, &warnings)
     } else {
-        report::table(&mut solution, &prepared, &scores, &warnings, &out)
+        report::table(&solution, &prepared, &found.with_rival(&prepared), &warnings, &written)
     };
     crate::print(&text)?;
     let failed = matches!(solution.status, Status::NotConverged | Status::Interrupted);

@@ -12,18 +12,22 @@
 
 mod band;
 mod bspline;
+mod cloud_fit;
 mod collocation;
 mod contest;
 mod savitzky_golay;
 mod search;
 mod smoothing;
 mod systems;
+mod wrench;
 
+pub use cloud_fit::{CloudFit, inflated_tensions, pressure_by_operator};
 pub use collocation::collocation;
 pub use contest::{Answer, contest};
 pub use savitzky_golay::{savitzky_golay, savitzky_golay_oracle};
 pub use smoothing::{noise_level, smoothing_spline};
 pub use systems::{Pendulum, Rlc};
+pub use wrench::LinearPressure;
 
 /// An equation of motion of second order in its states and of first order in one source.
 ///

@@ -43,6 +43,11 @@ impl LengthUnit {
         }
     }
 
+    /// As it is written: `m`, `cm`, `mm`, `um`, `in`.
+    pub fn symbol(self) -> &'static str {
+        self.names().0
+    }
+
     fn names(self) -> (&'static str, &'static str) {
         match self {
             LengthUnit::Metre => ("m", "metres"),
@@ -80,6 +85,12 @@ impl Cloud {
             corners.1[axis] = values.iter().rev().nth(cut).copied().unwrap_or(0.0);
         }
         corners
+    }
+
+    /// The share of the points that lie in a box.
+    pub fn share_within(&self, low: [f64; 3], high: [f64; 3]) -> f64 {
+        let inside = |point: &&[f64; 3]| (0..3).all(|axis| (low[axis]..=high[axis]).contains(&point[axis]));
+        self.points.iter().filter(inside).count() as f64 / self.points.len().max(1) as f64
     }
 
     /// Compares the cloud with the box around the domain that it should lie on, over the axes they share.

@@ -11,11 +11,21 @@ use crate::colour::ColourScale;
 impl Mesh {
     /// Writes the mesh as PLY. `colour_by` names an array (without its unit) and the scale of its colours.
     pub fn write_ply(&self, path: impl AsRef<Path>, colour_by: Option<(&str, ColourScale)>) -> Result<(), DataError> {
-        let colours = match colour_by {
-            None => None,
-            Some((name, scale)) => Some((self.scalar(name)?, scale)),
-        };
+        let colours = self.colours(colour_by)?;
         write_atomic(path.as_ref(), |out| self.ply(out, colours))
+    }
+
+    /// The bytes that [`Mesh::write_ply`] writes.
+    pub fn ply_bytes(&self, colour_by: Option<(&str, ColourScale)>) -> Result<Vec<u8>, DataError> {
+        let colours = self.colours(colour_by)?;
+        let mut bytes = Vec::new();
+        // A vector takes everything.
+        let _ = self.ply(&mut bytes, colours);
+        Ok(bytes)
+    }
+
+    fn colours(&self, by: Option<(&str, ColourScale)>) -> Result<Option<(&Array, ColourScale)>, DataError> {
+        by.map(|(name, scale)| Ok((self.scalar(name)?, scale))).transpose()
     }
 
     fn scalars(&self) -> impl Iterator<Item = &Array> {

@@ -18,6 +18,14 @@ impl Mesh {
         write_atomic(path.as_ref(), |out| self.vtu(out))
     }
 
+    /// The bytes that [`Mesh::write_vtu`] writes.
+    pub fn vtu_bytes(&self) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        // A vector takes everything.
+        let _ = self.vtu(&mut bytes);
+        bytes
+    }
+
     fn vtu(&self, out: &mut dyn Write) -> io::Result<()> {
         let lone = self.triangles.is_empty();
         let cells = if lone { self.points.len() } else { self.triangles.len() };

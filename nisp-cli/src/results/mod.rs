@@ -1,5 +1,7 @@
 //! The files of a solved problem: source and state as CSV, and a plot.
 
+mod contact;
+
 use nisp::{Estimate, Solution};
 use nisp_data::atomic::Content;
 use nisp_data::colour::ColourScale;
@@ -14,6 +16,9 @@ const CURVE: usize = 600;
 
 /// Names and contents, to be written together.
 pub(crate) fn files(prepared: &Prepared, solution: &mut Solution) -> Result<Vec<Content>, DataError> {
+    if let Some(contact) = &prepared.contact {
+        return contact::files(prepared, contact, solution);
+    }
     let times = &prepared.points;
     if let [_, _] = solution.scene().coordinates {
         let estimates = solution.evaluate_with_errors(times);

@@ -1,0 +1,130 @@
+//! Parameters: what the user sets goes before what a sample says, and that before what is declared.
+
+use std::path::Path;
+
+use nisp::schema::{Origin, Scene};
+use nisp::{BindError, Problem, SceneRef};
+
+use crate::PrepareError;
+use crate::catalogue::Request;
+
+/// A number of a sample, in SI units.
+pub(super) struct Number {
+    /// The parameter's name in the scene.
+    pub(super) name: &'static str,
+    /// Its table and key in the file.
+    pub(super) key: &'static str,
+    /// Its value, if the file has it.
+    pub(super) value: Option<f64>,
+}
+
+/// A size of the body, which no equation names: in metres.
+pub(super) struct Size {
+    /// Its name for `--set`.
+    pub(super) name: &'static str,
+    /// Its value where nobody says otherwise.
+    pub(super) usual: f64,
+}
+
+/// All that is said of parameters.
+pub(super) struct Given<'a> {
+    pub(super) scene: SceneRef,
+    pub(super) request: &'a Request,
+    /// A sample's path and numbers.
+    pub(super) sample: Option<(&'a Path, Vec<Number>)>,
+    pub(super) sizes: &'static [Size],
+}
+
+/// Parameters in SI units that make no sense at zero or below, and what to do.
+pub(super) type Positive = [(&'static str, &'static str)];
+
+impl Given<'_> {
+    /// A problem with all its parameters.
+    ///
+    /// # Errors
+    /// A name that nothing has, a parameter that nobody gave, or one that must be positive and is not.
+    pub(super) fn problem(&self, positive: &Positive) -> Result<Problem, PrepareError> {
+        let schema = self.scene.schema;
+        let scalars = || schema.scalars.iter().filter(|scalar| !scalar.name.is_empty());
+        let names = || scalars().map(|scalar| scalar.name).chain(self.sizes.iter().map(|size| size.name));
+        if let Some((name, _)) = self.request.parameters.iter().find(|(name, _)| names().all(|own| own != name)) {
+            let have = names().collect::<Vec<_>>().join(", ");
+            return Err(BindError::Unknown { what: "parameter", name: name.clone(), have }.into());
+        }
+        let mut problem = Problem::new(self.scene);
+        for scalar in scalars() {
+            let Some(value) = self.value(scalar.name)? else { continue };
+            problem.set_parameter(scalar.name, value / scalar.unit.factor)?;
+        }
+        for &(name, must) in positive {
+            let Some(value) = self.of(name)?.filter(|value| *value <= 0.0) else { continue };
+            let (unit, factor) = unit(schema, name);
+            return Err(PrepareError::Range { name, value: value / factor, unit, must });
+        }
+        if let Some(value) = self.of("nu")?.filter(|value| !(0.0..=0.5).contains(value)) {
+            let must = "Poisson's ratio is from 0 to 0.5: give it with --set nu=VALUE";
+            return Err(PrepareError::Range { name: "nu", value, unit: "", must });
+        }
+        Ok(problem)
+    }
+
+    /// A parameter or size in SI units, by whatever says it; nothing if that is nobody.
+    ///
+    /// # Errors
+    /// As [`Given::problem`].
+    pub(super) fn of(&self, name: &'static str) -> Result<Option<f64>, PrepareError> {
+        let schema = self.scene.schema;
+        let declared =
+            schema.scalars.iter().find(|scalar| scalar.name == name).and_then(|scalar| match scalar.origin {
+                Origin::Given(value) | Origin::Learned { start: value, .. } => value,
+                _ => None,
+            });
+        let usual = self.sizes.iter().find(|size| size.name == name).map(|size| size.usual);
+        Ok(self.value(name)?.or(declared).or(usual))
+    }
+
+    /// A size in metres.
+    pub(super) fn size(&self, name: &'static str) -> Result<f64, PrepareError> {
+        let missing = PrepareError::Missing { name, unit: "m" };
+        let size = self.of(name)?.ok_or(missing)?;
+        if size > 0.0 {
+            return Ok(size);
+        }
+        let must = "a size is above zero: give it with --set, in metres";
+        Err(PrepareError::Range { name, value: size, unit: "m", must })
+    }
+
+    /// What the user or the sample says, in SI units; nothing where what is declared will do.
+    fn value(&self, name: &'static str) -> Result<Option<f64>, PrepareError> {
+        let schema = self.scene.schema;
+        let (unit, factor) = unit(schema, name);
+        if let Some((_, value)) = self.request.parameters.iter().rev().find(|(own, _)| own == name) {
+            return Ok(Some(value * factor));
+        }
+        let scalar = schema.scalars.iter().find(|scalar| scalar.name == name);
+        // What is to be learned is not to be read.
+        if scalar.is_some_and(|scalar| matches!(scalar.origin, Origin::Learned { .. })) {
+            return Ok(None);
+        }
+        let number = self
+            .sample
+            .as_ref()
+            .and_then(|(path, numbers)| Some((path, numbers.iter().find(|number| number.name == name)?)));
+        match number {
+            Some((_, Number { value: Some(value), .. })) => Ok(Some(*value)),
+            Some((path, Number { key, .. })) => {
+                Err(PrepareError::SampleKey { path: path.to_path_buf(), key, name, unit })
+            }
+            None if scalar.is_some_and(|scalar| matches!(scalar.origin, Origin::Given(None))) => {
+                Err(PrepareError::Missing { name, unit })
+            }
+            None => Ok(None),
+        }
+    }
+}
+
+/// Unit and size in SI of a parameter; of a size, metres.
+fn unit(schema: &Scene, name: &str) -> (&'static str, f64) {
+    let scalar = schema.scalars.iter().find(|scalar| scalar.name == name);
+    scalar.map_or(("m", 1.0), |scalar| (scalar.unit.text, scalar.unit.factor))
+}

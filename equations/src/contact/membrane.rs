@@ -1,0 +1,170 @@
+//! Binds the membrane's scenes to a cloud of its surface.
+
+use std::cell::OnceCell;
+
+use nisp_data::DataError;
+use nisp_data::domain::{Domain, Sampling};
+use nisp_data::export::triangulate;
+use serde::Deserialize;
+
+use super::given::{Given, Number, Positive, Size};
+use super::observed::{Example, Observed, Sample};
+use super::{Contact, ContactRival, Rule, Surface, bind_cloud};
+use crate::PrepareError;
+use crate::catalogue::{Entry, Prepared, Request};
+use crate::rivals::{CloudFit, inflated_tensions, pressure_by_operator};
+use crate::truth::{Headers, Truth};
+
+/// A membrane in a sample, in SI units.
+#[derive(Deserialize)]
+struct Tables {
+    membrane: Membrane,
+}
+
+#[derive(Deserialize)]
+struct Membrane {
+    a_m: Option<f64>,
+    b_m: Option<f64>,
+    thickness_m: Option<f64>,
+    #[serde(rename = "young_Pa")]
+    young: Option<f64>,
+    poisson: Option<f64>,
+    #[serde(rename = "gauge_pressure_Pa")]
+    pressure: Option<f64>,
+}
+
+/// Semi-axes of the paper's membrane.
+const SIZES: [Size; 2] = [Size { name: "a", usual: 0.06 }, Size { name: "b", usual: 0.04 }];
+
+const POSITIVE: &Positive = &[
+    ("p", "nothing inflates the membrane without pressure from below: give the gauge pressure with --set p=VALUE"),
+    ("E", "a membrane has a modulus above zero: give it with --set E=VALUE"),
+    ("t", "a membrane has a thickness above zero: give it with --set t=VALUE"),
+];
+
+/// Points within the membrane for the equations, for the surface that the cloud is compared with, and on the rim.
+const POINTS: (usize, usize, usize) = (1500, 2000, 200);
+/// Points of the net force's quadrature, and of the surface in pictures.
+const FINE: (usize, usize) = (20_000, 4000);
+/// Spacing of the points where the answer is wanted.
+const SPACING: f64 = 1e-3;
+
+/// The paper's rule.
+const RULE: Rule = Rule { least: 2500.0, of_mean: 2.0 };
+
+/// What the truth's files call the coordinates.
+const ALSO: &[(&str, &str)] = &[("alpha", "x"), ("beta", "y")];
+
+const PRESSED: Example = Example {
+    path: "data/membrane/y_shape_1.toml",
+    sample: include_str!("../../../data/membrane/y_shape_1.toml"),
+    cloud_path: "data/membrane/y_shape_1_cloud_1.ply",
+    cloud: include_bytes!("../../../data/membrane/y_shape_1_cloud_1.ply"),
+    truth_path: "data/membrane/y_shape_1_truth.csv",
+    truth: include_bytes!("../../../data/membrane/y_shape_1_truth.csv"),
+};
+
+const INFLATED: Example = Example {
+    path: "data/membrane/inflated_1.toml",
+    sample: include_str!("../../../data/membrane/inflated_1.toml"),
+    cloud_path: "data/membrane/inflated_1_cloud_2.ply",
+    cloud: include_bytes!("../../../data/membrane/inflated_1_cloud_2.ply"),
+    truth_path: "data/membrane/inflated_1_truth.csv",
+    truth: include_bytes!("../../../data/membrane/inflated_1_truth.csv"),
+};
+
+/// Reads what is asked for and binds a scene to it.
+pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
+    let scene = entry.scene(request.scene.as_deref())?;
+    let schema = scene.schema;
+    let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
+    let observed = Observed::read(request, if pressure.is_some() { &PRESSED } else { &INFLATED })?;
+    let sample =
+        observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
+    let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
+    let mut problem = given.problem(POSITIVE)?;
+    let (a, b) = (given.size("a")?, given.size("b")?);
+    observed.require_of("membrane", [-a, -b, 0.0], [a, b, b])?;
+
+    let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
+    for group in schema.groups {
+        let points = match group.name {
+            "rim" => ellipse.boundary(POINTS.2),
+            "surface" => ellipse.interior(POINTS.1, Sampling::Sobol, 0),
+            _ => ellipse.interior(POINTS.0, Sampling::Sobol, 0),
+        };
+        problem.set_group(group.name, points.coords.into(), Vec::new())?;
+    }
+    bind_cloud(&mut problem, &observed.cloud)?;
+
+    let headers = Headers { chosen: &request.columns, also: ALSO };
+    let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
+    let mut contact = Contact {
+        displacement: ["u", "v", "w"],
+        unit: 1e-3,
+        pressure,
+        rule: RULE,
+        area: ellipse.interior(FINE.0, Sampling::Grid, 0),
+        surface: surface(&ellipse)?,
+        truth: None,
+        rival: pressure.map(|_| rival(&given, &observed, [a, b])).transpose()?,
+    };
+    contact.truth = contact.true_contact(schema, observed.truth.as_ref().zip(truth.as_ref()), headers)?;
+    Ok(Prepared {
+        problem,
+        points: grid(&ellipse),
+        outline: ellipse.outline(200),
+        measured: Vec::new(),
+        truth,
+        source: observed.source.display().to_string(),
+        warnings: observed.cloud.warnings,
+        rival: None,
+        contact: Some(contact),
+    })
+}
+
+/// The spline of the cloud with the operator: the rim is known to be at rest.
+fn rival(given: &Given<'_>, observed: &Observed, axes: [f64; 2]) -> Result<ContactRival, PrepareError> {
+    let value = |name| Ok::<_, PrepareError>(given.of(name)?.unwrap_or(f64::NAN));
+    let (young, nu, thickness, pressure) = (value("E")?, value("nu")?, value("t")?, value("p")?);
+    let rim = Domain::ellipse([0.0, 0.0], axes)?.boundary(POINTS.2);
+    let mut points = observed.cloud.points.clone();
+    points.extend(rim.iter().map(|point| [point[0], point[1], 0.0]));
+    let tensions = inflated_tensions(young, nu, thickness, axes, pressure);
+    // Only a table for people shows it: whoever asks for JSON does not wait for it.
+    let fit = OnceCell::new();
+    let pressure = move |at: &[f64]| {
+        let fit = fit.get_or_init(|| CloudFit::new(points.clone(), axes[0]));
+        pressure_by_operator(fit, tensions, pressure, at.as_chunks::<2>().0)
+    };
+    Ok(ContactRival { name: "spline of the cloud", pressure: Box::new(pressure) })
+}
+
+fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
+    let Membrane { a_m, b_m, thickness_m, young, poisson, pressure } = sample.tables::<Tables>()?.membrane;
+    let number = |name, key, value| Number { name, key, value };
+    Ok(vec![
+        number("a", "[membrane] a_m", a_m),
+        number("b", "[membrane] b_m", b_m),
+        number("t", "[membrane] thickness_m", thickness_m),
+        number("E", "[membrane] young_Pa", young),
+        number("nu", "[membrane] poisson", poisson),
+        number("p", "[membrane] gauge_pressure_Pa", pressure),
+    ])
+}
+
+/// Points on a regular grid around the origin.
+fn grid(domain: &Domain) -> Vec<f64> {
+    let (_, high) = domain.bounds();
+    let half = |axis: usize| (high[axis] / SPACING).floor() as i32;
+    let line = |axis: usize| (-half(axis)..=half(axis)).map(|i| SPACING * f64::from(i));
+    let points = line(1).flat_map(|y| line(0).map(move |x| [x, y]));
+    points.filter(|point| domain.contains(point)).flatten().collect()
+}
+
+fn surface(ellipse: &Domain) -> Result<Surface, DataError> {
+    let inner = ellipse.interior(FINE.1, Sampling::Grid, 0).coords;
+    let points = [ellipse.boundary(POINTS.2).coords, inner].concat();
+    let (plane, _) = points.as_chunks::<2>();
+    Ok(Surface { triangles: triangulate(plane, None)?, loaded: vec![true; plane.len()], points })
+}

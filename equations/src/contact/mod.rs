@@ -1,0 +1,106 @@
+//! Contact from point clouds: a body's shape, what it is bound to, and how well its contact was found.
+//!
+//! `membrane` and `sponge` bind the scenes of their equations; `observed` reads samples and clouds, `given` settles
+//! parameters; [`Contact`] says where the pressure acts, [`metrics`] and [`ContactScore`] judge it.
+
+mod given;
+mod membrane;
+pub mod metrics;
+mod observed;
+mod score;
+mod sponge;
+
+pub(crate) use membrane::prepare as prepare_membrane;
+pub use metrics::Rule;
+pub use score::{Against, ContactScore, TrueContact, Values};
+pub(crate) use sponge::prepare as prepare_sponge;
+
+use nisp::schema::{Scene, TermKind};
+use nisp::{BindError, Problem};
+use nisp_data::domain::Points;
+use nisp_data::{Cloud, DataError, Table};
+
+use crate::truth::{Headers, Truth};
+
+/// A body that was seen as a cloud, and the pressure that acts on it. Coordinates are in metres.
+pub struct Contact {
+    /// The fields that move a point along x, y and z.
+    pub displacement: [&'static str; 3],
+    /// Metres in one of the displacements' unit.
+    pub unit: f64,
+    /// The source that presses, in pascals; nothing where the scene says that nothing does.
+    pub pressure: Option<&'static str>,
+    /// How a touched point is told.
+    pub rule: Rule,
+    /// Where the pressure can act: places at rest with areas in square metres.
+    pub area: Points,
+    /// The surface, for pictures.
+    pub surface: Surface,
+    /// The true contact at the truth's points, for scoring only.
+    pub truth: Option<TrueContact>,
+    /// A classical answer to compare with, where one has an answer.
+    pub rival: Option<ContactRival>,
+}
+
+/// Pressures in pascals at points in the scene's coordinates.
+pub type Pressure = dyn Fn(&[f64]) -> Vec<f64>;
+
+/// A classical way to a contact's pressure.
+pub struct ContactRival {
+    /// Its name in tables.
+    pub name: &'static str,
+    /// Its answer.
+    pub pressure: Box<Pressure>,
+}
+
+/// A body's surface at rest.
+pub struct Surface {
+    /// Places in the scene's coordinates, one after the other.
+    pub points: Vec<f64>,
+    /// Corners of its triangles.
+    pub triangles: Vec<[usize; 3]>,
+    /// Whether the pressure can act at a point.
+    pub loaded: Vec<bool>,
+}
+
+impl Contact {
+    /// Where points at rest have moved to, in metres, given their displacements along x, y and z in the declared unit.
+    /// A plane body rests at z = 0.
+    pub fn deformed(&self, points: &[f64], displacement: [&[f64]; 3]) -> Vec<[f64; 3]> {
+        let place = |(at, rest): (usize, &[f64])| {
+            let along = |axis: usize| rest.get(axis).copied().unwrap_or(0.0) + self.unit * displacement[axis][at];
+            std::array::from_fn(along)
+        };
+        points.chunks_exact(self.area.dim.max(1)).enumerate().map(place).collect()
+    }
+}
+
+impl Contact {
+    /// The true contact, where a truth is given and the scene has a pressure.
+    fn true_contact(
+        &self,
+        scene: &Scene,
+        truth: Option<(&Table, &Truth)>,
+        headers: Headers<'_>,
+    ) -> Result<Option<TrueContact>, DataError> {
+        let (Some((table, truth)), Some(pressure)) = (truth, self.pressure) else { return Ok(None) };
+        for name in self.displacement.into_iter().chain([pressure]) {
+            if truth.of(name).is_none() {
+                let unit = scene.heads.iter().find(|head| head.name == name).map_or("", |head| head.unit.text);
+                headers.read(table, name, unit)?;
+            }
+        }
+        TrueContact::read(table, truth, pressure, headers).map(Some)
+    }
+}
+
+/// Gives every Chamfer term of a problem the cloud, in the term's unit.
+fn bind_cloud(problem: &mut Problem, cloud: &Cloud) -> Result<(), BindError> {
+    for group in problem.scene().schema.groups {
+        for term in group.terms.iter().filter(|term| matches!(term.kind, TermKind::Chamfer { .. })) {
+            let inward = |metres: &f64| metres / term.unit.factor;
+            problem.set_cloud(group.name, term.name, cloud.points.iter().flatten().map(inward).collect())?;
+        }
+    }
+    Ok(())
+}

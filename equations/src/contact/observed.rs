@@ -1,0 +1,157 @@
+//! What was observed: a sample's file and one of its clouds, a cloud alone, or the repository's example.
+
+use std::path::{Path, PathBuf};
+
+use nisp_data::{Cloud, Table};
+use serde::Deserialize;
+use serde::de::DeserializeOwned;
+
+use crate::PrepareError;
+use crate::catalogue::Request;
+
+/// A sample that is part of the program.
+pub(super) struct Example {
+    /// Path of its file in the repository.
+    pub(super) path: &'static str,
+    /// Its file.
+    pub(super) sample: &'static str,
+    /// Path of its cloud in the repository.
+    pub(super) cloud_path: &'static str,
+    /// Its cloud.
+    pub(super) cloud: &'static [u8],
+    /// Path of its truth in the repository.
+    pub(super) truth_path: &'static str,
+    /// Its truth.
+    pub(super) truth: &'static [u8],
+}
+
+/// Everything that was read.
+pub(super) struct Observed {
+    /// The sample's file, if there is one.
+    pub(super) sample: Option<Sample>,
+    /// The cloud, in metres.
+    pub(super) cloud: Cloud,
+    /// Where the cloud came from.
+    pub(super) source: PathBuf,
+    /// The truth, to score against.
+    pub(super) truth: Option<Table>,
+}
+
+/// A sample's file.
+pub(super) struct Sample {
+    pub(super) path: PathBuf,
+    text: String,
+}
+
+/// The part of a sample that names its clouds.
+#[derive(Deserialize)]
+struct Clouds {
+    observation: Observation,
+}
+
+#[derive(Deserialize)]
+struct Observation {
+    clouds: Vec<PathBuf>,
+}
+
+impl Sample {
+    fn read(path: &Path) -> Result<Self, PrepareError> {
+        let text = std::fs::read_to_string(path);
+        let fault = |error: std::io::Error| PrepareError::File { path: path.into(), reason: error.to_string() };
+        Ok(Self { path: path.into(), text: text.map_err(fault)? })
+    }
+
+    /// Those tables and keys that `T` has.
+    pub(super) fn tables<T: DeserializeOwned>(&self) -> Result<T, PrepareError> {
+        toml::from_str(&self.text).map_err(|error| {
+            let before = error.span().map_or(0, |span| span.start);
+            let line = 1 + self.text[..before.min(self.text.len())].matches('\n').count();
+            let what = error.message().replace('\n', " ");
+            PrepareError::File { path: self.path.clone(), reason: format!("line {line}: {what}") }
+        })
+    }
+
+    /// The path of the sample's cloud number `index`.
+    fn cloud(&self, index: usize) -> Result<PathBuf, PrepareError> {
+        let clouds = self.tables::<Clouds>()?.observation.clouds;
+        let Some(name) = clouds.get(index) else {
+            let have = match clouds.len() {
+                0 => format!("{} names none", self.path.display()),
+                count => format!("{} has 0 to {}", self.path.display(), count - 1),
+            };
+            return Err(PrepareError::Cloud { index, instead: have });
+        };
+        Ok(self.path.parent().unwrap_or(Path::new("")).join(name))
+    }
+}
+
+impl Observed {
+    /// Reads what is asked for; without data and sample, the example.
+    pub(super) fn read(request: &Request, example: &Example) -> Result<Self, PrepareError> {
+        let (sample, data) = match (&request.sample, &request.data) {
+            (None, Some(data)) => match sample_beside(data) {
+                Some(path) => (Some(path), None),
+                None => (None, Some(data)),
+            },
+            (sample, data) => (sample.clone(), data.as_ref()),
+        };
+        let sample = sample.map(|path| Sample::read(&path)).transpose()?;
+        let alone = |what: &str| Err(PrepareError::Cloud { index: request.cloud.unwrap_or(0), instead: what.into() });
+        let (source, mut cloud) = match (&sample, data) {
+            (_, Some(_)) if request.cloud.is_some() => return alone("--data names a cloud already"),
+            (_, Some(data)) => (data.clone(), Cloud::read(data)?),
+            (Some(sample), None) => {
+                let path = sample.cloud(request.cloud.unwrap_or(0))?;
+                let cloud = Cloud::read(&path)?;
+                (path, cloud)
+            }
+            (None, None) if request.cloud.is_some() => return alone("name the sample with --sample"),
+            (None, None) => {
+                let path = PathBuf::from(example.cloud_path);
+                let cloud = Cloud::parse(&path, example.cloud)?;
+                (path, cloud)
+            }
+        };
+        if let Some(unit) = request.unit {
+            cloud.convert_from(unit);
+        }
+        let own = sample.is_none() && data.is_none();
+        let truth = match &request.truth {
+            Some(path) => Some(Table::read(path)?),
+            None if own => Some(Table::parse(Path::new(example.truth_path), example.truth)?),
+            None => None,
+        };
+        let example = || Sample { path: example.path.into(), text: example.sample.into() };
+        Ok(Self { sample: if own { Some(example()) } else { sample }, cloud, source, truth })
+    }
+
+    /// Checks that the cloud can be one of a body in a box, with a unit that makes it so.
+    pub(super) fn require_of(&self, body: &'static str, low: [f64; 3], high: [f64; 3]) -> Result<(), PrepareError> {
+        let fault =
+            |error: nisp_data::DataError| PrepareError::File { path: self.source.clone(), reason: error.to_string() };
+        self.cloud.require_near(&low, &high).map_err(fault)?;
+        let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
+        let (from, to) = (low.map(|x| x - MARGIN * size), high.map(|x| x + MARGIN * size));
+        let share = self.cloud.share_within(from, to);
+        if share >= LEAST_INSIDE {
+            return Ok(());
+        }
+        let span = |axis: usize| format!("{:.3} to {:.3} m", from[axis], to[axis]);
+        let place = format!("x {}, y {}, z {}", span(0), span(1), span(2));
+        Err(PrepareError::Elsewhere { path: self.source.clone(), share: 100.0 * share, body, place })
+    }
+}
+
+/// How far beyond its box, in parts of its size, a body may bulge and noise may throw a point.
+const MARGIN: f64 = 0.25;
+/// Share of a cloud that must be where its body can be; the rest may be outliers.
+const LEAST_INSIDE: f64 = 0.8;
+
+/// The sample that `--data` names, if it names one: by its file, or by the file's name without its ending.
+fn sample_beside(data: &Path) -> Option<PathBuf> {
+    if data.extension().is_some_and(|ending| ending == "toml") {
+        return Some(data.into());
+    }
+    let path = data.with_added_extension("toml");
+    (!data.exists() && path.exists()).then_some(path)
+}

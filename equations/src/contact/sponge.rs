@@ -1,0 +1,288 @@
+//! Binds the sponge's scenes to a cloud of its sides and the wrench that it carries.
+
+use nisp_data::domain::{Domain, Points, Sampling};
+use serde::Deserialize;
+
+use super::given::{Given, Number, Positive, Size};
+use super::observed::{Example, Observed, Sample};
+use super::{Contact, ContactRival, Rule, Surface, bind_cloud};
+use crate::PrepareError;
+use crate::catalogue::{Entry, Prepared, Request};
+use crate::rivals::LinearPressure;
+use crate::truth::{Headers, Truth};
+
+/// A sponge in a sample, in SI units and its own frame.
+#[derive(Deserialize)]
+struct Tables {
+    sponge: Sponge,
+    pose: Pose,
+    wrench: Wrench,
+}
+
+#[derive(Deserialize)]
+struct Sponge {
+    side_m: Option<f64>,
+    #[serde(rename = "young_Pa")]
+    young: Option<f64>,
+    poisson: Option<f64>,
+    density_kg_m3: Option<f64>,
+}
+
+#[derive(Deserialize)]
+struct Pose {
+    gravity_in_sponge_frame_m_s2: Option<[f64; 3]>,
+}
+
+/// What a wrist sensor shows: `contact` if it was zeroed with the sponge in the air, `wrist` if it carries its weight.
+#[derive(Deserialize)]
+struct Wrench {
+    #[serde(rename = "contact_force_N")]
+    contact_force: Option<[f64; 3]>,
+    #[serde(rename = "contact_torque_Nm")]
+    contact_torque: Option<[f64; 3]>,
+    #[serde(rename = "wrist_force_N")]
+    wrist_force: Option<[f64; 3]>,
+    #[serde(rename = "wrist_torque_Nm")]
+    wrist_torque: Option<[f64; 3]>,
+}
+
+const GRAVITY: [&str; 3] = ["g_x", "g_y", "g_z"];
+const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
+const TORQUE: [&str; 3] = ["torque_x", "torque_y", "torque_z"];
+
+const SIZES: [Size; 1] = [Size { name: "side", usual: 0.046 }];
+
+const POSITIVE: &Positive = &[
+    ("E", "a sponge has a modulus above zero: give it with --set E=VALUE"),
+    ("nu", "the equations divide by it: give Poisson's ratio with --set nu=VALUE"),
+];
+
+/// Points inside, on the whole boundary for the equations and for the surface that the cloud is compared with.
+const POINTS: (usize, usize, usize) = (1500, 2400, 4800);
+/// Nodes along an edge where the answer is wanted: a millimetre apart on the paper's sponge.
+const NODES: usize = 47;
+/// Nodes along an edge of the surface in pictures.
+const DRAWN: usize = 31;
+/// Points of the net force's quadrature.
+const FINE: usize = 10_000;
+
+/// The threshold at which the truth counts a point as touched.
+const RULE: Rule = Rule { least: 200.0, of_mean: 0.0 };
+
+/// What the truth's files call things.
+const ALSO: &[(&str, &str)] = &[("u_x", "ux"), ("u_y", "uy"), ("u_z", "uz"), ("f", "p")];
+
+const EXAMPLE: Example = Example {
+    path: "data/sponge/plane_1.toml",
+    sample: include_str!("../../../data/sponge/plane_1.toml"),
+    cloud_path: "data/sponge/plane_1_cloud_1.ply",
+    cloud: include_bytes!("../../../data/sponge/plane_1_cloud_1.ply"),
+    truth_path: "data/sponge/plane_1_bottom.csv",
+    truth: include_bytes!("../../../data/sponge/plane_1_bottom.csv"),
+};
+
+/// Reads what is asked for and binds a scene to it.
+pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
+    let scene = entry.scene(request.scene.as_deref())?;
+    let schema = scene.schema;
+    if schema.groups.iter().flat_map(|group| group.columns).any(|column| column.name == "clearance") {
+        return Err(PrepareError::Terrain { scene: schema.name });
+    }
+    let observed = Observed::read(request, &EXAMPLE)?;
+    let sample =
+        observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
+    let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
+    let mut problem = given.problem(POSITIVE)?;
+    let side = given.size("side")?;
+    let (low, high) = ([-0.5 * side, -0.5 * side, -side], [0.5 * side, 0.5 * side, 0.0]);
+    observed.require_of("sponge", low, high)?;
+
+    let vector = |names: [&'static str; 3]| -> Result<[f64; 3], PrepareError> {
+        let [x, y, z] = names.map(|name| given.of(name));
+        Ok([x?, y?, z?].map(|value| value.unwrap_or(0.0)))
+    };
+    let wrench = [vector(FORCE)?, vector(TORQUE)?];
+    let presses = direction(wrench[0]);
+
+    let cube = Domain::cuboid(&low, &high)?;
+    for group in schema.groups {
+        let count = if group.name == "surface" { POINTS.2 } else { POINTS.1 };
+        let points = match group.name {
+            "volume" => cube.interior(POINTS.0, Sampling::Sobol, 0),
+            "bottom" => cube.boundary(count).select(|_, normal| normal[2] < -0.5),
+            "top" => cube.boundary(count).select(|_, normal| normal[2] > 0.5),
+            _ => cube.boundary(count).select(|_, normal| normal[2].abs() < 0.5),
+        };
+        let columns = group.columns.iter().map(|column| normals(&points, column.name, presses)).collect();
+        let weights = points.weights.unwrap_or_default();
+        problem.set_group(
+            group.name,
+            nisp::Points { coordinates: points.coords, weights, partners: vec![] },
+            columns,
+        )?;
+    }
+    bind_cloud(&mut problem, &observed.cloud)?;
+
+    let headers = Headers { chosen: &request.columns, also: ALSO };
+    let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
+    let square = Domain::cuboid(&low[..2], &high[..2])?;
+    let mut contact = Contact {
+        displacement: ["u_x", "u_y", "u_z"],
+        unit: 1e-3,
+        pressure: Some("f"),
+        rule: RULE,
+        area: on_the_bottom(&square.interior(FINE, Sampling::Grid, 0), side),
+        surface: surface(side),
+        truth: None,
+        rival: rival(wrench, side),
+    };
+    contact.truth = contact.true_contact(schema, observed.truth.as_ref().zip(truth.as_ref()), headers)?;
+    let nodes = face(NODES).into_iter().flat_map(|[x, y]| [side * x, side * y, -side]).collect();
+    Ok(Prepared {
+        problem,
+        points: nodes,
+        outline: square.outline(4),
+        measured: Vec::new(),
+        truth,
+        source: observed.source.display().to_string(),
+        warnings: observed.cloud.warnings,
+        rival: None,
+        contact: Some(contact),
+    })
+}
+
+fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
+    let Tables { sponge, pose, wrench } = sample.tables()?;
+    let number = |name, key, value| Number { name, key, value };
+    let mut numbers = vec![
+        number("side", "[sponge] side_m", sponge.side_m),
+        number("E", "[sponge] young_Pa", sponge.young),
+        number("nu", "[sponge] poisson", sponge.poisson),
+        number("rho", "[sponge] density_kg_m3", sponge.density_kg_m3),
+    ];
+    let gravity = pose.gravity_in_sponge_frame_m_s2;
+    let weight = || -> Option<[[f64; 3]; 2]> {
+        let mass = sponge.density_kg_m3? * sponge.side_m?.powi(3);
+        Some(weight(gravity?.map(|g| mass * g), sponge.side_m?))
+    };
+    let without = |total: Option<[f64; 3]>, part: usize| -> Option<[f64; 3]> {
+        let (total, weight) = (total?, weight()?[part]);
+        Some(std::array::from_fn(|axis| total[axis] - weight[axis]))
+    };
+    let vectors = [
+        (GRAVITY, "[pose] gravity_in_sponge_frame_m_s2", gravity),
+        (FORCE, "[wrench] contact_force_N", wrench.contact_force.or_else(|| without(wrench.wrist_force, 0))),
+        (TORQUE, "[wrench] contact_torque_Nm", wrench.contact_torque.or_else(|| without(wrench.wrist_torque, 1))),
+    ];
+    for (names, key, vector) in vectors {
+        numbers.extend((0..3).map(|axis| number(names[axis], key, vector.map(|vector| vector[axis]))));
+    }
+    Ok(numbers)
+}
+
+/// A weight that acts in the cube's middle, half a side below the origin: its force and its torque.
+fn weight(force: [f64; 3], side: f64) -> [[f64; 3]; 2] {
+    let arm = -0.5 * side;
+    [force, [-arm * force[1], arm * force[0], 0.0]]
+}
+
+/// The direction in which frictionless terrain presses, as far as a force tells: its own, or upwards if there is none.
+fn direction(force: [f64; 3]) -> [f64; 3] {
+    let size = force.iter().map(|x| x * x).sum::<f64>().sqrt();
+    if size > 0.0 && force[2] > 0.0 { force.map(|x| x / size) } else { [0.0, 0.0, 1.0] }
+}
+
+/// A column of the sponge's groups: the outward normal `n`, or the direction `m` in which the terrain presses.
+fn normals(points: &Points, column: &str, presses: [f64; 3]) -> Vec<f64> {
+    let axis = if column.ends_with("_x") {
+        0
+    } else if column.ends_with("_y") {
+        1
+    } else {
+        2
+    };
+    if column.starts_with('m') {
+        return vec![presses[axis]; points.len()];
+    }
+    points.normals.iter().flatten().skip(axis).step_by(3).copied().collect()
+}
+
+/// The wrench alone: moments of the force across the face, without what its part along the face does at the origin.
+fn rival([force, torque]: [[f64; 3]; 2], side: f64) -> Option<ContactRival> {
+    let moments = [-torque[1] - side * force[0], torque[0] - side * force[1]];
+    let linear = LinearPressure::carrying(side, force[2], moments)?;
+    let pressure = move |at: &[f64]| at.as_chunks::<3>().0.iter().map(|&[x, y, _]| linear.at(x, y)).collect();
+    Some(ContactRival { name: "the wrench alone", pressure: Box::new(pressure) })
+}
+
+/// Plane points on the face that is pressed.
+fn on_the_bottom(plane: &Points, side: f64) -> Points {
+    let coords = plane.iter().flat_map(|point| [point[0], point[1], -side]).collect();
+    Points { dim: 3, coords, normals: None, weights: plane.weights.clone() }
+}
+
+/// Nodes of a face of a unit cube around its middle, row by row.
+fn face(nodes: usize) -> Vec<[f64; 2]> {
+    let at = |index: usize| index as f64 / (nodes - 1) as f64 - 0.5;
+    (0..nodes * nodes).map(|index| [at(index % nodes), at(index / nodes)]).collect()
+}
+
+/// All six faces, seen from outside.
+fn surface(side: f64) -> Surface {
+    let mut surface = Surface { points: Vec::new(), triangles: Vec::new(), loaded: Vec::new() };
+    for axis in 0..3 {
+        for end in [-0.5, 0.5] {
+            let first = surface.loaded.len();
+            for [x, y] in face(DRAWN) {
+                let mut place = [0.0; 3];
+                (place[axis], place[(axis + 1) % 3], place[(axis + 2) % 3]) = (end, x, y);
+                surface.points.extend([side * place[0], side * place[1], side * (place[2] - 0.5)]);
+                surface.loaded.push(axis == 2 && end < 0.0);
+            }
+            for row in 0..DRAWN - 1 {
+                for column in 0..DRAWN - 1 {
+                    let corner = first + row * DRAWN + column;
+                    let (right, above) = (corner + 1, corner + DRAWN);
+                    let mut both = [[corner, right, above + 1], [corner, above + 1, above]];
+                    if end < 0.0 {
+                        both.iter_mut().for_each(|triangle| triangle.swap(1, 2));
+                    }
+                    surface.triangles.extend(both);
+                }
+            }
+        }
+    }
+    surface
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The divergence theorem: outward triangles of a cube enclose its volume.
+    #[test]
+    fn the_drawn_surface_is_closed_and_faces_outwards() {
+        let surface = surface(0.046);
+        let (points, _) = surface.points.as_chunks::<3>();
+        let volume: f64 = surface
+            .triangles
+            .iter()
+            .map(|corners| {
+                let [p, q, r] = corners.map(|corner| points[corner]);
+                let normal = [q[1] * r[2] - q[2] * r[1], q[2] * r[0] - q[0] * r[2], q[0] * r[1] - q[1] * r[0]];
+                (p[0] * normal[0] + p[1] * normal[1] + p[2] * normal[2]) / 6.0
+            })
+            .sum();
+        assert!((volume / 0.046f64.powi(3) - 1.0).abs() < 1e-12, "{volume}");
+        assert_eq!(surface.loaded.iter().filter(|loaded| **loaded).count(), DRAWN * DRAWN);
+    }
+
+    /// The sample's own figures: wrist = contact + weight.
+    #[test]
+    fn a_wrist_that_carries_the_weight_shows_it() {
+        let [force, torque] = weight([-0.00116622, -0.000874664, -0.0333885], 0.046);
+        assert_eq!(force[2], -0.0333885);
+        let shown = [-0.000500953 + 0.000480836, 0.000667844 - 0.000641021];
+        assert!((torque[0] - shown[0]).abs() < 1e-9 && (torque[1] - shown[1]).abs() < 1e-9, "{torque:?}");
+    }
+}

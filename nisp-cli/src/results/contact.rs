@@ -1,0 +1,94 @@
+//! The files of a contact: pressure, state, a map of the patch, and the deformed surface for other programs.
+
+use nisp::schema::Head;
+use nisp::{Estimate, Solution};
+use nisp_data::DataError;
+use nisp_data::atomic::Content;
+use nisp_data::colour::ColourScale;
+use nisp_data::export::Mesh;
+use nisp_data::picture::{FieldMap, Grid, MapPanel, Picture, Quantity, field_map};
+use nisp_equations::{Contact, Prepared};
+
+/// Everything that is written of a contact.
+pub(super) fn files(
+    prepared: &Prepared,
+    contact: &Contact,
+    solution: &mut Solution,
+) -> Result<Vec<Content>, DataError> {
+    let estimates = solution.evaluate_with_errors(&prepared.points);
+    let shown = contact.pressure.unwrap_or(contact.displacement[2]);
+    let Some(head) = solution.scene().heads.iter().find(|head| head.name == shown) else {
+        return Err(DataError::Invalid(format!("the scene has no `{shown}` to draw")));
+    };
+    let plot = maps(prepared, contact, solution, head, &estimates)?;
+    let mesh = surface(contact, solution)?;
+    let values = |estimate: &&Estimate| estimate.name == shown;
+    let scale = estimates.iter().find(values).map(|estimate| ColourScale::sequential(&estimate.values));
+    let mut files = super::contents(prepared, &estimates, &plot)?;
+    files.push(("surface.vtu", mesh.vtu_bytes()));
+    files.push(("surface.ply", mesh.ply_bytes(scale.map(|scale| (shown, scale)))?));
+    Ok(files)
+}
+
+/// The deformed surface with displacements and pressure, which is zero where none can act.
+fn surface(contact: &Contact, solution: &Solution) -> Result<Mesh, DataError> {
+    let estimates = solution.evaluate(&contact.surface.points);
+    let of = |name: &str| estimates.iter().find(|estimate| estimate.name == name);
+    let moved = contact.displacement.map(|name| of(name).map_or(&[][..], |estimate| &estimate.values));
+    let points = contact.deformed(&contact.surface.points, moved);
+    let mut mesh = Mesh::new(points, contact.surface.triangles.clone())?;
+    for (name, values) in contact.displacement.iter().zip(moved) {
+        mesh.push(name, of(name).map_or("", |estimate| estimate.unit.text), values.to_vec())?;
+    }
+    if let Some(pressure) = contact.pressure.and_then(of) {
+        let loaded = pressure.values.iter().zip(&contact.surface.loaded);
+        let values = loaded.map(|(value, loaded)| if *loaded { *value } else { 0.0 }).collect();
+        mesh.push(pressure.name, pressure.unit.text, values)?;
+    }
+    Ok(mesh)
+}
+
+/// The estimate, and beside it truth and error where the truth is known, with the outlines of the patches.
+fn maps(
+    prepared: &Prepared,
+    contact: &Contact,
+    solution: &Solution,
+    head: &Head,
+    estimates: &[Estimate],
+) -> Result<Picture, DataError> {
+    let scene = solution.scene();
+    let dim = scene.coordinates.len();
+    let plane = |points: &[f64]| -> Vec<[f64; 2]> { points.chunks_exact(dim).map(|p| [p[0], p[1]]).collect() };
+    let quantity = || Quantity::new(head.name, head.unit.text);
+    let found = estimates.iter().find(|estimate| estimate.name == head.name).map_or(&[][..], |found| &found.values);
+    let places = plane(&prepared.points);
+    let grid = Grid::from_points(&places, found)?;
+    let mut outlines = Vec::new();
+    if contact.pressure.is_some() {
+        outlines.push(("estimated patch".to_string(), grid.clone(), contact.rule.threshold(found)));
+    }
+    let mut panels = Vec::new();
+    let mut add = |title: &str, value, grid, scale, contours| {
+        panels.push(MapPanel { title: title.into(), value, grid, scale, contours });
+    };
+    match prepared.truth.as_ref().and_then(|truth| Some((truth, truth.of(head.name)?))) {
+        None => add("estimate", quantity(), grid, ColourScale::sequential(found), outlines),
+        Some((truth, real)) => {
+            let at = plane(&truth.points);
+            let mask = contact.truth.as_ref().map(|truth| Grid::from_mask(&at, &truth.mask)).transpose()?;
+            let own: Vec<_> = mask.into_iter().map(|mask| ("true patch".to_string(), mask, 0.5)).collect();
+            let both = || own.iter().chain(&outlines).cloned().collect::<Vec<_>>();
+            let again = solution.evaluate(&truth.points).into_iter().find(|estimate| estimate.name == head.name);
+            let error: Vec<f64> =
+                again.iter().flat_map(|found| &found.values).zip(real).map(|(found, real)| found - real).collect();
+            let scale = ColourScale::sequential(real);
+            add("estimate", quantity(), grid, scale, both());
+            add("truth", quantity(), Grid::from_points(&at, real)?, scale, own.clone());
+            let difference = Quantity::new(&format!("error of {}", head.name), head.unit.text);
+            add("error", difference, Grid::from_points(&at, &error)?, ColourScale::diverging(&error), both());
+        }
+    }
+    let axis = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
+    let title = super::title(solution);
+    field_map(&FieldMap { title, x: axis(0), y: axis(1), outline: prepared.outline.clone(), panels })
+}
