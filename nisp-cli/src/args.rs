@@ -138,7 +138,7 @@ Results, in the folder of --out:
   source.csv  the recovered source with its standard deviation, where the method gives one
   state.csv   the fields, likewise
   plot.svg    both, with measurements, truth and a band of two standard deviations
-  For contact also surface.vtu and surface.ply, the deformed surface with its pressure.
+  For contact also surface.svg, surface.vtu and surface.ply: the deformed surface, coloured by pressure.
   All are written together at the end; files of those names are replaced.
 
 Ctrl-C (or SIGTERM) ends the run at the best state so far, which is written; the status is not_converged. A second

@@ -68,6 +68,7 @@ fn membrane(data: &Path) -> Result<Picture, DataError> {
     let scale = ColourScale::sequential(f);
     field_map(&FieldMap {
         title: "Contact pressure, flower 1".into(),
+        subtitle: String::new(),
         x: Quantity::new("x", "m"),
         y: Quantity::new("y", "m"),
         outline: Domain::ellipse([0.0, 0.0], [0.06, 0.04])?.outline(200),

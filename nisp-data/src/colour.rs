@@ -30,6 +30,14 @@ impl ColourScale {
         }
     }
 
+    /// A sequential scale over the finite values and zero, for what cannot be negative.
+    pub fn from_zero(values: &[f64]) -> ColourScale {
+        match ColourScale::sequential(values) {
+            ColourScale::Sequential { low, high } if low > 0.0 => ColourScale::Sequential { low: 0.0, high },
+            scale => scale,
+        }
+    }
+
     /// A diverging scale over the finite values.
     pub fn diverging(values: &[f64]) -> ColourScale {
         let largest =

@@ -155,6 +155,9 @@ fn millimetres_are_noticed() {
     assert!(message.contains("the domain 0.12 x 0.08 m: is the cloud in millimetres? give --unit mm"), "{message}");
     cloud.convert_from("mm".parse::<LengthUnit>().unwrap());
     cloud.require_near(&low, &high).unwrap();
+    assert_eq!(cloud.share_within([-0.06, -0.04, -1.0], [0.06, 0.04, 1.0]), 1.0);
+    assert_eq!(Cloud { points: vec![[0.0; 3], [2.0; 3]], ..Cloud::default() }.share_within([-1.0; 3], [1.0; 3]), 0.5);
+    assert_eq!("cm".parse::<LengthUnit>().unwrap().symbol(), "cm");
     cloud.points.iter_mut().for_each(|point| point[0] += 3.0);
     assert!(cloud.require_near(&low, &high).unwrap_err().to_string().contains("another frame"));
     assert!("furlong".parse::<LengthUnit>().is_err());

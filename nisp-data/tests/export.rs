@@ -20,6 +20,8 @@ fn ply_comes_back() {
     square().write_ply(&path, Some(("f", ColourScale::sequential(&[0.0, 3.0])))).unwrap();
     let back = Cloud::read(&path).unwrap();
     assert_eq!(back.points[2], [1.0, 1.0, 0.1]);
+    let bytes = square().ply_bytes(Some(("f", ColourScale::sequential(&[0.0, 3.0])))).unwrap();
+    assert!(bytes == std::fs::read(&path).unwrap());
     let missing = square().write_ply(&path, Some(("g", ColourScale::sequential(&[])))).unwrap_err();
     assert_eq!(missing.to_string(), "no array `g` to colour by (arrays: f)");
 }
@@ -30,6 +32,7 @@ fn vtu_names_arrays_with_units() {
     let path = folder.path().join("a.vtu");
     square().write_vtu(&path).unwrap();
     let text = std::fs::read_to_string(&path).unwrap();
+    assert!(square().vtu_bytes() == text.as_bytes());
     for part in [
         "NumberOfPoints=\"4\" NumberOfCells=\"2\"",
         "Name=\"f [Pa]\" NumberOfComponents=\"1\" format=\"ascii\">\n0 0.3333333333333333 2 3\n",

@@ -2,7 +2,8 @@
 
 use nisp_data::colour::ColourScale;
 use nisp_data::picture::{
-    Curve, FieldMap, Grid, LinePanel, LinePlot, LogLog, MapPanel, Mark, Quantity, Series, field_map, line_plot, log_log,
+    Curve, FieldMap, Grid, LinePanel, LinePlot, LogLog, MapPanel, Mark, Quantity, Series, SurfaceView, field_map,
+    line_plot, log_log, surface_view,
 };
 
 fn plot(y: &[f64]) -> LinePlot {
@@ -69,6 +70,7 @@ fn maps_of_scattered_points_are_drawn() {
     };
     let map = FieldMap {
         title: "a map".into(),
+        subtitle: "from a cloud".into(),
         x: Quantity::new("x", "m"),
         y: Quantity::new("y", "m"),
         outline: vec![],
@@ -77,4 +79,23 @@ fn maps_of_scattered_points_are_drawn() {
     let svg = field_map(&map).unwrap().svg().to_string();
     assert!(svg.contains("data:image/png;base64,") && svg.contains("f [Pa]") && !svg.contains("NaN"));
     assert!(field_map(&FieldMap { panels: vec![], ..map }).is_err());
+}
+
+#[test]
+fn surfaces_are_drawn_with_a_scale() {
+    let view = SurfaceView {
+        title: "a tent".into(),
+        subtitle: "lit".into(),
+        points: vec![[0.0, 0.0, 0.0], [0.06, 0.0, 0.0], [0.06, 0.04, 0.0], [0.0, 0.04, 0.0], [0.03, 0.02, 0.02]],
+        triangles: vec![[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]],
+        value: Quantity::new("f", "Pa"),
+        values: vec![0.0, 0.0, 0.0, 0.0, 2e4],
+        scale: ColourScale::Sequential { low: 0.0, high: 2e4 },
+        eye: [-60.0, 30.0],
+    };
+    let svg = surface_view(&view).unwrap().svg().to_string();
+    assert!(svg.contains("data:image/png;base64,") && svg.contains("f [kPa]") && svg.contains(" mm</"), "{svg:.300}");
+    assert!(surface_view(&SurfaceView { values: vec![], ..view.clone() }).is_err());
+    assert!(surface_view(&SurfaceView { triangles: vec![[0, 1, 9]], ..view.clone() }).is_err());
+    assert!(surface_view(&SurfaceView { points: vec![[0.0; 3]; 5], ..view }).is_err());
 }

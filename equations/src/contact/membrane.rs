@@ -106,6 +106,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         rule: RULE,
         area: ellipse.interior(FINE.0, Sampling::Grid, 0),
         surface: surface(&ellipse)?,
+        eye: [-65.0, 40.0],
         truth: None,
         rival: pressure.map(|_| rival(&given, &observed, [a, b])).transpose()?,
     };

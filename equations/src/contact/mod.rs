@@ -36,6 +36,8 @@ pub struct Contact {
     pub area: Points,
     /// The surface, for pictures.
     pub surface: Surface,
+    /// From where a picture shows it: degrees from x towards y, and degrees above the plane of both.
+    pub eye: [f64; 2],
     /// The true contact at the truth's points, for scoring only.
     pub truth: Option<TrueContact>,
     /// A classical answer to compare with, where one has an answer.

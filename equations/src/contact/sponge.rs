@@ -133,6 +133,8 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         rule: RULE,
         area: on_the_bottom(&square.interior(FINE, Sampling::Grid, 0), side),
         surface: surface(side),
+        // From below, where the pressure is.
+        eye: [-60.0, -35.0],
         truth: None,
         rival: rival(wrench, side),
     };

@@ -6,7 +6,7 @@ use nisp_data::DataError;
 use nisp_data::atomic::Content;
 use nisp_data::colour::ColourScale;
 use nisp_data::export::Mesh;
-use nisp_data::picture::{FieldMap, Grid, MapPanel, Picture, Quantity, field_map};
+use nisp_data::picture::{FieldMap, Grid, MapPanel, Picture, Quantity, SurfaceView, field_map, surface_view};
 use nisp_equations::{Contact, Prepared};
 
 /// Everything that is written of a contact.
@@ -21,31 +21,39 @@ pub(super) fn files(
         return Err(DataError::Invalid(format!("the scene has no `{shown}` to draw")));
     };
     let plot = maps(prepared, contact, solution, head, &estimates)?;
-    let mesh = surface(contact, solution)?;
-    let values = |estimate: &&Estimate| estimate.name == shown;
-    let scale = estimates.iter().find(values).map(|estimate| ColourScale::sequential(&estimate.values));
+    let surface = surface(prepared, contact, solution, head)?;
+    let mut mesh = Mesh::new(surface.points.clone(), surface.triangles.clone())?;
+    for estimate in solution.evaluate(&contact.surface.points) {
+        let values = if estimate.name == shown { surface.values.clone() } else { estimate.values };
+        mesh.push(estimate.name, estimate.unit.text, values)?;
+    }
     let mut files = super::contents(prepared, &estimates, &plot)?;
+    files.push(("surface.svg", surface_view(&surface)?.svg().into()));
     files.push(("surface.vtu", mesh.vtu_bytes()));
-    files.push(("surface.ply", mesh.ply_bytes(scale.map(|scale| (shown, scale)))?));
+    files.push(("surface.ply", mesh.ply_bytes(Some((shown, surface.scale)))?));
     Ok(files)
 }
 
-/// The deformed surface with displacements and pressure, which is zero where none can act.
-fn surface(contact: &Contact, solution: &Solution) -> Result<Mesh, DataError> {
-    let estimates = solution.evaluate(&contact.surface.points);
-    let of = |name: &str| estimates.iter().find(|estimate| estimate.name == name);
-    let moved = contact.displacement.map(|name| of(name).map_or(&[][..], |estimate| &estimate.values));
-    let points = contact.deformed(&contact.surface.points, moved);
-    let mut mesh = Mesh::new(points, contact.surface.triangles.clone())?;
-    for (name, values) in contact.displacement.iter().zip(moved) {
-        mesh.push(name, of(name).map_or("", |estimate| estimate.unit.text), values.to_vec())?;
-    }
-    if let Some(pressure) = contact.pressure.and_then(of) {
-        let loaded = pressure.values.iter().zip(&contact.surface.loaded);
-        let values = loaded.map(|(value, loaded)| if *loaded { *value } else { 0.0 }).collect();
-        mesh.push(pressure.name, pressure.unit.text, values)?;
-    }
-    Ok(mesh)
+/// The deformed surface with a head's values; a pressure is zero where none can act.
+fn surface(prepared: &Prepared, contact: &Contact, solution: &Solution, head: &Head) -> Result<SurfaceView, DataError> {
+    let body = &contact.surface;
+    let estimates = solution.evaluate(&body.points);
+    let of = |name: &str| estimates.iter().find(|estimate| estimate.name == name).map(|estimate| &estimate.values[..]);
+    let [Some(x), Some(y), Some(z)] = contact.displacement.map(of) else {
+        return Err(DataError::Invalid("the scene moves its surface by fields that it does not have".into()));
+    };
+    let values = of(head.name).unwrap_or(&[]).iter().zip(&body.loaded);
+    let values: Vec<f64> = values.map(|(value, loaded)| if !head.source || *loaded { *value } else { 0.0 }).collect();
+    Ok(SurfaceView {
+        title: super::title(solution),
+        subtitle: super::subtitle(prepared, solution),
+        points: contact.deformed(&body.points, [x, y, z]),
+        triangles: body.triangles.clone(),
+        value: Quantity::new(head.name, head.unit.text),
+        scale: ColourScale::from_zero(&values),
+        values,
+        eye: contact.eye,
+    })
 }
 
 /// The estimate, and beside it truth and error where the truth is known, with the outlines of the patches.
@@ -72,7 +80,7 @@ fn maps(
         panels.push(MapPanel { title: title.into(), value, grid, scale, contours });
     };
     match prepared.truth.as_ref().and_then(|truth| Some((truth, truth.of(head.name)?))) {
-        None => add("estimate", quantity(), grid, ColourScale::sequential(found), outlines),
+        None => add("estimate", quantity(), grid, ColourScale::from_zero(found), outlines),
         Some((truth, real)) => {
             let at = plane(&truth.points);
             let mask = contact.truth.as_ref().map(|truth| Grid::from_mask(&at, &truth.mask)).transpose()?;
@@ -81,7 +89,7 @@ fn maps(
             let again = solution.evaluate(&truth.points).into_iter().find(|estimate| estimate.name == head.name);
             let error: Vec<f64> =
                 again.iter().flat_map(|found| &found.values).zip(real).map(|(found, real)| found - real).collect();
-            let scale = ColourScale::sequential(real);
+            let scale = ColourScale::from_zero(real);
             add("estimate", quantity(), grid, scale, both());
             add("truth", quantity(), Grid::from_points(&at, real)?, scale, own.clone());
             let difference = Quantity::new(&format!("error of {}", head.name), head.unit.text);
@@ -89,6 +97,12 @@ fn maps(
         }
     }
     let axis = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
-    let title = super::title(solution);
-    field_map(&FieldMap { title, x: axis(0), y: axis(1), outline: prepared.outline.clone(), panels })
+    field_map(&FieldMap {
+        title: super::title(solution),
+        subtitle: super::subtitle(prepared, solution),
+        x: axis(0),
+        y: axis(1),
+        outline: prepared.outline.clone(),
+        panels,
+    })
 }

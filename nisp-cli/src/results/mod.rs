@@ -106,6 +106,7 @@ fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Res
     let quantity = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
     field_map(&FieldMap {
         title: title(solution),
+        subtitle: subtitle(prepared, solution),
         x: quantity(0),
         y: quantity(1),
         outline: prepared.outline.clone(),

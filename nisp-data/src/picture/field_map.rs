@@ -7,9 +7,8 @@ use super::grid::Grid;
 use super::legend::{self, Swatch};
 use super::line_plot::extent;
 use super::quantity::Shown;
-use super::raster;
-use super::style::{FRAME, GAP, INK, LABEL, MARGIN, PALETTE, TICK, TICK_LENGTH, TITLE, WIDTH};
-use super::{Picture, Quantity};
+use super::style::{GAP, INK, LABEL, MARGIN, PALETTE, WIDTH};
+use super::{Picture, Quantity, bar, heading, raster};
 use crate::DataError;
 use crate::colour::ColourScale;
 
@@ -18,6 +17,8 @@ use crate::colour::ColourScale;
 pub struct FieldMap {
     /// One line above everything.
     pub title: String,
+    /// A smaller line below it.
+    pub subtitle: String,
     /// The horizontal coordinate.
     pub x: Quantity,
     /// The vertical coordinate.
@@ -43,7 +44,6 @@ pub struct MapPanel {
     pub contours: Vec<(String, Grid, f64)>,
 }
 
-const BAR_HEIGHT: f64 = 14.0;
 /// A lone map need not fill the page.
 const WIDEST: f64 = 560.0;
 
@@ -65,16 +65,15 @@ pub fn field_map(map: &FieldMap) -> Result<Picture, DataError> {
 
     let mut canvas = Canvas::new();
     let mut top = MARGIN;
-    if !map.title.is_empty() {
-        canvas.bold_text([left, top + 0.8 * TITLE], TITLE, Anchor::Start, &map.title);
-        top += 1.4 * TITLE;
-    }
+    let used = left + count * width + gap * (count - 1.0);
+    top += heading::draw(&mut canvas, [left, top], used - left, &map.title, &map.subtitle);
     let names = contour_names(map);
     let entries: Vec<_> =
         names.iter().enumerate().map(|(k, name)| (Swatch::Line(contour_stroke(k)), name.to_string())).collect();
     legend::draw(&mut canvas, [left, top], page - left - MARGIN, &entries);
     top += legend::height(&entries, page - left - MARGIN) + 1.3 * LABEL;
 
+    let bar_top = top + height + x_axis_height() + 2.0 * GAP;
     for (index, map_panel) in map.panels.iter().enumerate() {
         let frame = Frame { left: left + index as f64 * (width + gap), top, width, height };
         let x = Scale::linear(left_x / shown_x.factor, right_x / shown_x.factor, width / 75.0);
@@ -86,10 +85,9 @@ pub fn field_map(map: &FieldMap) -> Result<Picture, DataError> {
         if index == 0 {
             area.draw_y_label(&mut canvas, MARGIN + 0.9 * LABEL, &shown_y.label);
         }
-        draw_bar(&mut canvas, frame, map_panel)?;
+        bar::draw(&mut canvas, [frame.left, bar_top], width, &map_panel.value, &map_panel.scale)?;
     }
-    let bottom = top + height + x_axis_height() + 2.0 * GAP + BAR_HEIGHT + bar_text_height();
-    Ok(canvas.finish(left + count * width + gap * (count - 1.0) + 1.8 * MARGIN, bottom + MARGIN, &map.title))
+    Ok(canvas.finish(used + 1.8 * MARGIN, bar_top + bar::height() + MARGIN, &map.title))
 }
 
 fn shown_axes(map: &FieldMap, x: [f64; 2], y: [f64; 2]) -> (Shown, Shown) {
@@ -164,28 +162,4 @@ fn hull(map: &FieldMap, low: [f64; 2], high: [f64; 2]) -> ([f64; 2], [f64; 2]) {
     map.outline.iter().fold((low, high), |(low, high), point| {
         ([low[0].min(point[0]), low[1].min(point[1])], [high[0].max(point[0]), high[1].max(point[1])])
     })
-}
-
-/// The colour bar below a map.
-fn draw_bar(canvas: &mut Canvas, map: Frame, panel: &MapPanel) -> Result<(), DataError> {
-    let (low, high) = panel.scale.range();
-    let shown = panel.value.shown(low.abs().max(high.abs()));
-    let frame =
-        Frame { left: map.left, top: map.bottom() + x_axis_height() + 2.0 * GAP, width: map.width, height: BAR_HEIGHT };
-    canvas.image(frame, &raster::bar(&panel.scale)?);
-    let stroke = Stroke::solid(FRAME, 1.2);
-    canvas.rect(frame, "none", Some(stroke));
-    let scale = Scale::linear(low / shown.factor, high / shown.factor, map.width / 70.0);
-    for (value, text) in &scale.marks {
-        let x = frame.left + scale.share(*value) * frame.width;
-        canvas.line([x, frame.bottom()], [x, frame.bottom() + TICK_LENGTH], stroke);
-        canvas.text([x, frame.bottom() + TICK_LENGTH + 0.3 * GAP + 0.8 * TICK], TICK, Anchor::Middle, text);
-    }
-    let y = frame.bottom() + bar_text_height() - 0.3 * LABEL;
-    canvas.text([frame.left + 0.5 * frame.width, y], LABEL, Anchor::Middle, &shown.label);
-    Ok(())
-}
-
-fn bar_text_height() -> f64 {
-    TICK_LENGTH + 0.3 * GAP + 1.3 * TICK + 1.2 * LABEL
 }

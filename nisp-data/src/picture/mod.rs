@@ -1,10 +1,11 @@
 //! Figures for papers and talks: SVG text laid out here, so that every axis has its unit, legends stay outside the data
 //! and labels never overlap.
 //!
-//! [`line_plot`] stacks source and states over one axis, [`field_map`] colours a plane region, [`log_log`] shows error
-//! against time. Each returns a [`Picture`].
+//! [`line_plot`] stacks source and states over one axis, [`field_map`] colours a plane region, [`surface_view`] a surface in
+//! space, [`log_log`] shows error against time. Each returns a [`Picture`].
 
 mod axis;
+mod bar;
 mod canvas;
 mod contour;
 mod field_map;
@@ -16,6 +17,7 @@ mod log_log;
 mod quantity;
 mod raster;
 mod style;
+mod surface_view;
 mod text;
 mod ticks;
 
@@ -26,6 +28,7 @@ pub use grid::Grid;
 pub use line_plot::{Curve, LinePanel, LinePlot, line_plot};
 pub use log_log::{LogLog, Mark, Series, log_log};
 pub use quantity::Quantity;
+pub use surface_view::{SurfaceView, surface_view};
 
 use crate::DataError;
 use crate::atomic::write_atomic;

@@ -45,7 +45,8 @@ pub(super) fn bar(scale: &ColourScale) -> Result<String, DataError> {
     encode(BAR_PIXELS, 1, &(0..BAR_PIXELS).flat_map(pixel).collect::<Vec<u8>>())
 }
 
-fn encode(width: usize, height: usize, rgba: &[u8]) -> Result<String, DataError> {
+/// An image of four bytes a pixel, row by row from the top, as PNG.
+pub(super) fn encode(width: usize, height: usize, rgba: &[u8]) -> Result<String, DataError> {
     let mut bytes = Vec::new();
     let fail = |error: png::EncodingError| DataError::invalid(format!("a picture could not be encoded: {error}"));
     let mut encoder = png::Encoder::new(&mut bytes, width as u32, height as u32);
