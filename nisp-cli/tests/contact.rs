@@ -94,3 +94,91 @@ fn the_truth_in_a_sample_is_not_read() {
         assert!(whole.1 == bare.1, "{scene}");
     }
 }
+
+fn copy(place: &Place, names: &[&str]) {
+    for name in names {
+        fs::copy(data(name), place.path(name.split('/').next_back().unwrap())).unwrap();
+    }
+}
+
+/// What a short run answers, up to its last digit.
+fn source(place: &Place, line: &str) -> String {
+    let ran = place.run(&format!("solve {line} --iterations 3 --width 4 --threads 1 --out out"));
+    assert!(matches!(ran.code, Some(0 | 3)), "{line}: {}", ran.stderr);
+    fs::read_to_string(place.path("out/source.csv")).unwrap()
+        + &fs::read_to_string(place.path("out/state.csv")).unwrap()
+}
+
+#[test]
+fn a_sample_can_be_named_in_several_ways_and_what_is_set_wins() {
+    let place = Place::new();
+    copy(&place, &["membrane/cylinder_1.toml", "membrane/cylinder_1_cloud_0.ply", "membrane/cylinder_1_cloud_1.ply"]);
+    let whole = source(&place, "membrane --sample cylinder_1.toml --cloud 1");
+    assert!(whole == source(&place, "membrane --data cylinder_1 --cloud 1"));
+    assert!(whole == source(&place, "membrane --data cylinder_1.toml --cloud 1"));
+    assert!(whole == source(&place, "membrane --sample cylinder_1.toml --data cylinder_1_cloud_1.ply"));
+    // The sample's numbers, one by one: a user without its file.
+    let toml: toml::Table = fs::read_to_string(place.path("cylinder_1.toml")).unwrap().parse().unwrap();
+    let p = &toml["membrane"]["gauge_pressure_Pa"];
+    let numbers = |text: &str| text.split([',', '\n']).filter_map(|cell| cell.parse().ok()).collect::<Vec<f64>>();
+    let alone = numbers(&source(&place, &format!("membrane --data cylinder_1_cloud_1.ply --set p={p}")));
+    // Up to the rounding of a thickness that is given in metres and counted in millimetres.
+    let near = |(a, b): (&f64, &f64)| (a - b).abs() <= 1e-6 * (1.0 + a.abs());
+    assert!(numbers(&whole).len() == alone.len() && numbers(&whole).iter().zip(&alone).all(near));
+    assert!(whole != source(&place, "membrane --sample cylinder_1.toml --cloud 1 --set p=4000"));
+    assert!(whole != source(&place, "membrane --sample cylinder_1.toml --cloud 0"));
+    assert!(
+        source(&place, "membrane --sample cylinder_1.toml") == source(&place, "membrane --data cylinder_1 --cloud 0")
+    );
+}
+
+#[test]
+fn a_wrist_that_carries_the_weight_says_the_same() {
+    let place = Place::new();
+    copy(&place, &["sponge/ridge_1.toml", "sponge/ridge_1_cloud_1.ply"]);
+    let mut table: toml::Table = fs::read_to_string(place.path("ridge_1.toml")).unwrap().parse().unwrap();
+    if let Some(toml::Value::Table(wrench)) = table.get_mut("wrench") {
+        wrench.retain(|key, _| key.starts_with("wrist"));
+    }
+    place.put("wrist.toml", &table.to_string());
+    let force = |sample: &str| -> Vec<f64> {
+        let text = source(&place, &format!("sponge --sample {sample}.toml --cloud 1"));
+        let rows = text.lines().filter_map(|line| line.split(',').nth(3)?.parse().ok());
+        rows.collect()
+    };
+    let (contact, wrist) = (force("ridge_1"), force("wrist"));
+    assert!(contact.len() > 2000);
+    // The sample's figures have six digits.
+    let size = contact.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
+    assert!(contact.iter().zip(&wrist).all(|(a, b)| (a - b).abs() < 1e-3 * size));
+    assert_ne!(contact, wrist);
+}
+
+#[test]
+fn units_and_missing_points_are_taken_care_of() {
+    let place = Place::new();
+    let cloud = |scale: f64, more: &str| -> String {
+        let point = |i: i32| {
+            let (radius, angle) = ((f64::from(i) / 500.0).sqrt(), 2.4 * f64::from(i));
+            let [x, y, z] = [0.06 * radius * angle.cos(), 0.04 * radius * angle.sin(), 0.03 * (1.0 - radius * radius)];
+            format!("{:e},{:e},{:e}\n", scale * x, scale * y, scale * z)
+        };
+        (0..500).map(point).collect::<String>() + more
+    };
+    place.put("m.csv", &cloud(1.0, ""));
+    place.put("mm.csv", &cloud(1e3, ""));
+    place.put("holes.csv", &cloud(1.0, "nan,nan,nan\n0,0,nan\n"));
+    let ran = |line: &str| {
+        let ran = place
+            .run(&format!("solve membrane --data {line} --set p=5000 --iterations 3 --width 4 --threads 1 --json"));
+        assert!(matches!(ran.code, Some(0 | 3)), "{line}: {}", ran.stderr);
+        object(&ran.stdout)
+    };
+    let (metres, millimetres, holes) = (ran("m.csv"), ran("mm.csv --unit mm"), ran("holes.csv"));
+    let force = |object: &Value| object["errors"]["force_N"].as_f64().unwrap();
+    assert!((force(&metres) / force(&millimetres) - 1.0).abs() < 1e-6, "{metres} {millimetres}");
+    assert_eq!(force(&metres), force(&holes));
+    assert!(holes["warnings"].to_string().contains("2 of 502 points were not finite"), "{holes}");
+    // Without a truth there is a force, and nothing to compare it with.
+    assert_eq!(metres["errors"].as_object().unwrap().len(), 1, "{metres}");
+}

@@ -80,3 +80,86 @@ impl Contact {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::contact::{Rule, Surface};
+    use nisp_data::domain::{Domain, Sampling};
+
+    /// A plane body of one metre with its points and a truth: a disc of radius 0.3 m that carries 5 kPa, 2 mm up.
+    fn body() -> (Contact, Truth) {
+        let square = Domain::cuboid(&[0.0, 0.0], &[1.0, 1.0]).unwrap();
+        let points: Vec<f64> = (0..101 * 101).flat_map(|i| [i % 101, i / 101].map(|k| 0.01 * f64::from(k))).collect();
+        let mut table = Table::empty();
+        let column = |of: &dyn Fn(f64, f64) -> f64| points.chunks_exact(2).map(|p| of(p[0], p[1])).collect::<Vec<_>>();
+        table.push("contact", "", &column(&|x, y| if disc(x, y, 0.3) { 1.0 } else { 0.0 })).unwrap();
+        let count = points.len() / 2;
+        let heads = vec![
+            ("u", vec![0.0; count]),
+            ("v", vec![0.0; count]),
+            ("w", vec![2.0; count]),
+            ("f", column(&|x, y| if disc(x, y, 0.3) { 5e3 } else { 0.0 })),
+        ];
+        let truth = Truth { points: points.clone(), heads, outside: 0 };
+        let contact = Contact {
+            displacement: ["u", "v", "w"],
+            unit: 1e-3,
+            pressure: Some("f"),
+            rule: Rule { least: 2500.0, of_mean: 2.0 },
+            area: square.interior(40_000, Sampling::Grid, 0),
+            surface: Surface { points: vec![], triangles: vec![], loaded: vec![] },
+            eye: [0.0, 90.0],
+            truth: Some(TrueContact::read(&table, &truth, "f", Headers::default()).unwrap()),
+            rival: None,
+        };
+        (contact, truth)
+    }
+
+    fn disc(x: f64, y: f64, radius: f64) -> bool {
+        (x - 0.5).hypot(y - 0.5) < radius
+    }
+
+    /// A disc of another radius that carries as much, 3 mm up.
+    fn found(radius: f64) -> impl Fn(&str, &[f64]) -> Option<Vec<f64>> {
+        move |name, at| {
+            let f = |p: &[f64]| if disc(p[0], p[1], radius) { 5e3 } else { 0.0 };
+            Some(match name {
+                "f" => at.chunks_exact(2).map(f).collect(),
+                "w" => vec![3.0; at.len() / 2],
+                _ => vec![0.0; at.len() / 2],
+            })
+        }
+    }
+
+    #[test]
+    fn a_smaller_disc_is_scored_as_its_closed_form_says() {
+        let (contact, truth) = body();
+        let score = contact.score(&found(0.24), Some(&truth)).unwrap();
+        let (force, real) = [0.24, 0.3].map(|r: f64| 5e3 * std::f64::consts::PI * r * r).into();
+        assert!((score.force / force - 1.0).abs() < 5e-3, "{score:?}");
+        let against = score.against.unwrap();
+        assert!((against.force_error / (real - force) - 1.0).abs() < 0.03, "{against:?}");
+        assert!((against.iou - 0.64).abs() < 0.01, "{against:?}");
+    }
+
+    /// A millimetre apart, which is nearer than any other point: once in each direction.
+    #[test]
+    fn the_same_disc_elsewhere_has_the_distance_of_its_lift() {
+        let (contact, truth) = body();
+        let against = contact.score(&found(0.3), Some(&truth)).unwrap().against.unwrap();
+        assert_eq!(against.iou, 1.0);
+        assert!((against.patch_chamfer_mm2.unwrap() - 2.0).abs() < 1e-9, "{against:?}");
+    }
+
+    #[test]
+    fn without_a_truth_there_is_a_force_and_without_a_patch_no_distance() {
+        let (contact, truth) = body();
+        let nothing = |_: &str, at: &[f64]| Some(vec![0.0; at.len() / 2]);
+        let score = contact.score(&nothing, Some(&truth)).unwrap();
+        let against = score.against.unwrap();
+        assert_eq!((score.force, against.iou, against.patch_chamfer_mm2), (0.0, 0.0, None));
+        assert_eq!(contact.score(&nothing, None).unwrap().against, None);
+        assert_eq!(Contact { pressure: None, ..contact }.score(&nothing, None), None);
+    }
+}

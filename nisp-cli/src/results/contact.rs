@@ -50,7 +50,7 @@ fn surface(prepared: &Prepared, contact: &Contact, solution: &Solution, head: &H
         points: contact.deformed(&body.points, [x, y, z]),
         triangles: body.triangles.clone(),
         value: Quantity::new(head.name, head.unit.text),
-        scale: ColourScale::from_zero(&values),
+        scale: if head.source { ColourScale::load(&values) } else { ColourScale::sequential(&values) },
         values,
         eye: contact.eye,
     })

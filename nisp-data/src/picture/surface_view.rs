@@ -32,7 +32,7 @@ const PIXELS: f64 = 1400.0;
 /// The largest part of the page that the surface may be high.
 const TALLEST: f64 = 0.62;
 /// Share of the light that comes from everywhere.
-const AMBIENT: f64 = 0.6;
+const AMBIENT: f64 = 0.35;
 
 /// Directions on the page, towards the eye, and of the light.
 struct Camera {
@@ -46,8 +46,9 @@ impl Camera {
     fn new([azimuth, elevation]: [f64; 2]) -> Camera {
         let ((sa, ca), (se, ce)) = (azimuth.to_radians().sin_cos(), elevation.to_radians().sin_cos());
         let (right, up, towards) = ([-sa, ca, 0.0], [-se * ca, -se * sa, ce], [ce * ca, ce * sa, se]);
-        // Over the viewer's left shoulder.
-        let light = normal(std::array::from_fn(|axis| towards[axis] + 0.6 * up[axis] - 0.5 * right[axis]));
+        // Over the viewer's left shoulder; from below for who looks from below.
+        let high = 0.5 * se.signum();
+        let light = normal(std::array::from_fn(|axis| towards[axis] + high * up[axis] - 0.7 * right[axis]));
         Camera { right, up, towards, light }
     }
 }
