@@ -1,5 +1,6 @@
 //! Scores against a truth that no solver has seen.
 
+use nisp::schema::Origin;
 use nisp::{LearnedValue, Solution};
 use nisp_equations::contact::ContactScore;
 use nisp_equations::rivals::mean_abs_error;
@@ -27,7 +28,10 @@ pub(crate) struct Rival {
 impl Found {
     pub(crate) fn of(solution: &mut Solution, prepared: &Prepared) -> Self {
         let truth = prepared.truth.as_ref();
-        let learned = solution.learned();
+        let scalars = solution.scene().scalars;
+        let learns = scalars.iter().any(|scalar| matches!(scalar.origin, Origin::Learned { .. }));
+        // Error bars take a factorisation.
+        let learned = if learns { solution.learned() } else { Vec::new() };
         let solution = &*solution;
         let values = |name: &str, points: &[f64]| {
             let estimate = solution.evaluate(points).into_iter().find(|estimate| estimate.name == name);
