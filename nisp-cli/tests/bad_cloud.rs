@@ -125,5 +125,7 @@ fn truths() {
     run(&format!("x_m,y_m,w_m,f_Pa,contact\n{}", rows("0,0,0")), &["t.csv: no column for `u` in mm"]);
     run(&format!("z_m,y_m,w_m\n{}", rows("0")), &["t.csv: no column for `x` in m"]);
     run(&format!("{head},f_Pa,contact\n{}", rows("0,0,0,nan,0")), &["line 2, column `f_Pa`"]);
+    let elsewhere = "x,y,u_m,v_m,w_m,f_Pa,contact\n0,0,0,0,0,0,0\n50,10,0,0,0,0,0\n";
+    run(elsewhere, &["t.csv: `alpha` runs from 0 to 50 m, the body from -0.0600 to 0.0600", "another unit"]);
     refused(&[], "membrane --truth nowhere.csv", &["nowhere.csv: no such file"]);
 }

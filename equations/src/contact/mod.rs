@@ -22,6 +22,9 @@ use nisp_data::{Cloud, DataError, Table};
 
 use crate::truth::{Headers, Truth};
 
+/// Share of a body's size by which a truth's points may be beside it, having been rounded.
+const SLACK: f64 = 0.01;
+
 /// A body that was seen as a cloud, and the pressure that acts on it. Coordinates are in metres.
 pub struct Contact {
     /// The fields that move a point along x, y and z.
@@ -78,6 +81,28 @@ impl Contact {
 }
 
 impl Contact {
+    /// Checks that a truth's points are points of the body: they may be in another unit than their headers say.
+    fn require_within(&self, table: &Table, scene: &Scene, truth: &Truth) -> Result<(), DataError> {
+        let dim = scene.coordinates.len();
+        let range = |points: &[f64], axis: usize| {
+            let values = points.iter().skip(axis).step_by(dim);
+            values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
+        };
+        for (axis, coordinate) in scene.coordinates.iter().enumerate() {
+            let ((from, to), (low, high)) = (range(&truth.points, axis), range(&self.surface.points, axis));
+            let slack = SLACK * (high - low);
+            if from < low - slack || to > high + slack {
+                let (name, unit) = (coordinate.name, coordinate.unit.text);
+                let what = format!(
+                    "`{name}` runs from {from} to {to} {unit}, the body from {low:.4} to {high:.4}: is it in another unit? \
+                     write the unit into its header, as in `{name} [mm]`"
+                );
+                return Err(DataError::File { path: table.path().into(), what });
+            }
+        }
+        Ok(())
+    }
+
     /// The true contact, where a truth is given and the scene has a pressure.
     fn true_contact(
         &self,
@@ -85,7 +110,9 @@ impl Contact {
         truth: Option<(&Table, &Truth)>,
         headers: Headers<'_>,
     ) -> Result<Option<TrueContact>, DataError> {
-        let (Some((table, truth)), Some(pressure)) = (truth, self.pressure) else { return Ok(None) };
+        let Some((table, truth)) = truth else { return Ok(None) };
+        self.require_within(table, scene, truth)?;
+        let Some(pressure) = self.pressure else { return Ok(None) };
         for name in self.displacement.into_iter().chain([pressure]) {
             if truth.of(name).is_none() {
                 let unit = scene.heads.iter().find(|head| head.name == name).map_or("", |head| head.unit.text);
