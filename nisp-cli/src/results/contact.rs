@@ -85,7 +85,7 @@ fn maps(
             let at = plane(&truth.points);
             let mask = contact.truth.as_ref().map(|truth| Grid::from_mask(&at, &truth.mask)).transpose()?;
             let own: Vec<_> = mask.into_iter().map(|mask| ("true patch".to_string(), mask, 0.5)).collect();
-            let both = || own.iter().chain(&outlines).cloned().collect::<Vec<_>>();
+            let both = || outlines.iter().chain(&own).cloned().collect::<Vec<_>>();
             let again = solution.evaluate(&truth.points).into_iter().find(|estimate| estimate.name == head.name);
             let error: Vec<f64> =
                 again.iter().flat_map(|found| &found.values).zip(real).map(|(found, real)| found - real).collect();
