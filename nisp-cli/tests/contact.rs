@@ -103,7 +103,7 @@ fn copy(place: &Place, names: &[&str]) {
 
 /// What a short run answers, up to its last digit.
 fn source(place: &Place, line: &str) -> String {
-    let ran = place.run(&format!("solve {line} --iterations 3 --width 4 --threads 1 --out out"));
+    let ran = place.run(&format!("solve {line} --iterations 3 --width 4 --threads 1 --json --out out"));
     assert!(matches!(ran.code, Some(0 | 3)), "{line}: {}", ran.stderr);
     fs::read_to_string(place.path("out/source.csv")).unwrap()
         + &fs::read_to_string(place.path("out/state.csv")).unwrap()
@@ -117,6 +117,9 @@ fn a_sample_can_be_named_in_several_ways_and_what_is_set_wins() {
     assert!(whole == source(&place, "membrane --data cylinder_1 --cloud 1"));
     assert!(whole == source(&place, "membrane --data cylinder_1.toml --cloud 1"));
     assert!(whole == source(&place, "membrane --sample cylinder_1.toml --data cylinder_1_cloud_1.ply"));
+    fs::create_dir(place.path("study")).unwrap();
+    place.put("study/run.toml", "sample = \"../cylinder_1.toml\"\ncloud = 1\n");
+    assert!(whole == source(&place, "membrane --config study/run.toml"));
     // The sample's numbers, one by one: a user without its file.
     let toml: toml::Table = fs::read_to_string(place.path("cylinder_1.toml")).unwrap().parse().unwrap();
     let p = &toml["membrane"]["gauge_pressure_Pa"];
