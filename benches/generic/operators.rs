@@ -113,6 +113,7 @@ macro_rules! dense_scene {
                         combination: &[$(
                             (channel::<$channels, $coordinates>($order, $monomial), $coefficient)
                         ),*],
+                        operator: &[],
                         site: 0,
                     }),*],
                     ..SIMPLEST.groups[0]

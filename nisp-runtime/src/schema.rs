@@ -149,6 +149,8 @@ pub struct Jet {
     pub degree: &'static [u8],
     /// The operator in channels: (channel, coefficient).
     pub combination: &'static [(usize, f64)],
+    /// The operator in derivatives: (order by each coordinate, coefficient).
+    pub operator: &'static [(&'static [u8], f64)],
     /// 0 for the point itself, 1 for its partner.
     pub site: usize,
 }
@@ -182,6 +184,8 @@ pub struct Term {
     /// How far rows may be off, in SI units, if the user says so: the noise of data, the tolerance of a condition, the
     /// spread of a prior.
     pub within: Option<f64>,
+    /// Of an integral, the unit of the points' weights.
+    pub measure: Option<Unit>,
     /// First row.
     pub first: usize,
     /// Number of rows.

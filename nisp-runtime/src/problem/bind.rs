@@ -327,9 +327,9 @@ impl Bound {
             let bound = self.sizes[at].iter().zip(&self.clouds[at]);
             for (term, (size, cloud)) in group.terms.iter_mut().zip(bound) {
                 term.size = *size;
-                let weights = self.problem.groups[at].as_ref().map_or(&[][..], |b| &b.points.weights);
-                if term.schema.kind == schema::TermKind::Integral && !weights.is_empty() {
-                    term.point_weights = Some(weights.iter().map(|&w| E::from_f64(w)).collect());
+                if term.schema.kind == schema::TermKind::Integral && !self.raw_weights(at).is_empty() {
+                    let weights = self.weights(at, term.schema.measure.as_ref());
+                    term.point_weights = Some(weights.into_iter().map(E::from_f64).collect());
                 }
                 term.chamfer = Chamfer::new(cloud, term.schema, group.points);
             }
@@ -337,6 +337,26 @@ impl Bound {
         }
         let scalars = self.scalars.iter().map(|&x| E::from_f64(x)).collect();
         Ok(Engine::new(isa, layout, groups, scalars, self.learned.clone()))
+    }
+
+    fn raw_weights(&self, group: usize) -> &[f64] {
+        self.problem.groups[group].as_ref().map_or(&[], |binding| &binding.points.weights)
+    }
+
+    /// Weights of a group's points in the engine's units, if `measure` is theirs; empty if they have none.
+    pub(crate) fn weights(&self, group: usize, measure: Option<&schema::Unit>) -> Vec<f64> {
+        let inward = measure.map_or(1.0, |measure| self.system.inward(measure));
+        self.raw_weights(group).iter().map(|weight| weight * inward).collect()
+    }
+
+    /// The direction along which a term's cloud is off, if it is known.
+    pub(crate) fn view(&self, group: usize, term: &str) -> Option<[f64; 3]> {
+        self.problem.groups[group].as_ref()?.view(term)
+    }
+
+    /// Points given in declared units, in the engine's.
+    pub(crate) fn inward(&self, points: &[f64]) -> Vec<f64> {
+        inward_points(self.problem.scene().schema, &self.system, points)
     }
 
     /// The outputs group at points given in declared units, as an engine with no terms that count.

@@ -25,7 +25,8 @@ pub struct Problem {
 pub struct Points {
     /// Coordinates in their declared units, point by point.
     pub coordinates: Vec<f64>,
-    /// Quadrature weights for integral terms, one per point; empty for one each.
+    /// What each point stands for, in products of the coordinates' declared units; empty for one each. Integral terms sum
+    /// with them, and local functions test equations with them.
     pub weights: Vec<f64>,
     /// Coordinates of every point's partner, for periodic pairs; empty otherwise.
     pub partners: Vec<f64>,
@@ -51,12 +52,19 @@ struct Binding {
     columns: Vec<Vec<f64>>,
     /// Clouds of Chamfer terms: term, points flat.
     clouds: Vec<(String, Vec<f64>)>,
+    /// Directions along which clouds are off: term, direction.
+    views: Vec<(String, [f64; 3])>,
 }
 
 impl Binding {
     /// The cloud of a term, as bound last.
     fn cloud(&self, term: &str) -> Option<&[f64]> {
         self.clouds.iter().rev().find(|(name, _)| name == term).map(|(_, cloud)| &cloud[..])
+    }
+
+    /// The direction along which a term's cloud is off, as bound last.
+    fn view(&self, term: &str) -> Option<[f64; 3]> {
+        self.views.iter().rev().find(|(name, _)| name == term).map(|(_, view)| *view)
     }
 }
 
@@ -104,7 +112,7 @@ impl Problem {
             .iter()
             .position(|g| g.name == name)
             .ok_or_else(|| BindError::unknown("group", name, groups.iter().map(|g| g.name)))?;
-        self.groups[at] = Some(Binding { points, columns, clouds: Vec::new() });
+        self.groups[at] = Some(Binding { points, columns, ..Binding::default() });
         Ok(())
     }
 
@@ -117,6 +125,19 @@ impl Problem {
         let binding = groups.iter().position(|g| g.name == group).and_then(|at| self.groups[at].as_mut());
         let binding = binding.ok_or_else(|| BindError::unknown("group", group, groups.iter().map(|g| g.name)))?;
         binding.clouds.push((term.into(), cloud));
+        Ok(())
+    }
+
+    /// Says that a cloud is off along one direction only, as a depth camera's is; local functions measure distances along
+    /// it. Otherwise distances count across the surface.
+    ///
+    /// # Errors
+    /// No such group, or nothing bound to it yet.
+    pub fn set_view(&mut self, group: &str, term: &str, direction: [f64; 3]) -> Result<(), BindError> {
+        let groups = self.scene.schema.groups;
+        let binding = groups.iter().position(|g| g.name == group).and_then(|at| self.groups[at].as_mut());
+        let binding = binding.ok_or_else(|| BindError::unknown("group", group, groups.iter().map(|g| g.name)))?;
+        binding.views.push((term.into(), direction));
         Ok(())
     }
 
@@ -137,7 +158,7 @@ impl Problem {
     #[doc(hidden)]
     #[must_use]
     pub fn with_group(mut self, at: usize, points: Points, columns: Vec<Vec<f64>>) -> Self {
-        self.groups[at] = Some(Binding { points, columns, clouds: Vec::new() });
+        self.groups[at] = Some(Binding { points, columns, ..Binding::default() });
         self
     }
 

@@ -153,9 +153,14 @@ fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {
         let coefficient = to_f64(*coefficient);
         quote!((#channel, #coefficient))
     });
+    let operator = jet.operator.terms().map(|(index, &coefficient)| {
+        let (index, coefficient) = (index.iter().map(|&n| n as u8), to_f64(coefficient));
+        quote!((&[#(#index),*], #coefficient))
+    });
     quote! {
         schema::Jet {
-            head: #head, name: #name, degree: &[#(#degree),*], combination: &[#(#combination),*], site: #site,
+            head: #head, name: #name, degree: &[#(#degree),*], combination: &[#(#combination),*],
+            operator: &[#(#operator),*], site: #site,
         }
     }
 }
@@ -184,11 +189,18 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
     };
     let weight = declared.weights[group.group][plan.term];
     let within = optional(term.within);
+    let measure = match &term.kind {
+        model::TermKind::Integral { measure: Some(measure), .. } => {
+            let measure = self::unit(measure);
+            quote!(Some(#measure))
+        }
+        _ => quote!(None),
+    };
     let (first, rows) = (plan.first, plan.rows);
     quote! {
         schema::Term {
             name: #name, equation: #equation, latex: #latex, unit: #unit, kind: #kind, loss: #loss,
-            weight: #weight, within: #within, first: #first, rows: #rows,
+            weight: #weight, within: #within, measure: #measure, first: #first, rows: #rows,
         }
     }
 }

@@ -87,7 +87,7 @@ fn expressions(term: &Term) -> Vec<&Expr> {
     match &term.kind {
         TermKind::Residual(rows) | TermKind::Observation(rows) | TermKind::Inequality(rows) => rows.iter().collect(),
         TermKind::Complementarity { a, b, .. } => vec![a, b],
-        TermKind::Integral { integrand, target } => integrand.iter().chain(target).collect(),
+        TermKind::Integral { integrand, target, .. } => integrand.iter().chain(target).collect(),
         TermKind::Chamfer { point, .. } => point.iter().collect(),
     }
 }

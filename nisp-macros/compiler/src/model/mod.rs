@@ -201,6 +201,9 @@ pub enum TermKind {
         integrand: Vec<Expr>,
         /// Target value; contains parameters and numbers only.
         target: Vec<Expr>,
+        /// Unit of the points' weights: a length, an area, a volume or an extent of coordinates, as declared; absent
+        /// where units are off or nothing tells.
+        measure: Option<Unit>,
     },
     /// The surface `point` passes through a measured cloud.
     Chamfer {

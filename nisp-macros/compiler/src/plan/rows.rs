@@ -25,7 +25,7 @@ pub(super) fn rows(lowering: &mut Lowering, term: &Term, place: (usize, usize)) 
     let rows = match &term.kind {
         TermKind::Residual(rows) | TermKind::Observation(rows) => plain(rows),
         TermKind::Chamfer { point, .. } => plain(point),
-        TermKind::Integral { integrand, target } => {
+        TermKind::Integral { integrand, target, .. } => {
             targets = plain(target);
             plain(integrand)
         }
