@@ -11,7 +11,7 @@ pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
     Estimate, LearnedValue, Optimizer, RecoverError, Report, Settings, Solution, TermReport, Width, recover,
 };
-pub use nisp_runtime::{engine, network, peak, real, schema, simd, solve};
+pub use nisp_runtime::{engine, local, network, peak, real, schema, simd, solve};
 
 /// What emitted code refers to; not for direct use.
 #[doc(hidden)]

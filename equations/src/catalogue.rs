@@ -4,6 +4,7 @@
 
 use std::path::PathBuf;
 
+use nisp::local::Local;
 use nisp::{Problem, SceneRef};
 use nisp_data::cloud::LengthUnit;
 use nisp_data::nearest_name;
@@ -114,6 +115,8 @@ pub struct Request {
     pub unit: Option<LengthUnit>,
     /// Truth to score against.
     pub truth: Option<PathBuf>,
+    /// A network even where local functions suit the scene better.
+    pub network: bool,
     /// Names and the headers that hold them; the last word on a name counts.
     pub columns: Vec<(String, String)>,
     /// Parameters in their declared units; the last word on a name counts.
@@ -138,6 +141,8 @@ pub struct Prepared {
     pub warnings: Vec<String>,
     /// What classical rivals solve, if they know this scene.
     pub rival: Option<Box<dyn System>>,
+    /// Local functions, where they suit the scene better than a network.
+    pub local: Option<Local>,
     /// The body whose surface was seen, where the data are a cloud.
     pub contact: Option<Contact>,
 }

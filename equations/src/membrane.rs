@@ -14,8 +14,8 @@ pub(crate) const ENTRY: Entry = Entry {
         scene::<membrane::identify::Scene>,
         scene::<membrane::contact_no_inplane::Scene>,
         scene::<membrane::identify_no_inplane::Scene>,
-        scene::<membrane::contact_thin::Scene>,
-        scene::<membrane::identify_thin::Scene>,
+        scene::<membrane::contact_bending::Scene>,
+        scene::<membrane::identify_bending::Scene>,
     ],
     data: "data/membrane/y_shape_1.toml",
     binding: Binding::Cloud(contact::prepare_membrane),
@@ -61,10 +61,10 @@ nisp::pde! {
         let tension = N_a * d(w, alpha, 2) + 2 * N_ab * d(w, alpha, beta) + N_b * d(w, beta, 2);
 
         on interior {
+            /// a membrane: bending matters within a quarter of a millimetre of rims, the length `sqrt(D / N)`
+            balance: -tension == p - f;
             /// the plate, bending included
-            balance: D * biharmonic(w) - tension == p - f;
-            /// the plate without bending, which matters within a quarter of a millimetre of rims
-            thin: -tension == p - f;
+            bending: D * biharmonic(w) - tension == p - f;
             /// no friction: in-plane forces balance
             inplane_a: d(N_a, alpha) + d(N_ab, beta) == 0;
             inplane_b: d(N_ab, alpha) + d(N_b, beta) == 0;
@@ -73,18 +73,18 @@ nisp::pde! {
         on rim { clamp: u == 0, v == 0, w == 0; no_contact: f == 0; }
 
         /// The contact pressure, from a cloud of the pressed membrane.
-        scene contact { without interior.thin; }
+        scene contact { without interior.bending; }
         /// Young's modulus, from a cloud of the inflated membrane that nothing touches.
-        scene identify { f = 0; learn E; without interior.thin, rim.no_contact; }
+        scene identify { f = 0; learn E; without interior.bending, rim.no_contact; }
         /// The contact pressure without in-plane equilibrium, as the paper has it: the cloud alone ties down `u` and `v`.
-        scene contact_no_inplane { without interior.thin, interior.inplane_a, interior.inplane_b; }
+        scene contact_no_inplane { without interior.bending, interior.inplane_a, interior.inplane_b; }
         /// Young's modulus without in-plane equilibrium.
         scene identify_no_inplane {
-            f = 0; learn E; without interior.thin, interior.inplane_a, interior.inplane_b, rim.no_contact;
+            f = 0; learn E; without interior.bending, interior.inplane_a, interior.inplane_b, rim.no_contact;
         }
-        /// The contact pressure of a membrane that does not resist bending: second derivatives are enough.
-        scene contact_thin { without interior.balance; }
-        /// Young's modulus of a membrane that does not resist bending.
-        scene identify_thin { f = 0; learn E; without interior.balance, rim.no_contact; }
+        /// The contact pressure of a membrane that resists bending: fourth derivatives.
+        scene contact_bending { without interior.balance; }
+        /// Young's modulus of a membrane that resists bending.
+        scene identify_bending { f = 0; learn E; without interior.balance, rim.no_contact; }
     }
 }

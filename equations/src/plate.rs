@@ -80,6 +80,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         source,
         warnings: Vec::new(),
         rival: None,
+        local: None,
         contact: None,
     })
 }

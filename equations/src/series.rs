@@ -163,6 +163,7 @@ impl Series {
             source,
             warnings: Vec::new(),
             rival,
+            local: None,
             contact: None,
         })
     }

@@ -85,7 +85,7 @@ impl Grid {
     }
 }
 
-/// Root mean squares of the rows of `interior` in `contact_thin`, at nodes whose neighbourhood is free of contact (or
+/// Root mean squares of the rows of `interior` in `contact`, at nodes whose neighbourhood is free of contact (or
 /// wholly in it) and away from the edge.
 fn membrane_rows(sample: &str, pressure: f64, in_contact: bool) -> Vec<f64> {
     let table = data(&format!("membrane/{sample}_truth.csv"));
@@ -93,7 +93,7 @@ fn membrane_rows(sample: &str, pressure: f64, in_contact: bool) -> Vec<f64> {
     let [x, y, u, v, w] = ["x", "y", "u", "v", "w"].map(column);
     let f = if table.has("f") { column("f") } else { vec![0.0; x.len()] };
     let grid = Grid::new(&x, &y);
-    let thin = scene::<membrane::contact_thin::Scene>();
+    let thin = scene::<membrane::contact::Scene>();
     let (mut squares, mut count) = (vec![0.0; group(&thin, "interior").rows], 0);
     for (&node, &at) in &grid.0 {
         let edge = (x[at] / 0.06).powi(2) + (y[at] / 0.04).powi(2);

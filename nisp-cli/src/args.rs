@@ -72,6 +72,9 @@ pub(crate) struct Options {
     /// Element type of the network.
     #[arg(long, default_value = "f64", value_parser = ["f32", "f64"], help_heading = METHOD)]
     pub(crate) precision: String,
+    /// A network even where local functions suit the scene better (membrane, sponge).
+    #[arg(long, help_heading = METHOD)]
+    pub(crate) network: bool,
     /// Method of minimisation; auto chooses by the noise in the data.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = optimizers(), help_heading = METHOD)]
     pub(crate) optimizer: String,

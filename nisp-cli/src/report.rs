@@ -67,7 +67,7 @@ pub(crate) fn json(
         "status": status(solution),
         "seed": settings.seed,
         "precision": settings.precision.name(),
-        "optimizer": solution.optimizer.name(),
+        "optimizer": solution.method(),
         "threads": settings.threads,
         "wall_s": solution.wall_s,
         "iterations": solution.iterations,
@@ -116,7 +116,7 @@ pub(crate) fn table(
         end(solution),
         solution.wall_s,
         solution.iterations,
-        solution.optimizer.name(),
+        solution.method(),
         solution.settings.precision.name(),
         if threads == 1 { "" } else { "s" },
         solution.loss

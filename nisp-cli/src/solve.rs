@@ -27,11 +27,13 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         cloud: options.cloud,
         unit: options.unit,
         truth: options.truth.clone(),
+        network: options.network,
         columns: options.column.clone(),
         parameters: options.set.clone(),
     };
     let settings = settings(options)?;
     let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
+    let settings = Settings { local: prepared.local, ..settings };
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::listen()?;
     let mut solution = run(&prepared, &settings)?;
@@ -75,6 +77,7 @@ fn settings(options: &Options) -> Result<Settings, String> {
         precision: if options.precision == "f32" { Width::F32 } else { Width::F64 },
         optimizer: Optimizer::from_name(&options.optimizer).unwrap_or(Optimizer::Auto),
         architecture: Architecture { width: options.width, layers: options.layers, ..Settings::default().architecture },
+        local: None,
         seed: options.seed,
         budget: Some(Duration::from_secs_f64(options.budget)),
         iterations: options.iterations.map(|count| count as u64),

@@ -9,6 +9,7 @@ pub mod functions;
 pub mod gemm;
 pub mod kernel;
 pub mod layer;
+pub mod local;
 pub mod network;
 pub mod peak;
 pub mod problem;

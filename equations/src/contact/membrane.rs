@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use nisp::local::{Local, Patches};
 use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use nisp_data::export::triangulate;
@@ -44,6 +45,14 @@ const POSITIVE: &Positive = &[
 
 /// Points within the membrane for the equations, for the surface that the cloud is compared with, and on the rim.
 const POINTS: (usize, usize, usize) = (1500, 2000, 200);
+/// The same for local functions: some nine points in every cell.
+const LOCAL_POINTS: (usize, usize, usize) = (17_000, 8000, 400);
+/// Local functions: cells of two millimetres on the paper's membrane for a pressure with edges, of four where nothing
+/// touches it.
+const LOCAL: Local = Local { cells: 30, finer: 2, source_dimensions: 2, patches: None };
+const CELLS_FOR_PATCHES: usize = 60;
+/// What touches the membrane presses it out of its bulge, which takes the gauge pressure at least.
+const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.3, area: 0.6 };
 /// Points of the net force's quadrature, and of the surface in pictures.
 const FINE: (usize, usize) = (20_000, 4000);
 /// Spacing of the points where the answer is wanted.
@@ -87,15 +96,29 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     observed.require_of("membrane", [-a, -b, 0.0], [a, b, b])?;
 
     let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
+    let level = given.of("p")?.filter(|_| pressure.is_some());
+    let patches = level.map(|level| Patches { level, ..PATCHES });
+    let cells = if patches.is_some() { CELLS_FOR_PATCHES } else { LOCAL.cells };
+    let local = (!request.network).then_some(Local { cells, patches, ..LOCAL });
     for group in schema.groups {
-        let points = match group.name {
-            "rim" => ellipse.boundary(POINTS.2),
-            "surface" => ellipse.interior(POINTS.1, Sampling::Sobol, 0),
-            _ => ellipse.interior(POINTS.0, Sampling::Sobol, 0),
+        let points = match (group.name, &local) {
+            ("rim", None) => ellipse.boundary(POINTS.2),
+            ("surface", None) => ellipse.interior(POINTS.1, Sampling::Sobol, 0),
+            (_, None) => ellipse.interior(POINTS.0, Sampling::Sobol, 0),
+            ("rim", Some(_)) => ellipse.boundary(LOCAL_POINTS.2),
+            ("surface", Some(_)) => ellipse.interior(LOCAL_POINTS.1, Sampling::Grid, 0),
+            (_, Some(_)) => ellipse.interior(LOCAL_POINTS.0, Sampling::Grid, 0),
         };
-        problem.set_group(group.name, points.coords.into(), Vec::new())?;
+        // Equations are tested by weighted means; conditions on the rim and places of the surface are single points.
+        let weights = points.weights.filter(|_| local.is_some() && group.name == "interior").unwrap_or_default();
+        let points = nisp::Points { coordinates: points.coords, weights, ..nisp::Points::default() };
+        problem.set_group(group.name, points, Vec::new())?;
     }
     bind_cloud(&mut problem, &observed.cloud)?;
+    if local.is_some() {
+        // The camera looks up, and its depth is what is noisy.
+        problem.set_view("surface", "cloud", [0.0, 0.0, 1.0])?;
+    }
 
     let headers = Headers { chosen: &request.columns, also: ALSO };
     let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
@@ -120,6 +143,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         source: observed.source.display().to_string(),
         warnings: observed.cloud.warnings,
         rival: None,
+        local,
         contact: Some(contact),
     })
 }

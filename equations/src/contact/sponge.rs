@@ -1,5 +1,6 @@
 //! Binds the sponge's scenes to a cloud of its sides and the wrench that it carries.
 
+use nisp::local::{Local, Patches};
 use nisp_data::domain::{Domain, Points, Sampling};
 use serde::Deserialize;
 
@@ -59,6 +60,12 @@ const POSITIVE: &Positive = &[
 
 /// Points inside, on the whole boundary for the equations and for the surface that the cloud is compared with.
 const POINTS: (usize, usize, usize) = (1500, 2400, 4800);
+/// The same for local functions: some three points along every cell.
+const LOCAL_POINTS: (usize, usize, usize) = (13_824, 6144, 12_696);
+/// Local functions: cells of nearly six millimetres on the paper's sponge.
+const LOCAL: Local = Local { cells: 8, finer: 2, source_dimensions: 2, patches: Some(PATCHES) };
+/// A patch carries some hundreds of pascals.
+const PATCHES: Patches = Patches { level: 500.0, edges: 0.2, area: 1.0 };
 /// Nodes along an edge where the answer is wanted: a millimetre apart on the paper's sponge.
 const NODES: usize = 47;
 /// Nodes along an edge of the surface in pictures.
@@ -105,13 +112,18 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let presses = direction(wrench[0]);
 
     let cube = Domain::cuboid(&low, &high)?;
+    let local = (!request.network).then_some(LOCAL);
+    let counts = if local.is_some() { LOCAL_POINTS } else { POINTS };
     for group in schema.groups {
-        let count = if group.name == "surface" { POINTS.2 } else { POINTS.1 };
-        let points = match group.name {
-            "volume" => cube.interior(POINTS.0, Sampling::Sobol, 0),
-            "bottom" => cube.boundary(count).select(|_, normal| normal[2] < -0.5),
-            "top" => cube.boundary(count).select(|_, normal| normal[2] > 0.5),
-            _ => cube.boundary(count).select(|_, normal| normal[2].abs() < 0.5),
+        let count = if group.name == "surface" { counts.2 } else { counts.1 };
+        let points = match (group.name, &local) {
+            ("volume", None) => cube.interior(counts.0, Sampling::Sobol, 0),
+            ("volume", Some(_)) => cube.interior(counts.0, Sampling::Grid, 0),
+            (name, _) => match name {
+                "bottom" => cube.boundary(count).select(|_, normal| normal[2] < -0.5),
+                "top" => cube.boundary(count).select(|_, normal| normal[2] > 0.5),
+                _ => cube.boundary(count).select(|_, normal| normal[2].abs() < 0.5),
+            },
         };
         let columns = group.columns.iter().map(|column| normals(&points, column.name, presses)).collect();
         let weights = points.weights.unwrap_or_default();
@@ -149,6 +161,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         source: observed.source.display().to_string(),
         warnings: observed.cloud.warnings,
         rival: None,
+        local,
         contact: Some(contact),
     })
 }

@@ -31,6 +31,7 @@ impl Trial {
         let settings = Settings {
             precision: self.precision,
             optimizer: self.optimizer,
+            local: None,
             architecture: Architecture { inputs, ..Architecture::modified(self.width, 2) },
             seed: self.seed,
             budget: Some(Duration::from_secs_f64(budget)),

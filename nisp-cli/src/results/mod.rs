@@ -121,7 +121,7 @@ fn title(solution: &Solution) -> String {
 fn subtitle(prepared: &Prepared, solution: &Solution) -> String {
     let scene = solution.scene();
     let file = prepared.source.rsplit(['/', '\\']).next().unwrap_or(&prepared.source);
-    let method = solution.optimizer.name();
+    let method = solution.method();
     format!("{}, scene {}; {file}; {method}, {:.1} s", scene.module, scene.name, solution.wall_s)
 }
 

@@ -9,7 +9,7 @@ mod solution;
 mod undetermined;
 pub(crate) mod weigh;
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
@@ -19,6 +19,7 @@ pub use settings::{Optimizer, Settings, Width};
 pub use solution::{Estimate, LearnedValue, Solution, TermReport};
 
 use crate::engine::Engine;
+use crate::local::{self, Local, LocalError};
 use crate::network::initialise;
 use crate::problem::{BindError, Bound, Problem};
 use crate::solve::adam::{Adam, AdamSettings};
@@ -65,6 +66,9 @@ pub enum RecoverError {
         /// Residuals.
         rows: usize,
     },
+    /// Local functions that cannot do it.
+    #[error(transparent)]
+    Local(#[from] LocalError),
     /// Threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -99,10 +103,26 @@ pub fn recover(
     let bound = problem.bound(settings.architecture.inputs)?;
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
     let pool = pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
-    pool.install(|| match settings.precision {
-        Width::F64 => solve_double(bound, settings, start, monitor),
-        Width::F32 => solve_single(bound, settings, start, monitor),
+    pool.install(|| match (&settings.local, settings.precision) {
+        (Some(local), _) => solve_local(bound, local, settings, start, monitor),
+        (None, Width::F64) => solve_double(bound, settings, start, monitor),
+        (None, Width::F32) => solve_single(bound, settings, start, monitor),
     })
+}
+
+fn solve_local(
+    bound: Bound,
+    local: &Local,
+    settings: &Settings,
+    start: Instant,
+    monitor: &mut (dyn FnMut(Report) -> Flow + Send),
+) -> Result<Solution, RecoverError> {
+    let limits = limits(settings, start);
+    let budget = limits.budget.unwrap_or(Duration::MAX);
+    let found = local::solve(&bound, local, budget, limits.iterations, &mut |iteration, elapsed_s, loss| {
+        monitor(Report { iteration, elapsed_s, loss })
+    })?;
+    Ok(Solution::of_local(bound, found, settings, start))
 }
 
 fn limits(settings: &Settings, start: Instant) -> Limits {

@@ -3,6 +3,7 @@
 use std::time::Duration;
 
 use super::noise::Noise;
+use crate::local::Local;
 use crate::network::{Architecture, Inputs};
 
 /// How a problem is solved.
@@ -14,6 +15,8 @@ pub struct Settings {
     pub optimizer: Optimizer,
     /// Shape of the network.
     pub architecture: Architecture,
+    /// Local functions instead of a network.
+    pub local: Option<Local>,
     /// Seed of the initial weights.
     pub seed: u64,
     /// Wall time, from the call to the answer.
@@ -30,6 +33,7 @@ impl Default for Settings {
             precision: Width::F64,
             optimizer: Optimizer::Auto,
             architecture: Architecture { inputs: Inputs::Automatic, ..Architecture::modified(16, 2) },
+            local: None,
             seed: 0,
             budget: Some(Duration::from_secs(10)),
             iterations: None,

@@ -3,9 +3,11 @@
 use std::time::Instant;
 
 use super::{Optimizer, Settings};
-use crate::engine::Engine;
+use crate::engine::{Engine, Learned};
+use crate::local::LocalSolution;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
+use crate::simd::Isa;
 use crate::solve::curvature::Curvature;
 use crate::solve::driver::{Outcome, Status, Warning};
 use crate::solve::objective::LeastSquares;
@@ -29,6 +31,17 @@ pub struct Solution {
     /// How it was run.
     pub settings: Settings,
     bound: Bound,
+    carrier: Carrier,
+}
+
+/// What carries the heads.
+enum Carrier {
+    Network(Box<Network>),
+    Local(Box<LocalSolution>),
+}
+
+/// A trained network.
+struct Network {
     engine: Engine<f64>,
     theta: Vec<f64>,
     prior: Option<WeightPrior>,
@@ -100,9 +113,21 @@ impl Solution {
             optimizer,
             settings: settings.clone(),
             bound,
-            engine,
-            theta: outcome.theta,
-            prior,
+            carrier: Carrier::Network(Box::new(Network { engine, theta: outcome.theta, prior })),
+        }
+    }
+
+    pub(super) fn of_local(bound: Bound, found: LocalSolution, settings: &Settings, start: Instant) -> Self {
+        Self {
+            status: found.status,
+            loss: found.loss,
+            iterations: found.iterations,
+            wall_s: start.elapsed().as_secs_f64(),
+            warnings: Vec::new(),
+            optimizer: Optimizer::Marquardt,
+            settings: settings.clone(),
+            bound,
+            carrier: Carrier::Local(Box::new(found)),
         }
     }
 
@@ -111,17 +136,28 @@ impl Solution {
         self.bound.problem.scene().schema
     }
 
-    /// The network's parameters.
-    pub fn parameters(&self) -> &[f64] {
-        &self.theta
+    /// Name of the method that was used.
+    pub fn method(&self) -> &'static str {
+        match &self.carrier {
+            Carrier::Network(_) => self.optimizer.name(),
+            Carrier::Local(_) => "gauss-newton",
+        }
     }
 
     /// Every head at points given in declared units, point by point, without error bars.
     pub fn evaluate(&self, points: &[f64]) -> Vec<Estimate> {
-        let mut readout: Engine<f64> = self.bound.readout(self.settings.architecture, points);
-        let rows = readout.raw_rows(0, &self.theta);
-        let count = rows.len() / self.scene().heads.len().max(1);
-        self.estimates(|head| (rows[head * count..][..count].to_vec(), None))
+        match &self.carrier {
+            Carrier::Network(network) => {
+                let mut readout: Engine<f64> = self.bound.readout(self.settings.architecture, points);
+                let rows = readout.raw_rows(0, &network.theta);
+                let count = rows.len() / self.scene().heads.len().max(1);
+                self.estimates(|head| (rows[head * count..][..count].to_vec(), None))
+            }
+            Carrier::Local(local) => {
+                let points = self.bound.inward(points);
+                self.estimates(|head| (local.evaluate(head, &points), None))
+            }
+        }
     }
 
     /// As [`Solution::evaluate`], with standard deviations from the Laplace approximation of the posterior. Methods
@@ -150,30 +186,35 @@ impl Solution {
 
     /// Values of all heads at points, and their posterior, in the engine's units.
     fn posterior(&mut self, points: &[f64]) -> Option<(Vec<f64>, Posterior)> {
-        let prior = self.prior.as_ref()?;
-        let curvature = Curvature::at(&mut self.engine, &self.theta, prior).ok()?;
+        let Carrier::Network(network) = &mut self.carrier else { return None };
+        let Network { engine, theta, prior } = &mut **network;
+        let curvature = Curvature::at(engine, theta, prior.as_ref()?).ok()?;
         let mut readout: Engine<f64> = self.bound.readout(self.settings.architecture, points);
         let rows = readout.row_count();
-        let (mut values, mut derivatives) = (vec![0.0; rows], vec![0.0; rows * self.theta.len()]);
-        readout.jacobian(&self.theta, &mut values, &mut derivatives).ok()?;
+        let (mut values, mut derivatives) = (vec![0.0; rows], vec![0.0; rows * theta.len()]);
+        readout.jacobian(theta, &mut values, &mut derivatives).ok()?;
         Some((values, posterior(&curvature, &derivatives, 3)))
     }
 
     /// Learned scalars.
     pub fn learned(&mut self) -> Vec<LearnedValue> {
-        let curvature = self.prior.as_ref().and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
-        let first = self.engine.layout().learned.start;
-        let values = self.engine.learned_values(&self.theta);
-        let learned = self.engine.learned.iter().zip(values).enumerate();
+        let found: Vec<(f64, Option<f64>)> = match &mut self.carrier {
+            Carrier::Network(network) => network.learned(),
+            Carrier::Local(local) => {
+                let values = self.bound.learned.iter().zip(&local.learned).enumerate();
+                let of = |(at, (learned, &parameter)): (usize, (&Learned, &f64))| {
+                    let (value, slope) = learned.map.at(parameter);
+                    (value, local.learned_deviation(at).map(|deviation| deviation * slope.abs()))
+                };
+                values.map(of).collect()
+            }
+        };
+        let learned = self.bound.learned.iter().zip(found);
         learned
-            .map(|(i, (learned, (value, slope)))| {
+            .map(|(learned, (value, deviation))| {
                 let scalar = &self.scene().scalars[learned.slot];
                 let outward = self.bound.system.outward(&scalar.unit);
-                let deviation = curvature.as_ref().map(|curvature| {
-                    let mut direction = vec![0.0; self.theta.len()];
-                    direction[first + i] = slope;
-                    posterior(curvature, &direction, 1).deviations[0] * outward
-                });
+                let deviation = deviation.map(|deviation| deviation * outward);
                 LearnedValue { name: scalar.name, unit: scalar.unit, value: value * outward, deviation }
             })
             .collect()
@@ -182,9 +223,11 @@ impl Solution {
     /// How well every term is met.
     pub fn terms(&mut self) -> Vec<TermReport> {
         let mut reports = Vec::new();
-        for group in 0..self.engine.groups.len() {
-            let rows = self.engine.raw_rows(group, &self.theta);
-            let bound = &self.engine.groups[group];
+        let Carrier::Network(network) = &mut self.carrier else { return reports };
+        let Network { engine, theta, prior } = &mut **network;
+        for group in 0..engine.groups.len() {
+            let rows = engine.raw_rows(group, theta);
+            let bound = &engine.groups[group];
             for (at, term) in bound.terms.iter().enumerate() {
                 let outward = self.bound.system.outward(&term.schema.unit);
                 let range = term.schema.first * bound.points..(term.schema.first + term.schema.rows) * bound.points;
@@ -197,7 +240,7 @@ impl Solution {
                     unit: term.schema.unit,
                     rms: rms * outward,
                     size: self.bound.sizes[group][at] * outward,
-                    noise: (observation && self.prior.is_some()).then_some(term.size * outward),
+                    noise: (observation && prior.is_some()).then_some(term.size * outward),
                     observation,
                 });
             }
@@ -207,11 +250,29 @@ impl Solution {
 
     /// Channels, jets and points by group: for tables.
     pub fn groups(&self) -> impl Iterator<Item = (&'static schema::Group, usize)> {
-        self.engine.groups.iter().map(|group| (group.schema, group.points))
+        let inputs = self.scene().coordinates.len();
+        self.scene().groups.iter().zip(&self.bound.coordinates).map(move |(g, points)| (g, points.len() / inputs))
     }
 
     /// Name of the instruction set in use.
     pub fn isa(&self) -> &'static str {
-        self.engine.isa().name()
+        Isa::detect().name()
+    }
+}
+
+impl Network {
+    /// Values of the learned scalars, in the engine's units, and their standard deviations where there is a prior.
+    fn learned(&mut self) -> Vec<(f64, Option<f64>)> {
+        let prior = self.prior.as_ref();
+        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
+        let first = self.engine.layout().learned.start;
+        let values = self.engine.learned_values(&self.theta).into_iter().enumerate();
+        let deviation = |i: usize, slope: f64| {
+            let curvature = curvature.as_ref()?;
+            let mut direction = vec![0.0; self.theta.len()];
+            direction[first + i] = slope;
+            Some(posterior(curvature, &direction, 1).deviations[0])
+        };
+        values.map(|(i, (value, slope))| (value, deviation(i, slope))).collect()
     }
 }

@@ -1,0 +1,371 @@
+//! The rows of a group: misfits of its terms, and their derivatives by the coefficients around each point.
+//!
+//! Where points come with weights, they stand for a piece of space, and equations are tested: a row is the weighted mean
+//! of the residual around a node of the lattice, with the node's hat function as weight (Petrov-Galerkin). A kink of the
+//! solution inside a cell then costs nothing, while a residual asked to vanish at every point would smooth it away.
+//! Points without weights give a row each.
+
+use rayon::prelude::*;
+
+use super::block::Block;
+use super::heads::Heads;
+use super::lattice::{Exponents, Lattice, MOST_COORDINATES, NONE, Place, Span};
+use crate::kernel::GroupKernel;
+use crate::residual::Points;
+use crate::schema::{self, TermKind};
+use crate::simd::Isa;
+
+/// Padding of the points, as everywhere in the engine.
+const LANES: usize = 16;
+
+/// Tests whose hats see less than this share of the fullest one's weight are left out.
+const LEAST_MASS: f64 = 0.05;
+
+/// A group at its points.
+pub(super) struct Group {
+    pub(super) schema: &'static schema::Group,
+    kernel: Box<dyn GroupKernel<f64>>,
+    pub(super) sites: Sites,
+    operators: Vec<Vec<(Exponents, f64)>>,
+    /// By row: what it is divided by.
+    pub(super) sigma: Vec<f64>,
+    /// Weights of the points; empty if each has rows of its own.
+    pub(super) weights: Vec<f64>,
+    nodes: Vec<Node>,
+    /// Heads that the group reads.
+    heads: Vec<usize>,
+}
+
+/// Points as programs read them, and their places.
+pub(super) struct Sites {
+    pub(super) count: usize,
+    stride: usize,
+    coordinates: Vec<f64>,
+    columns: Vec<f64>,
+    /// `[head][point]`
+    places: Vec<Vec<Place>>,
+}
+
+/// A test: the points around a node with their shares, which add up to one.
+struct Node {
+    points: Vec<(u32, f64)>,
+    /// First of the cells around it.
+    cell: [usize; MOST_COORDINATES],
+    weight: f64,
+}
+
+/// Values of all rows at all points, and their derivatives.
+pub(super) struct Evaluated {
+    stride: usize,
+    /// `[row][point]`
+    pub(super) rows: Vec<f64>,
+    /// By row: `[jet or learned scalar][point]`.
+    bars: Vec<Vec<f64>>,
+}
+
+impl Sites {
+    /// Points given flat, point by point, with columns `[column][point]`.
+    pub(super) fn new(heads: &Heads, flat: &[f64], columns: &[Vec<f64>]) -> Self {
+        let inputs = heads.lattices[0].dimensions();
+        let count = flat.len() / inputs;
+        let stride = count.next_multiple_of(LANES);
+        let spread = |value: &dyn Fn(usize) -> f64| (0..stride).map(|p| value(p.min(count - 1))).collect::<Vec<_>>();
+        Self {
+            count,
+            stride,
+            coordinates: (0..inputs).flat_map(|i| spread(&|p| flat[p * inputs + i])).collect(),
+            columns: columns.iter().flat_map(|column| spread(&|p| column[p])).collect(),
+            places: heads.lattices.iter().map(|l| flat.chunks_exact(inputs).map(|x| l.place(x)).collect()).collect(),
+        }
+    }
+}
+
+impl Group {
+    /// A group whose points' weights are given, or none.
+    pub(super) fn new(
+        schema: &'static schema::Group,
+        kernel: Box<dyn GroupKernel<f64>>,
+        sites: Sites,
+        weights: Vec<f64>,
+        base: &Lattice,
+        flat: &[f64],
+    ) -> Self {
+        let operator = |jet: &schema::Jet| {
+            let term = |(index, coefficient): &(&[u8], f64)| {
+                let mut exponents = Exponents::default();
+                exponents[..index.len()].copy_from_slice(index);
+                (exponents, *coefficient)
+            };
+            jet.operator.iter().map(term).collect()
+        };
+        let mut heads: Vec<usize> = schema.jets.iter().map(|jet| jet.head).collect();
+        heads.sort_unstable();
+        heads.dedup();
+        let nodes = if weights.is_empty() { Vec::new() } else { nodes(base, flat, &weights) };
+        Self {
+            schema,
+            kernel,
+            operators: schema.jets.iter().map(operator).collect(),
+            sigma: vec![1.0; schema.rows],
+            sites,
+            weights,
+            nodes,
+            heads,
+        }
+    }
+
+    /// Rows of the group at other points, and their derivatives if `slopes`.
+    pub(super) fn evaluate_at(
+        &self,
+        sites: &Sites,
+        heads: &Heads,
+        theta: &[f64],
+        scalars: &[f64],
+        slopes: bool,
+    ) -> Evaluated {
+        let stride = sites.stride;
+        let count = self.schema.jets.len();
+        let mut jets = vec![0.0; count * stride];
+        // Bounded heads: the slope of the jet by the head, and what the program does not see of it.
+        let mut bounded: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
+        jets.par_chunks_mut(stride).zip(&mut bounded).enumerate().for_each(|(at, (jets, bounded))| {
+            let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
+            let is_value = jet.degree.iter().all(|&n| n == 0);
+            let mut scratch = Vec::new();
+            for p in 0..sites.count {
+                let value = heads.derivative(jet.head, &sites.places[jet.head][p], operator, theta, &mut scratch);
+                jets[p] = if heads.bound[jet.head].is_some() && is_value {
+                    let (raw, slope, rest) = heads.raw(jet.head, value);
+                    bounded.push((slope, rest));
+                    raw
+                } else if is_value {
+                    heads.offset[jet.head] + value
+                } else {
+                    value
+                };
+            }
+            let last = jets[sites.count - 1];
+            jets[sites.count..].fill(last);
+        });
+        let points = Points {
+            count: sites.count,
+            stride,
+            jets: &jets,
+            coordinates: &sites.coordinates,
+            columns: &sites.columns,
+            scalars,
+            seeds: &[],
+        };
+        let mut rows = vec![0.0; self.schema.rows * stride];
+        self.kernel.residual(Isa::detect(), points, &mut rows);
+        let straight = bounded.iter().all(|b| b.iter().all(|&(_, rest)| rest == 0.0));
+        if !slopes && straight {
+            return Evaluated { stride, rows, bars: Vec::new() };
+        }
+        let mut bars: Vec<Vec<f64>> = (0..self.schema.rows)
+            .into_par_iter()
+            .map(|row| {
+                let mut seeds = vec![0.0; self.schema.rows * stride];
+                seeds[row * stride..][..stride].fill(1.0);
+                let mut bars = vec![0.0; (count + scalars.len()) * stride];
+                self.kernel.adjoint(Isa::detect(), Points { seeds: &seeds, ..points }, &mut bars);
+                bars
+            })
+            .collect();
+        for (jet, bounded) in bounded.iter().enumerate() {
+            for (row, bars) in bars.iter_mut().enumerate() {
+                for (p, &(slope, rest)) in bounded.iter().enumerate() {
+                    let bar = &mut bars[jet * stride + p];
+                    *bar *= slope;
+                    rows[row * stride + p] += *bar * rest;
+                }
+            }
+        }
+        Evaluated { stride, rows, bars }
+    }
+
+    fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
+        self.evaluate_at(&self.sites, heads, theta, scalars, slopes)
+    }
+
+    /// Rows whose terms are tested or asked for at every point.
+    fn own_rows(&self) -> Vec<usize> {
+        let terms = self.schema.terms.iter();
+        let own = terms.filter(|term| matches!(term.kind, TermKind::Residual | TermKind::Observation));
+        own.flat_map(|term| term.first..term.first + term.rows).collect()
+    }
+
+    /// Rows over their tolerances and their derivatives.
+    pub(super) fn blocks(&self, heads: &Heads, theta: &[f64], scalars: &[f64], learned: &[f64]) -> Vec<Block> {
+        let rows = self.own_rows();
+        if rows.is_empty() {
+            return Vec::new();
+        }
+        let evaluated = self.evaluate(heads, theta, scalars, true);
+        if self.weights.is_empty() {
+            return (0..self.sites.count)
+                .into_par_iter()
+                .map(|p| {
+                    let mut block = self.empty(heads, rows.len(), learned, |lattice| {
+                        let place = &self.sites.places[lattice][p];
+                        heads.lattices[lattice].cell_span(place)
+                    });
+                    self.add(&mut block, heads, &evaluated, &rows, p, 1.0);
+                    block.divide(rows.iter().map(|&row| self.sigma[row]));
+                    block
+                })
+                .collect();
+        }
+        self.nodes
+            .par_iter()
+            .map(|node| {
+                let mut block = self.empty(heads, rows.len(), learned, |head| self.span(heads, node, head));
+                for &(p, share) in &node.points {
+                    self.add(&mut block, heads, &evaluated, &rows, p as usize, share);
+                }
+                block.divide(rows.iter().map(|&row| self.sigma[row] / node.weight));
+                block
+            })
+            .collect()
+    }
+
+    /// Functions of a head around a test.
+    fn span(&self, heads: &Heads, node: &Node, head: usize) -> Span {
+        let lattice = &heads.lattices[head];
+        let times = lattice.cells[0] / heads.lattices.iter().map(|l| l.cells[0]).min().unwrap_or(1);
+        Span { first: node.cell.map(|cell| cell * times), count: 2 * times + lattice.degree }
+    }
+
+    /// One row at a point, of nothing yet.
+    pub(super) fn at_point(&self, heads: &Heads, sites: &Sites, p: usize, learned: &[f64]) -> Block {
+        self.empty(heads, 1, learned, |head| heads.lattices[head].cell_span(&sites.places[head][p]))
+    }
+
+    fn empty(&self, heads: &Heads, rows: usize, learned: &[f64], span: impl Fn(usize) -> Span) -> Block {
+        let mut block = Block::new(rows, learned);
+        for &head in &self.heads {
+            let span = span(head);
+            let first = heads.first[head] as u32;
+            let numbers = heads.lattices[head].kept(span);
+            block.add_head(head, span, numbers.map(|n| if n == NONE { NONE } else { first + n }));
+        }
+        block
+    }
+
+    /// Adds a point's rows and their derivatives, times its share.
+    fn add(&self, block: &mut Block, heads: &Heads, evaluated: &Evaluated, rows: &[usize], p: usize, share: f64) {
+        for (at, &row) in rows.iter().enumerate() {
+            block.misfits[at] += share * evaluated.rows[row * evaluated.stride + p];
+        }
+        self.add_slopes(block, heads, &self.sites, p, |at, bar| share * evaluated.bar(rows[at], bar, p));
+    }
+
+    /// Adds the derivatives of rows, of which `seed(row, jet or learned scalar)` gives the derivative by a jet.
+    pub(super) fn add_slopes(
+        &self,
+        block: &mut Block,
+        heads: &Heads,
+        sites: &Sites,
+        p: usize,
+        seed: impl Fn(usize, usize) -> f64,
+    ) {
+        let mut values = Vec::new();
+        for (number, (jet, operator)) in self.schema.jets.iter().zip(&self.operators).enumerate() {
+            let lattice = &heads.lattices[jet.head];
+            let place = &sites.places[jet.head][p];
+            values.resize(lattice.per_cell(), 0.0);
+            for (exponents, coefficient) in operator {
+                lattice.values(place, exponents, &mut values);
+                let factor = coefficient * heads.scale[jet.head];
+                block.add_cell(jet.head, lattice, place, &values, |row| factor * seed(row, number));
+            }
+        }
+        block.add_learned(|row, learned| seed(row, self.schema.jets.len() + learned));
+    }
+
+    /// The weighted sums of integral terms over the points, and their derivatives by every coefficient.
+    pub(super) fn integrals(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Integral> {
+        let rows: Vec<usize> = self
+            .schema
+            .terms
+            .iter()
+            .filter(|term| term.kind == TermKind::Integral)
+            .flat_map(|term| term.first..term.first + term.rows)
+            .collect();
+        if rows.is_empty() {
+            return Vec::new();
+        }
+        let mut targets = vec![0.0; self.schema.rows];
+        self.kernel.target(scalars, &mut targets);
+        let evaluated = self.evaluate(heads, theta, scalars, true);
+        let weight = |p: usize| self.weights.get(p).copied().unwrap_or(1.0);
+        rows.iter()
+            .map(|&row| {
+                let mut sum =
+                    Integral { misfit: -targets[row], slopes: vec![0.0; heads.len()], sigma: self.sigma[row] };
+                for p in 0..self.sites.count {
+                    sum.misfit += weight(p) * evaluated.rows[row * evaluated.stride + p];
+                    let mut block =
+                        self.empty(heads, 1, &[], |head| heads.lattices[head].cell_span(&self.sites.places[head][p]));
+                    self.add(&mut block, heads, &evaluated, &[row], p, weight(p));
+                    for (&dof, slope) in block.dofs.iter().zip(&block.slopes) {
+                        if dof != NONE {
+                            sum.slopes[dof as usize] += slope;
+                        }
+                    }
+                }
+                sum
+            })
+            .collect()
+    }
+}
+
+/// An integral's misfit, and its derivative by every coefficient.
+pub(super) struct Integral {
+    pub(super) misfit: f64,
+    pub(super) slopes: Vec<f64>,
+    pub(super) sigma: f64,
+}
+
+impl Evaluated {
+    /// Value of a row at a point.
+    pub(super) fn row(&self, row: usize, p: usize) -> f64 {
+        self.rows[row * self.stride + p]
+    }
+
+    /// Derivative of a row at a point by a jet or learned scalar.
+    pub(super) fn bar(&self, row: usize, bar: usize, p: usize) -> f64 {
+        self.bars[row][bar * self.stride + p]
+    }
+}
+
+/// The tests of a group: the nodes of the base lattice, each with the points of the cells around it.
+fn nodes(base: &Lattice, flat: &[f64], weights: &[f64]) -> Vec<Node> {
+    let hats = base.refined(1, 1);
+    let mut found: std::collections::BTreeMap<usize, Node> = std::collections::BTreeMap::new();
+    let mut values = vec![0.0; hats.per_cell()];
+    for (p, point) in flat.chunks_exact(hats.dimensions()).enumerate() {
+        let place = hats.place(point);
+        hats.values(&place, &Exponents::default(), &mut values);
+        let span = hats.cell_span(&place);
+        for (corner, (number, value)) in hats.numbers(span).zip(&values).enumerate() {
+            let node = found.entry(number).or_insert_with(|| {
+                let mut cell = [0; MOST_COORDINATES];
+                for (axis, cell) in cell.iter_mut().enumerate().take(hats.dimensions()) {
+                    let index = place.cell[axis] + (corner >> axis & 1);
+                    *cell = index.saturating_sub(1).min(hats.cells[axis].saturating_sub(2));
+                }
+                Node { points: Vec::new(), cell, weight: 0.0 }
+            });
+            node.points.push((p as u32, weights[p] * value));
+            node.weight += weights[p] * value;
+        }
+    }
+    let most = found.values().map(|node| node.weight).fold(0.0, f64::max);
+    let mut nodes: Vec<Node> = found.into_values().filter(|node| node.weight > LEAST_MASS * most).collect();
+    for node in &mut nodes {
+        node.points.iter_mut().for_each(|(_, share)| *share /= node.weight);
+        node.weight = (node.weight / most).sqrt();
+    }
+    nodes
+}

@@ -1,0 +1,129 @@
+//! All heads of a scene on their lattices, and the vector of their coefficients.
+
+use super::block::Block;
+use super::lattice::{Exponents, Lattice, MOST_COORDINATES, NONE, Place};
+use crate::engine::Scaling;
+use crate::functions::{sigmoid, softplus};
+use crate::problem::Bound;
+use crate::schema;
+
+/// Heads as functions of one vector of coefficients, head after head, each `offset + scale * sum(coefficient * spline)`.
+#[derive(Clone, Debug)]
+pub(super) struct Heads {
+    pub(super) lattices: Vec<Lattice>,
+    /// First coefficient of every head, and the end of the last.
+    pub(super) first: Vec<usize>,
+    pub(super) offset: Vec<f64>,
+    pub(super) scale: Vec<f64>,
+    /// One-sided bounds, in the engine's units: +1 for a lower, -1 for an upper one, and the bound.
+    pub(super) bound: Vec<Option<(f64, f64)>>,
+}
+
+/// Of a bounded head, values closer to the bound than this share of its scale are read as linear: the transformation
+/// that keeps a network within the bound has no inverse at the bound itself.
+const CLOSEST: f64 = 1e-6;
+
+impl Heads {
+    pub(super) fn new(bound: &Bound, lattices: Vec<Lattice>) -> Self {
+        let schema = bound.problem.scene().schema;
+        let Scaling { offset, .. } = &bound.scaling;
+        let mut first = vec![0];
+        for lattice in &lattices {
+            first.push(first[first.len() - 1] + lattice.len());
+        }
+        let limits = schema.heads.iter().map(|head| {
+            let size = bound.system.size(&head.unit);
+            match (head.lower, head.upper) {
+                (Some(lower), None) => Some((1.0, lower / size)),
+                (None, Some(upper)) => Some((-1.0, upper / size)),
+                _ => None,
+            }
+        });
+        let limits: Vec<_> = limits.collect();
+        let scale = (0..schema.heads.len()).map(|head| head_scale(bound, head)).collect();
+        let offset = offset.iter().zip(&limits).map(|(&o, limit)| limit.map_or(o, |(_, bound)| bound)).collect();
+        Self { lattices, first, offset, scale, bound: limits }
+    }
+
+    /// Number of coefficients.
+    pub(super) fn len(&self) -> usize {
+        self.first[self.first.len() - 1]
+    }
+
+    /// Sum of coefficients times a derivative of the splines at a place, times the scale; without the offset.
+    pub(super) fn derivative(
+        &self,
+        head: usize,
+        place: &Place,
+        operator: &[(Exponents, f64)],
+        theta: &[f64],
+        scratch: &mut Vec<f64>,
+    ) -> f64 {
+        let lattice = &self.lattices[head];
+        scratch.resize(lattice.per_cell(), 0.0);
+        let mut sum = 0.0;
+        for (exponents, coefficient) in operator {
+            lattice.values(place, exponents, scratch);
+            let numbers = lattice.kept(lattice.cell_span(place));
+            let parts = numbers.zip(scratch.iter()).map(|(number, value)| match number {
+                super::lattice::NONE => 0.0,
+                number => theta[self.first[head] + number as usize] * value,
+            });
+            sum += coefficient * parts.sum::<f64>();
+        }
+        sum * self.scale[head]
+    }
+
+    /// A head's row at a point whose misfit is what `theta` would have to be changed by for this head to equal another's.
+    pub(super) fn difference(
+        &self,
+        head: usize,
+        point: &[f64],
+        other: &Heads,
+        theta: &[f64],
+        learned: &[f64],
+    ) -> Block {
+        let lattice = &self.lattices[head];
+        let place = lattice.place(point);
+        let mut values = vec![0.0; lattice.per_cell()];
+        lattice.values(&place, &Exponents::default(), &mut values);
+        let mut block = Block::new(1, learned);
+        let first = self.first[head] as u32;
+        let span = lattice.cell_span(&place);
+        block.add_head(head, span, lattice.kept(span).map(|n| if n == NONE { NONE } else { first + n }));
+        block.add_cell(head, lattice, &place, &values, |_| self.scale[head]);
+        let away = other.lattices[head].place(point);
+        block.misfits[0] = -other.derivative(head, &away, &[(Exponents::default(), 1.0)], theta, &mut Vec::new());
+        block
+    }
+
+    /// Value of a head, within its bound.
+    pub(super) fn value(&self, head: usize, point: &[f64], theta: &[f64], scratch: &mut Vec<f64>) -> f64 {
+        let place = self.lattices[head].place(point);
+        let value = self.derivative(head, &place, &[([0; MOST_COORDINATES], 1.0)], theta, scratch);
+        match self.bound[head] {
+            Some((sign, bound)) => bound + sign * (sign * value).max(0.0),
+            None => self.offset[head] + value,
+        }
+    }
+
+    /// What a program reads of a bounded head that is `away` from its bound, its derivative by `away`, and what is left
+    /// over because the transformation has no inverse there.
+    pub(super) fn raw(&self, head: usize, away: f64) -> (f64, f64, f64) {
+        let scale = self.scale[head];
+        let sign = self.bound[head].map_or(1.0, |(sign, _)| sign);
+        let distance = sign * away / scale;
+        let inside = distance.max(CLOSEST);
+        // softplus(raw) = inside
+        let raw = if inside > 30.0 { inside } else { inside.exp_m1().ln() };
+        debug_assert!((softplus(raw) - inside).abs() <= 1e-9 * inside.max(1.0));
+        (raw, sign / (scale * sigmoid(raw)), (distance - inside) * scale * sign)
+    }
+}
+
+/// Natural size of a head: what its transformation multiplies with, or the network's scale.
+fn head_scale(bound: &Bound, head: usize) -> f64 {
+    let schema = bound.problem.scene().schema;
+    let slot = schema.scalars.iter().position(|scalar| scalar.origin == schema::Origin::HeadScale(head));
+    slot.map_or(bound.scaling.scale[head], |slot| bound.scalars[slot])
+}

@@ -1,0 +1,205 @@
+//! A head as a sum of tensor-product B-splines on a regular lattice of cells.
+
+use super::bspline::on_cell;
+
+/// Most coordinates of a lattice.
+pub(super) const MOST_COORDINATES: usize = 4;
+
+/// An operator's term: how often to differentiate by each coordinate.
+pub(super) type Exponents = [u8; MOST_COORDINATES];
+
+/// A number that no function has.
+pub(super) const NONE: u32 = u32::MAX;
+
+/// Splines of one degree over a box that is cut into equal cells.
+#[derive(Clone, Debug)]
+pub(super) struct Lattice {
+    pub(super) degree: usize,
+    low: Vec<f64>,
+    spacing: Vec<f64>,
+    pub(super) cells: Vec<usize>,
+    /// By full number: the number among those that are kept.
+    kept: Vec<u32>,
+    /// By number among those kept: the full number.
+    full: Vec<usize>,
+}
+
+/// The cell of a point, and where in it the point is.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Place {
+    pub(super) cell: [usize; MOST_COORDINATES],
+    pub(super) within: [f64; MOST_COORDINATES],
+}
+
+/// A box of functions: the first along each coordinate, and how many.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span {
+    pub(super) first: [usize; MOST_COORDINATES],
+    pub(super) count: usize,
+}
+
+impl Lattice {
+    /// A lattice over the box from `low`, of `cells` cells of size `spacing` along each coordinate; all functions kept.
+    pub(super) fn new(degree: usize, low: Vec<f64>, spacing: Vec<f64>, cells: Vec<usize>) -> Self {
+        let all: usize = cells.iter().map(|n| n + degree).product();
+        Self { degree, low, spacing, cells, kept: (0..all as u32).collect(), full: (0..all).collect() }
+    }
+
+    /// The same box cut `times` as fine, with functions of another degree.
+    pub(super) fn refined(&self, degree: usize, times: usize) -> Self {
+        let spacing = self.spacing.iter().map(|h| h / times as f64).collect();
+        Self::new(degree, self.low.clone(), spacing, self.cells.iter().map(|n| n * times).collect())
+    }
+
+    /// Keeps the functions that the points see: those whose sum over them is at least `share` of the largest.
+    pub(super) fn keep(&mut self, points: impl Iterator<Item = Place>, share: f64) {
+        let mut seen = vec![0.0; self.full_len()];
+        let mut values = vec![0.0; self.per_cell()];
+        for place in points {
+            self.values(&place, &Exponents::default(), &mut values);
+            for (at, value) in self.numbers(self.cell_span(&place)).zip(&values) {
+                seen[at] += value;
+            }
+        }
+        let least = share * seen.iter().copied().fold(0.0, f64::max);
+        self.full = (0..seen.len()).filter(|&at| seen[at] > least).collect();
+        self.kept = vec![NONE; seen.len()];
+        for (number, &at) in self.full.iter().enumerate() {
+            self.kept[at] = number as u32;
+        }
+    }
+
+    pub(super) fn dimensions(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Functions that are kept.
+    pub(super) fn len(&self) -> usize {
+        self.full.len()
+    }
+
+    fn full_len(&self) -> usize {
+        self.cells.iter().map(|n| n + self.degree).product()
+    }
+
+    /// Functions that do not vanish on a cell.
+    pub(super) fn per_cell(&self) -> usize {
+        (self.degree + 1).pow(self.dimensions() as u32)
+    }
+
+    /// Size of a cell along a coordinate.
+    pub(super) fn spacing(&self, axis: usize) -> f64 {
+        self.spacing[axis]
+    }
+
+    /// Where a point is; points outside count to the nearest cell.
+    pub(super) fn place(&self, point: &[f64]) -> Place {
+        let mut place = Place::default();
+        for axis in 0..self.dimensions() {
+            let along = (point[axis] - self.low[axis]) / self.spacing[axis];
+            let cell = along.floor().clamp(0.0, (self.cells[axis] - 1) as f64);
+            place.cell[axis] = cell as usize;
+            place.within[axis] = along - cell;
+        }
+        place
+    }
+
+    /// The functions that do not vanish on a place's cell.
+    pub(super) fn cell_span(&self, place: &Place) -> Span {
+        Span { first: place.cell, count: self.degree + 1 }
+    }
+
+    /// Full numbers of a box's functions, the first coordinate fastest.
+    pub(super) fn numbers(&self, span: Span) -> impl Iterator<Item = usize> + '_ {
+        let dimensions = self.dimensions();
+        (0..span.count.pow(dimensions as u32)).map(move |mut at| {
+            let (mut number, mut stride) = (0, 1);
+            for axis in 0..dimensions {
+                number += (span.first[axis] + at % span.count) * stride;
+                at /= span.count;
+                stride *= self.cells[axis] + self.degree;
+            }
+            number
+        })
+    }
+
+    /// Numbers of a box's functions among those kept.
+    pub(super) fn kept(&self, span: Span) -> impl Iterator<Item = u32> + '_ {
+        self.numbers(span).map(|at| self.kept[at])
+    }
+
+    /// A derivative of the functions of a cell, in the order of [`Lattice::numbers`].
+    pub(super) fn values(&self, place: &Place, exponents: &Exponents, out: &mut [f64]) {
+        let count = self.degree + 1;
+        let mut line = [0.0; 16];
+        out[0] = 1.0;
+        let mut filled = 1;
+        for axis in 0..self.dimensions() {
+            let order = usize::from(exponents[axis]);
+            on_cell(self.degree, order, place.within[axis], &mut line);
+            let scale = self.spacing[axis].powi(-(order as i32));
+            for j in (0..count).rev() {
+                let factor = line[j] * scale;
+                for i in (0..filled).rev() {
+                    out[j * filled + i] = out[i] * factor;
+                }
+            }
+            filled *= count;
+        }
+    }
+
+    /// Pairs of kept neighbours along a coordinate: the number of a function, and that of the next.
+    pub(super) fn neighbours(&self, axis: usize) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let stride: usize = (0..axis).map(|a| self.cells[a] + self.degree).product();
+        let along = self.cells[axis] + self.degree;
+        self.full.iter().enumerate().filter_map(move |(number, &at)| {
+            let is_last = (at / stride) % along + 1 == along;
+            let next = if is_last { NONE } else { self.kept[at + stride] };
+            (next != NONE).then_some((number as u32, next))
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lattice(degree: usize) -> Lattice {
+        Lattice::new(degree, vec![-1.0, 2.0], vec![0.5, 0.25], vec![4, 6])
+    }
+
+    #[test]
+    fn functions_add_up_to_one_everywhere() {
+        let lattice = lattice(3);
+        let mut values = vec![0.0; lattice.per_cell()];
+        lattice.values(&lattice.place(&[0.3, 3.1]), &Exponents::default(), &mut values);
+        assert!((values.iter().sum::<f64>() - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
+    fn derivatives_are_those_of_the_function() {
+        let lattice = lattice(4);
+        let coefficient = |at: usize| ((at * 7919) % 101) as f64 / 101.0;
+        let at = |x: f64, y: f64, exponents: Exponents| {
+            let place = lattice.place(&[x, y]);
+            let mut values = vec![0.0; lattice.per_cell()];
+            lattice.values(&place, &exponents, &mut values);
+            let numbers = lattice.numbers(lattice.cell_span(&place));
+            numbers.zip(&values).map(|(at, value)| coefficient(at) * value).sum::<f64>()
+        };
+        let (x, y, h) = (0.21, 2.6, 1e-4);
+        let numeric = (at(x + h, y, [0, 1, 0, 0]) - at(x - h, y, [0, 1, 0, 0])) / (2.0 * h);
+        let exact = at(x, y, [1, 1, 0, 0]);
+        assert!((numeric - exact).abs() < 1e-6 * exact.abs().max(1.0), "{numeric} {exact}");
+    }
+
+    #[test]
+    fn functions_that_no_point_sees_are_dropped() {
+        let mut lattice = lattice(1);
+        let places: Vec<_> = [[-1.0, 2.0], [-0.8, 2.1]].iter().map(|point| lattice.place(point)).collect();
+        lattice.keep(places.into_iter(), 1e-3);
+        assert_eq!(lattice.len(), 4);
+        assert_eq!(lattice.neighbours(0).count(), 2);
+        assert_eq!(lattice.neighbours(1).count(), 2);
+    }
+}

@@ -1,0 +1,114 @@
+//! What is known of a source before any data: it is zero, or well above zero, and changes along few lines.
+//!
+//! Three parts, all majorised by quadratic forms about the present source (iteratively reweighted least squares):
+//! - total variation of the source's logarithm, `ln(1 + f / cap)`: edges of a patch count, heights of peaks hardly do;
+//! - a concave penalty that is linear up to about `level` and constant above, which leaves what is well above zero alone;
+//! - the bound, as a steep wall.
+
+use super::heads::Heads;
+use super::lattice::Lattice;
+use super::normal::Normal;
+
+/// A prior for a source that is zero nearly everywhere.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Patches {
+    /// The least that the source is where it is not zero, in its declared unit.
+    pub level: f64,
+    /// Penalty of an edge, by its length over one cell of the state and its height over `level`.
+    pub edges: f64,
+    /// Penalty of a patch by its area over that of one cell of the state, where clouds are as noisy as a cell is wide. Finer
+    /// data can pretend smaller patches, so that the penalty rises as noise falls.
+    pub area: f64,
+}
+
+/// Heights above this many levels are compressed.
+const CAP: f64 = 10.0;
+/// Differences of less than this share of a level are smoothed.
+const SMOOTH: f64 = 0.02;
+/// How the penalty of a patch depends on the noise, and the noise below which it rises no more.
+const FALL: f64 = -0.6;
+const FINEST: f64 = 0.03;
+/// Stiffness of the wall at the bound, by area as above.
+const WALL: f64 = 200.0;
+/// Where the penalty of small sources ends, in levels, and how softly.
+const END: (f64, f64) = (0.7, 0.12);
+
+/// A source's prior at work.
+pub(super) struct Sparse<'a> {
+    pub(super) heads: &'a Heads,
+    pub(super) head: usize,
+    pub(super) prior: Patches,
+    /// `level` in units of the head's coefficients, with the bound's sign.
+    pub(super) level: f64,
+    /// Cells of the source along one of the state's.
+    pub(super) finer: usize,
+    /// Coordinates along which the source is spread.
+    pub(super) dimensions: usize,
+    /// Noise of the clouds over the size of a cell.
+    pub(super) noise: f64,
+}
+
+impl Sparse<'_> {
+    fn lattice(&self) -> &Lattice {
+        &self.heads.lattices[self.head]
+    }
+
+    /// Area of a node, and length of an edge between two, over those of one cell of the state.
+    fn measures(&self) -> (f64, f64) {
+        let finer = self.finer as f64;
+        (finer.powi(-(self.dimensions as i32)), finer.powi(1 - self.dimensions as i32))
+    }
+
+    /// Adds the majorant about the present source; `concave` ends the penalty of small sources at the level, otherwise it
+    /// goes on.
+    pub(super) fn add(&self, normal: &mut Normal, theta: &[f64], concave: bool) {
+        let first = self.heads.first[self.head];
+        let (area, length) = self.measures();
+        let f: Vec<f64> = theta[first..first + self.lattice().len()].iter().map(|c| c / self.level).collect();
+        let steepness = self.steepness(&f);
+        let penalty = self.prior.area * self.noise.max(FINEST).powf(FALL);
+        let number = |at: u32| first as u32 + at;
+        let square = 1.0 / (self.level * self.level);
+        for axis in 0..self.lattice().dimensions() {
+            for (a, b) in self.lattice().neighbours(axis) {
+                let (i, j) = (a as usize, b as usize);
+                let weight = self.prior.edges * length * compression(0.5 * (f[i] + f[j])) / steepness[i].max(SMOOTH);
+                let slope = weight * (f[j] - f[i]) / self.level;
+                normal.gradient[first + i] -= slope;
+                normal.gradient[first + j] += slope;
+                normal.add_entry(number(a), number(a), weight * square);
+                normal.add_entry(number(b), number(b), weight * square);
+                normal.add_entry(number(a), number(b), -weight * square);
+            }
+        }
+        for (at, &f) in f.iter().enumerate() {
+            let slope = penalty * area * if concave { small(f) } else { 1.0 };
+            normal.gradient[first + at] += slope / self.level;
+            if f < 0.0 {
+                normal.gradient[first + at] += WALL * area * f / self.level;
+                normal.add_entry(number(at as u32), number(at as u32), WALL * area * square);
+            }
+        }
+    }
+
+    /// Steepness of the source at every node: the root of the sum of squares of the differences to the next nodes.
+    fn steepness(&self, f: &[f64]) -> Vec<f64> {
+        let mut squares = vec![SMOOTH * SMOOTH; f.len()];
+        for axis in 0..self.lattice().dimensions() {
+            for (a, b) in self.lattice().neighbours(axis) {
+                squares[a as usize] += (f[b as usize] - f[a as usize]).powi(2);
+            }
+        }
+        squares.iter().map(|s| s.sqrt()).collect()
+    }
+}
+
+/// How much a difference counts at a height, both in levels.
+fn compression(height: f64) -> f64 {
+    1.0 / (1.0 + height.max(0.0) / CAP)
+}
+
+/// Slope of the concave penalty at a height in levels.
+fn small(height: f64) -> f64 {
+    1.0 / (1.0 + ((height.max(0.0) - END.0) / END.1).exp())
+}

@@ -1,0 +1,412 @@
+//! Gauss-Newton on sparse rows, with the prior of the sources majorised anew before every step.
+
+use std::time::{Duration, Instant};
+
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+use super::block::Block;
+use super::group::{Group, Sites};
+use super::heads::Heads;
+use super::lattice::{Lattice, MOST_COORDINATES, NONE, Span};
+use super::normal::{Factor, Normal};
+use super::prior::Sparse;
+use super::surface::{self, Surface};
+use super::{Local, LocalError};
+use crate::engine::Learned;
+use crate::kernel::Precision;
+use crate::problem::Bound;
+use crate::schema::TermKind;
+use crate::solve::driver::{Flow, Status};
+use crate::solve::fault::Fault;
+
+/// How far equations may be off, as a share of their natural size: about the error of splines on their lattice. Held to less,
+/// they would take that error for a load.
+const TOLERANCE: f64 = 1e-2;
+/// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
+const RIDGE: f64 = 1e-6;
+const STIFFNESS: f64 = 1e-3;
+/// The same where nothing but values is wanted.
+const NEGLIGIBLE: f64 = 1e-9;
+/// Stiffness of differences in the first step, which only regresses the data: so much that noise cannot crease the state.
+const ROUGH: f64 = 1000.0;
+/// Noise that clouds are credited with at least, as a share of a cell: what splines cannot follow.
+const LEAST_NOISE: f64 = 1e-2;
+/// Steps before the penalty of small sources ends at their level.
+const CONVEX_STEPS: u64 = 6;
+/// How many of them are left to a state from a coarser lattice.
+const WARM_STEPS: u64 = 3;
+/// Largest change of a field in one step, in its natural sizes.
+const FARTHEST: f64 = 5.0;
+/// Random vectors for the trace of the influence matrix (Hutchinson).
+const PROBES: usize = 2;
+/// Stiffness of a parameter that is held.
+const HELD: f64 = 1e30;
+/// Relative change of the coefficients at which the answer counts as converged.
+const CONVERGED: f64 = 5e-3;
+/// The same on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
+const ROUGHLY: f64 = 0.1;
+const COARSE_STEPS: u64 = 4;
+
+/// A problem on its lattices.
+pub(super) struct Solver<'a> {
+    bound: &'a Bound,
+    settings: &'a Local,
+    pub(super) heads: Heads,
+    groups: Vec<Group>,
+    surfaces: Vec<Surface>,
+    normal: Normal,
+    scalars: Vec<f64>,
+    /// Size of the base lattice's cells, the largest.
+    cell: f64,
+}
+
+/// An iterate: coefficients, parameters of learned scalars, and the noise of the clouds.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub(super) theta: Vec<f64>,
+    pub(super) learned: Vec<f64>,
+    pub(super) noise: f64,
+    /// Numbers of the clouds that the answer has used up: the trace of its influence matrix.
+    used: f64,
+}
+
+/// How a run ended.
+pub(super) struct End {
+    pub(super) state: State,
+    pub(super) status: Status,
+    pub(super) iterations: u64,
+    pub(super) loss: f64,
+    pub(super) factor: Option<Factor>,
+}
+
+impl<'a> Solver<'a> {
+    pub(super) fn new(bound: &'a Bound, settings: &'a Local, cells: usize) -> Result<Self, LocalError> {
+        let schema = bound.problem.scene().schema;
+        let inputs = schema.coordinates.len();
+        if inputs > MOST_COORDINATES || schema.groups.iter().any(|group| group.paired) {
+            return Err(LocalError::Unsupported("paired points or more than four coordinates"));
+        }
+        let base = base(bound, cells);
+        let mut lattices: Vec<Lattice> =
+            (0..schema.heads.len()).map(|head| lattice(bound, settings, &base, head)).collect();
+        for (head, lattice) in lattices.iter_mut().enumerate() {
+            let seen = schema.groups.iter().enumerate().filter(|(_, g)| g.jets.iter().any(|jet| jet.head == head));
+            let points = seen.flat_map(|(at, _)| bound.coordinates[at].chunks_exact(inputs));
+            let places: Vec<_> = points.map(|point| lattice.place(point)).collect();
+            lattice.keep(places.into_iter(), if schema.heads[head].source { 2e-2 } else { 1e-4 });
+        }
+        let heads = Heads::new(bound, lattices);
+        let kernels = <f64 as Precision>::kernels(&bound.problem.scene());
+        let mut groups = Vec::new();
+        let mut surfaces = Vec::new();
+        let cell = (0..inputs).map(|axis| base.spacing(axis)).fold(0.0, f64::max);
+        for (at, (kernel, schema)) in kernels.into_iter().zip(schema.groups).enumerate() {
+            let flat = &bound.coordinates[at];
+            let sites = Sites::new(&heads, flat, &bound.columns[at]);
+            let measure = schema.terms.iter().find_map(|term| term.measure.as_ref());
+            let weights = bound.weights(at, measure);
+            let mut group = Group::new(schema, kernel, sites, weights, &base, flat);
+            for (term, size) in schema.terms.iter().zip(&bound.sizes[at]) {
+                let tolerance = if term.within.is_some() { 1.0 } else { TOLERANCE };
+                group.sigma[term.first..term.first + term.rows].fill(tolerance * size / term.weight.sqrt());
+            }
+            for (term, cloud) in schema.terms.iter().zip(&bound.clouds[at]) {
+                if !matches!(term.kind, TermKind::Chamfer { .. }) {
+                    continue;
+                }
+                if term.rows != 3 || inputs < 2 || inputs > 3 {
+                    return Err(LocalError::Unsupported("a cloud that is not in space"));
+                }
+                let view = bound.view(at, term.name);
+                surfaces.push(Surface::new(at, term.first, cloud, view, flat, inputs, cell));
+            }
+            groups.push(group);
+        }
+        let together = together(&heads, &base, bound);
+        let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
+        Ok(Self { bound, settings, heads, groups, surfaces, normal, scalars: bound.scalars.clone(), cell })
+    }
+
+    /// Where the solver starts: all heads at their offsets.
+    fn first(&self) -> State {
+        State {
+            theta: vec![0.0; self.heads.len()],
+            learned: vec![0.0; self.bound.learned.len()],
+            noise: self.cell,
+            used: 0.0,
+        }
+    }
+
+    /// Takes over learned scalars; returns their derivatives by their parameters.
+    fn set_learned(&mut self, parameters: &[f64]) -> Vec<f64> {
+        let set = |(learned, &parameter): (&Learned, &f64)| {
+            let (value, slope) = learned.map.at(parameter);
+            self.scalars[learned.slot] = value;
+            slope
+        };
+        self.bound.learned.iter().zip(parameters).map(set).collect()
+    }
+
+    /// The state of another lattice on this one: its values at all points, by least squares.
+    pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<State, LocalError> {
+        let inputs = self.heads.lattices[0].dimensions();
+        let unmoved = vec![0.0; state.learned.len()];
+        self.normal.clear();
+        for (group, points) in self.bound.problem.scene().schema.groups.iter().zip(&self.bound.coordinates) {
+            for head in 0..self.heads.lattices.len() {
+                for point in points.chunks_exact(inputs).filter(|_| group.jets.iter().any(|jet| jet.head == head)) {
+                    self.normal.add(&self.heads.difference(head, point, other, &state.theta, &unmoved));
+                }
+            }
+        }
+        for at in 0..self.heads.len() as u32 {
+            self.normal.add_entry(at, at, NEGLIGIBLE);
+        }
+        (0..unmoved.len()).for_each(|at| self.normal.add_learned(at, 1.0, 0.0));
+        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
+        let (theta, _) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
+        Ok(State { theta, ..state.clone() })
+    }
+
+    /// Repeats steps from a state, or from nothing, until they change nothing, or time is spent.
+    pub(super) fn run(
+        &mut self,
+        from: Option<State>,
+        start: Instant,
+        budget: Duration,
+        iterations: u64,
+        coarse: bool,
+        monitor: &mut dyn FnMut(u64, f64, f64) -> Flow,
+    ) -> Result<End, LocalError> {
+        // Who comes with a state needs no regression, and few steps before the penalty may end at its level.
+        let skipped = if from.is_some() { CONVEX_STEPS - WARM_STEPS } else { 0 };
+        let mut state = from.unwrap_or_else(|| self.first());
+        let mut loss = f64::INFINITY;
+        let mut status = Status::Budget;
+        let mut factor = None;
+        let mut iteration = 0;
+        let mut longest = 0.0f64;
+        while iteration < iterations {
+            let began = start.elapsed().as_secs_f64();
+            if began + longest > budget.as_secs_f64() && iteration > 0 {
+                break;
+            }
+            let (next, found) = self.step(&state, iteration + skipped, coarse)?;
+            let change = self.change(&state, &next);
+            state = next;
+            loss = found.0;
+            factor = Some(found.1);
+            iteration += 1;
+            longest = longest.max(start.elapsed().as_secs_f64() - began);
+            if monitor(iteration, start.elapsed().as_secs_f64(), loss) == Flow::Stop {
+                status = Status::Interrupted;
+                break;
+            }
+            let (steps, small) = if coarse { (COARSE_STEPS, ROUGHLY) } else { (CONVEX_STEPS + 1, CONVERGED) };
+            if iteration + skipped > steps && change < small {
+                status = Status::Converged;
+                break;
+            }
+        }
+        Ok(End { state, status, iterations: iteration, loss, factor })
+    }
+
+    /// One step; also the loss before it, and the factorised matrix.
+    fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, (f64, Factor)), LocalError> {
+        let slopes = self.set_learned(&state.learned);
+        let theta = &state.theta;
+        let regress = iteration == 0;
+        for surface in &mut self.surfaces {
+            surface.find(&self.groups[surface.group], &self.heads, theta, &self.scalars);
+        }
+        let noise = if regress { state.noise } else { self.noise(state.used) };
+        let mut probes = vec![vec![0.0; theta.len()]; PROBES];
+        let mut random = StdRng::seed_from_u64(0);
+        self.normal.clear();
+        let mut loss = 0.0;
+        for group in &self.groups {
+            // The first step regresses data and pointwise conditions; equations come after.
+            if regress && !group.weights.is_empty() {
+                continue;
+            }
+            for block in group.blocks(&self.heads, theta, &self.scalars, &slopes) {
+                loss += half_square(&block, group.schema.name)?;
+                self.normal.add(&block);
+            }
+            if regress {
+                continue;
+            }
+            for integral in group.integrals(&self.heads, theta, &self.scalars) {
+                loss += 0.5 * (integral.misfit / integral.sigma).powi(2);
+                self.normal.add_dense(&integral.slopes, integral.misfit, integral.sigma);
+            }
+        }
+        for surface in &self.surfaces {
+            let group = &self.groups[surface.group];
+            for block in surface.blocks(group, &self.heads, theta, &self.scalars, &slopes, noise) {
+                half_square(&block, group.schema.name)?;
+                self.normal.add(&block);
+                for probe in &mut probes {
+                    let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
+                    block.kept().for_each(|(at, dof)| probe[dof as usize] += sign * block.slopes[at]);
+                }
+            }
+            loss += surface.misfits().map(|misfit| 0.5 * surface::loss(misfit / noise)).sum::<f64>();
+        }
+        for at in 0..theta.len() as u32 {
+            self.normal.add_entry(at, at, RIDGE);
+        }
+        for (at, parameter) in state.learned.iter().enumerate() {
+            // Parameters wait until the state is one of the equations' solutions. Their own scale is of the order of one.
+            let stiffness = if iteration < CONVEX_STEPS { HELD } else { 1e-2 };
+            self.normal.add_learned(at, stiffness, 1e-2 * parameter);
+        }
+        self.add_priors(theta, noise, regress, !coarse && iteration > CONVEX_STEPS);
+        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
+        let used: f64 = probes.iter().map(|probe| factor.inner(probe)).sum::<f64>() / probes.len() as f64;
+        let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
+        let mut next = State { noise, used, ..state.clone() };
+        // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
+        let fields = self.fields().flat_map(|range| &step[range]);
+        let largest = fields.map(|x| x.abs()).fold(0.0, f64::max);
+        let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
+        next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
+        next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
+        Ok((next, (loss, factor)))
+    }
+
+    /// Priors of sources, or of all heads' roughness while only data are regressed.
+    fn add_priors(&mut self, theta: &[f64], noise: f64, regress: bool, concave: bool) {
+        let schema = self.bound.problem.scene().schema;
+        for (head, declared) in schema.heads.iter().enumerate() {
+            let first = self.heads.first[head];
+            let stiffness = if regress { ROUGH } else { STIFFNESS };
+            for axis in (0..schema.coordinates.len()).filter(|_| regress || !declared.source) {
+                for (a, b) in self.heads.lattices[head].neighbours(axis) {
+                    let (i, j) = (first + a as usize, first + b as usize);
+                    self.normal.gradient[i] += stiffness * (theta[i] - theta[j]);
+                    self.normal.gradient[j] += stiffness * (theta[j] - theta[i]);
+                    self.normal.add_entry(i as u32, i as u32, stiffness);
+                    self.normal.add_entry(j as u32, j as u32, stiffness);
+                    self.normal.add_entry(i as u32, j as u32, -stiffness);
+                }
+            }
+            if regress {
+                continue;
+            }
+            let Some(prior) = self.settings.patches.filter(|_| declared.source) else { continue };
+            let (scale, sign) = (self.heads.scale[head], self.heads.bound[head].map_or(1.0, |(sign, _)| sign));
+            let level = prior.level * self.bound.system.inward(&declared.unit) / scale * sign;
+            let sparse = Sparse {
+                heads: &self.heads,
+                head,
+                prior,
+                level,
+                finer: self.settings.finer,
+                dimensions: self.settings.source_dimensions,
+                noise: noise / self.cell,
+            };
+            sparse.add(&mut self.normal, theta, concave);
+        }
+    }
+
+    /// Ranges of the coefficients of fields.
+    fn fields(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        let heads = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| !head.source);
+        heads.map(|(at, _)| self.heads.first[at]..self.heads.first[at + 1])
+    }
+
+    /// Largest change of a field's coefficient or a learned parameter; sources may flicker at their edges for long.
+    fn change(&self, before: &State, after: &State) -> f64 {
+        let fields = self.fields().flat_map(|range| range.map(|at| (before.theta[at], after.theta[at])));
+        let learned = before.learned.iter().copied().zip(after.learned.iter().copied());
+        fields.chain(learned).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// Standard deviation of the clouds about the surface, outliers counted for little.
+    fn noise(&self, used: f64) -> f64 {
+        let misfits: Vec<f64> = self.surfaces.iter().flat_map(Surface::misfits).collect();
+        let mut magnitudes: Vec<f64> = misfits.iter().map(|m| m.abs()).collect();
+        magnitudes.sort_by(f64::total_cmp);
+        let middle = magnitudes.get(magnitudes.len() / 2).copied().unwrap_or(0.0) * 1.4826;
+        let (mut sum, mut count) = (0.0, 0.0f64);
+        for misfit in magnitudes.iter().filter(|m| **m <= 4.0 * middle) {
+            sum += misfit * misfit;
+            count += 1.0;
+        }
+        (sum / (count - used).max(0.2 * count).max(1.0)).sqrt().max(LEAST_NOISE * self.cell)
+    }
+}
+
+fn half_square(block: &Block, group: &str) -> Result<f64, LocalError> {
+    let sum: f64 = block.misfits.iter().map(|m| 0.5 * m * m).sum();
+    if sum.is_finite() { Ok(sum) } else { Err(LocalError::Fault(Fault::residual(group, None))) }
+}
+
+/// The lattice of the state: `cells` of them along the longest of the coordinates that share a scale.
+fn base(bound: &Bound, cells: usize) -> Lattice {
+    let schema = bound.problem.scene().schema;
+    let inputs = schema.coordinates.len();
+    let (mut low, mut spacing, mut count) = (Vec::new(), Vec::new(), Vec::new());
+    let range = |axis: usize| {
+        let values = bound.coordinates.iter().flat_map(|points| points.iter().skip(axis).step_by(inputs));
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
+    };
+    let ranges: Vec<(f64, f64)> = (0..inputs).map(range).collect();
+    for axis in 0..inputs {
+        let group = schema.coordinates[axis].scale_group;
+        let tied = (0..inputs).filter(|&other| schema.coordinates[other].scale_group == group);
+        let longest = tied.map(|other| ranges[other].1 - ranges[other].0).fold(0.0, f64::max);
+        let h = longest / cells as f64;
+        let (from, to) = ranges[axis];
+        // Rounding must not add a cell.
+        let own = ((to - from) / h - 1e-9).ceil().max(2.0);
+        low.push((from + to - own * h) / 2.0);
+        spacing.push(h);
+        count.push(own as usize);
+    }
+    Lattice::new(1, low, spacing, count)
+}
+
+/// A head's lattice: a degree above the highest derivative for a field, hats on finer cells for a source.
+fn lattice(bound: &Bound, settings: &Local, base: &Lattice, head: usize) -> Lattice {
+    let schema = bound.problem.scene().schema;
+    if schema.heads[head].source {
+        return base.refined(1, settings.finer);
+    }
+    let jets = schema.groups.iter().flat_map(|group| group.jets).filter(|jet| jet.head == head);
+    let order = jets.map(|jet| jet.degree.iter().map(|&n| usize::from(n)).sum::<usize>()).max().unwrap_or(0);
+    base.refined(order.max(1) + 1, 1)
+}
+
+/// Coefficients that may occur in the same row: those around each node of the base lattice that points are near.
+fn together(heads: &Heads, base: &Lattice, bound: &Bound) -> Vec<Vec<u32>> {
+    let inputs = base.dimensions();
+    let mut nodes = std::collections::BTreeSet::new();
+    for points in &bound.coordinates {
+        for point in points.chunks_exact(inputs) {
+            let place = base.place(point);
+            for corner in 0..1usize << inputs {
+                let mut cell = [0; MOST_COORDINATES];
+                for (axis, cell) in cell.iter_mut().enumerate().take(inputs) {
+                    let index = place.cell[axis] + (corner >> axis & 1);
+                    *cell = index.saturating_sub(1).min(base.cells[axis] - 2);
+                }
+                nodes.insert(cell);
+            }
+        }
+    }
+    let around = |cell: [usize; MOST_COORDINATES]| {
+        let mut dofs = Vec::new();
+        for (head, lattice) in heads.lattices.iter().enumerate() {
+            let times = lattice.cells[0] / base.cells[0];
+            let span = Span { first: cell.map(|c| c * times), count: 2 * times + lattice.degree };
+            let kept = lattice.kept(span).filter(|&n| n != NONE);
+            dofs.extend(kept.map(|n| heads.first[head] as u32 + n));
+        }
+        dofs.sort_unstable();
+        dofs
+    };
+    nodes.into_iter().map(around).collect()
+}

@@ -1,0 +1,241 @@
+//! Rows of a cloud: how far each of its points is from the surface, along a known direction of view or across the surface.
+//!
+//! A point's foot is the place at rest whose image it is compared with: where the line through the point, along the
+//! direction, meets the surface. Feet are found by Newton's method before every step and held during it.
+
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use nalgebra::{DMatrix, Matrix3, Vector3};
+
+use super::block::Block;
+use super::group::{Group, Sites};
+use super::heads::Heads;
+
+/// Newton steps for the feet, at most.
+const STEPS: usize = 8;
+
+/// A cloud of a term, and the feet of its points.
+pub(super) struct Surface {
+    pub(super) group: usize,
+    first: usize,
+    cloud: Vec<Vector3<f64>>,
+    /// The direction along which the cloud is off; nothing if across the surface.
+    view: Option<Vector3<f64>>,
+    inputs: usize,
+    /// Places at rest that the surface is known to have, flat, and their directions along it.
+    samples: Vec<f64>,
+    tangents: Vec<Vec<f64>>,
+    rest: Option<ImmutableKdTree<f64, 3>>,
+    /// Feet, flat; the sample nearest to each.
+    feet: Vec<f64>,
+    nearest: Vec<usize>,
+    /// Feet this far from all samples have left the surface.
+    reach: f64,
+    /// False where the foot was lost.
+    found: Vec<bool>,
+    /// What rows are measured along, scaled so that they are distances along the view.
+    normals: Vec<Vector3<f64>>,
+    misfits: Vec<f64>,
+}
+
+impl Surface {
+    pub(super) fn new(
+        group: usize,
+        first: usize,
+        cloud: &[f64],
+        view: Option<[f64; 3]>,
+        samples: &[f64],
+        inputs: usize,
+        reach: f64,
+    ) -> Self {
+        let cloud: Vec<Vector3<f64>> = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
+        let flat: Vec<[f64; 3]> = samples.chunks_exact(inputs).map(padded).collect();
+        let rest = ImmutableKdTree::new_from_slice(&flat).ok();
+        let tangents = flat.iter().zip(samples.chunks_exact(inputs));
+        let tangents = tangents.map(|(at, _)| tangents_at(rest.as_ref(), &flat, at, inputs)).collect();
+        let count = cloud.len();
+        Self {
+            group,
+            first,
+            cloud,
+            view: view.map(|v| Vector3::from(v).normalize()),
+            inputs,
+            samples: samples.to_vec(),
+            tangents,
+            rest,
+            feet: Vec::new(),
+            nearest: vec![0; count],
+            reach,
+            found: vec![false; count],
+            normals: vec![Vector3::zeros(); count],
+            misfits: vec![0.0; count],
+        }
+    }
+
+    /// Misfits of the points whose feet were found.
+    pub(super) fn misfits(&self) -> impl Iterator<Item = f64> + '_ {
+        self.misfits.iter().zip(&self.found).filter(|(_, found)| **found).map(|(misfit, _)| *misfit)
+    }
+
+    /// Positions of places, given flat.
+    fn positions(
+        &self,
+        group: &Group,
+        heads: &Heads,
+        theta: &[f64],
+        scalars: &[f64],
+        flat: &[f64],
+    ) -> Vec<Vector3<f64>> {
+        let sites = Sites::new(heads, flat, &[]);
+        let rows = group.evaluate_at(&sites, heads, theta, scalars, false);
+        (0..sites.count).map(|p| Vector3::from_fn(|c, _| rows.row(self.first + c, p))).collect()
+    }
+
+    /// Finds the feet of all points on the present surface.
+    pub(super) fn find(&mut self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) {
+        if self.feet.is_empty() {
+            self.begin(group, heads, theta, scalars);
+        }
+        let along = 2;
+        let small = 1e-3 * self.reach;
+        for step in 0..=STEPS {
+            let around: Vec<f64> =
+                self.feet.chunks_exact(self.inputs).enumerate().fold(Vec::new(), |mut all, (i, foot)| {
+                    all.extend_from_slice(foot);
+                    for tangent in self.tangents[self.nearest[i]].chunks_exact(self.inputs) {
+                        for sign in [small, -small] {
+                            all.extend(foot.iter().zip(tangent).map(|(x, t)| x + sign * t));
+                        }
+                    }
+                    all
+                });
+            let positions = self.positions(group, heads, theta, scalars, &around);
+            let mut moved = 0.0f64;
+            for (i, near) in positions.chunks_exact(1 + 2 * along).enumerate() {
+                let slope = |k: usize| (near[1 + 2 * k] - near[2 + 2 * k]) / (2.0 * small);
+                let (a, b) = (slope(0), slope(1));
+                let normal = a.cross(&b);
+                let Some(normal) = normal.try_normalize(1e-12 * a.norm() * b.norm()) else {
+                    self.found[i] = false;
+                    continue;
+                };
+                let view = self.view.unwrap_or(normal);
+                // A surface seen edge on says nothing along the view.
+                let facing = normal.dot(&view);
+                self.found[i] = facing.abs() > 0.05;
+                self.normals[i] = normal / if self.found[i] { facing } else { 1.0 };
+                self.misfits[i] = self.normals[i].dot(&(near[0] - self.cloud[i]));
+                let solved = Matrix3::from_columns(&[a, b, view]).try_inverse();
+                let (Some(inverse), true) = (solved, self.found[i]) else { continue };
+                let wanted = inverse * (self.cloud[i] - near[0]);
+                let far = wanted.xy().norm();
+                moved = moved.max(far);
+                if step == STEPS {
+                    continue;
+                }
+                let scale = if far > self.reach { self.reach / far } else { 1.0 };
+                self.step(i, wanted.x * scale, wanted.y * scale);
+            }
+            if moved < 1e-6 * self.reach {
+                break;
+            }
+        }
+    }
+
+    /// Moves a foot along the surface at rest, but not off it.
+    fn step(&mut self, i: usize, a: f64, b: f64) {
+        let inputs = self.inputs;
+        let tangent = &self.tangents[self.nearest[i]];
+        let mut foot = self.feet[i * inputs..(i + 1) * inputs].to_vec();
+        for (k, x) in foot.iter_mut().enumerate() {
+            *x += a * tangent[k] + b * tangent[inputs + k];
+        }
+        let Some(tree) = &self.rest else { return };
+        let found = tree.query(&padded(&foot)).nearest_one::<SquaredEuclidean<f64>>().execute();
+        self.nearest[i] = found.item as usize;
+        if found.distance.sqrt() > self.reach {
+            self.found[i] = false;
+            let at = found.item as usize * inputs;
+            foot.copy_from_slice(&self.samples[at..at + inputs]);
+        }
+        self.feet[i * inputs..(i + 1) * inputs].copy_from_slice(&foot);
+    }
+
+    /// First feet: the samples whose images are nearest, seen along the view.
+    fn begin(&mut self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) {
+        let seen = |x: &Vector3<f64>| self.view.map_or(*x, |view| x - view * view.dot(x));
+        let images = self.positions(group, heads, theta, scalars, &self.samples);
+        let images: Vec<[f64; 3]> = images.iter().map(|x| seen(x).into()).collect();
+        let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&images) else { return };
+        let nearest = |y: &Vector3<f64>| {
+            let at: [f64; 3] = seen(y).into();
+            tree.query(&at).nearest_one::<SquaredEuclidean<f64>>().execute().item as usize
+        };
+        self.nearest = self.cloud.iter().map(nearest).collect();
+        let inputs = self.inputs;
+        self.feet = self.nearest.iter().flat_map(|&at| self.samples[at * inputs..(at + 1) * inputs].to_vec()).collect();
+    }
+
+    /// Rows of all points with a foot, over `sigma`; those far off count less (Huber's weights).
+    pub(super) fn blocks(
+        &self,
+        group: &Group,
+        heads: &Heads,
+        theta: &[f64],
+        scalars: &[f64],
+        learned: &[f64],
+        sigma: f64,
+    ) -> Vec<Block> {
+        let sites = Sites::new(heads, &self.feet, &[]);
+        let evaluated = group.evaluate_at(&sites, heads, theta, scalars, true);
+        let kept = (0..self.cloud.len()).filter(|&i| self.found[i]);
+        kept.map(|i| {
+            let mut block = group.at_point(heads, &sites, i, learned);
+            block.misfits[0] = self.misfits[i];
+            let normal = self.normals[i];
+            group.add_slopes(&mut block, heads, &sites, i, |_, bar| {
+                (0..3).map(|c| normal[c] * evaluated.bar(self.first + c, bar, i)).sum()
+            });
+            block.divide(std::iter::once(sigma / weight(self.misfits[i] / sigma).sqrt()));
+            block
+        })
+        .collect()
+    }
+}
+
+/// Deviations from which on a point counts as an outlier.
+const OUTLIER: f64 = 3.0;
+
+/// Huber's weight of a misfit in standard deviations.
+pub(super) fn weight(deviations: f64) -> f64 {
+    (OUTLIER / deviations.abs()).min(1.0)
+}
+
+/// Twice Huber's loss of a misfit in standard deviations.
+pub(super) fn loss(deviations: f64) -> f64 {
+    let u = deviations.abs();
+    if u <= OUTLIER { u * u } else { OUTLIER * (2.0 * u - OUTLIER) }
+}
+
+/// A place at rest in three numbers.
+fn padded(point: &[f64]) -> [f64; 3] {
+    std::array::from_fn(|axis| point.get(axis).copied().unwrap_or(0.0))
+}
+
+/// Two directions along the surface at rest, flat: the axes of a plane domain, or where the neighbours lie.
+fn tangents_at(tree: Option<&ImmutableKdTree<f64, 3>>, samples: &[[f64; 3]], at: &[f64; 3], inputs: usize) -> Vec<f64> {
+    const NEIGHBOURS: std::num::NonZero<usize> = std::num::NonZero::new(12).unwrap();
+    if inputs == 2 {
+        return vec![1.0, 0.0, 0.0, 1.0];
+    }
+    let Some(tree) = tree else { return vec![0.0; 2 * inputs] };
+    let around = tree.query(at).nearest_n::<SquaredEuclidean<f64>>(NEIGHBOURS).execute();
+    let around: Vec<&[f64; 3]> = around.iter().map(|found| &samples[found.item as usize]).collect();
+    let count = around.len().max(1) as f64;
+    let mean: [f64; 3] = std::array::from_fn(|i| around.iter().map(|p| p[i]).sum::<f64>() / count);
+    let spread: DMatrix<f64> =
+        DMatrix::from_fn(3, 3, |i, j| around.iter().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum());
+    let axes = spread.symmetric_eigen();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
+    order[..2].iter().flat_map(|&i| axes.eigenvectors.column(i).iter().copied().collect::<Vec<_>>()).collect()
+}
