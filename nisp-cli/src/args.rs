@@ -17,7 +17,7 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     /// Show the equations that can be solved.
     List,
-    /// Show a scene's equations, units, channels and what is skipped.
+    /// Show a scene's equations, units, channels, what a point costs and what is skipped.
     Explain {
         /// Equation (see `nisp list`).
         #[arg(value_name = "SCENE")]
@@ -25,6 +25,12 @@ pub(crate) enum Command {
         /// One of its scenes.
         #[arg(long, value_name = "NAME")]
         scene: Option<String>,
+        /// Hidden units of a layer.
+        #[arg(long, value_name = "N", default_value_t = 16, value_parser = size, allow_negative_numbers = true)]
+        width: usize,
+        /// Layers.
+        #[arg(long, value_name = "N", default_value_t = 2, value_parser = size, allow_negative_numbers = true)]
+        layers: usize,
     },
     /// Recover a source; without options, from the repository's own noisy example.
     #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]

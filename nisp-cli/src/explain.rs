@@ -3,10 +3,11 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
+use nisp::network::Architecture;
 use nisp::schema::{Origin, Unit};
 
-/// Prints a scene's equations, units, channels and savings.
-pub(crate) fn explain(equation: &str, scene: Option<&str>) -> Result<ExitCode, String> {
+/// Prints a scene's equations, units, channels and savings, and what a point costs in a network of this shape.
+pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Architecture) -> Result<ExitCode, String> {
     let entry = crate::entry(equation)?;
     let schema = entry.scene(scene).map_err(|error| error.to_string())?.schema;
     let mut text = String::new();
@@ -29,6 +30,7 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>) -> Result<ExitCode, S
             value.map_or_else(|| "must be --set".into(), |value| format!("{}", rounded(value / scalar.unit.factor)));
         line(format!("  {kind:9} {:6} {:9} {value}", scalar.name, unit(&scalar.unit)));
     }
+    line(format!("network of {} layers of {} units, with gates", architecture.layers, architecture.width));
     for group in schema.groups {
         line(format!("group {}", group.name));
         for term in group.terms {
@@ -38,7 +40,16 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>) -> Result<ExitCode, S
         let channels = group.channels.join(", ");
         line(format!("  channels {} of a dense jet's {}: {channels}", group.channels.len(), group.dense));
         line(format!("  reads {}", jets.join(", ")));
-        line(format!("  residuals {} FLOPs a point, adjoint {}", group.flops[0], group.flops[1]));
+        let [forward, back] = architecture.cost(group);
+        line(format!("  FLOPs a point     {:>10} {:>10}", "forward", "adjoint"));
+        for (what, ways) in [
+            ("matrix products", [forward.products, back.products]),
+            ("layers' rules", [forward.rules, back.rules]),
+            ("heads", [forward.heads, back.heads]),
+            ("residuals", group.flops),
+        ] {
+            line(format!("    {what:15} {:>10} {:>10}", ways[0], ways[1]));
+        }
     }
     for skipped in schema.skipped {
         line(format!("skipped: {skipped}"));

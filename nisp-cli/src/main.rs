@@ -17,6 +17,7 @@ use std::process::ExitCode;
 
 use clap::Parser;
 use clap::error::ErrorKind as Usage;
+use nisp::network::Architecture;
 
 use args::{Args, Command};
 
@@ -27,8 +28,8 @@ fn main() -> ExitCode {
     let result = parse(std::env::args_os().collect()).and_then(|args| match args {
         Parsed::Shown(code) => Ok(code),
         Parsed::Asked(Args { command: Command::List }) => list::list(),
-        Parsed::Asked(Args { command: Command::Explain { equation, scene } }) => {
-            explain::explain(&equation, scene.as_deref())
+        Parsed::Asked(Args { command: Command::Explain { equation, scene, width, layers } }) => {
+            explain::explain(&equation, scene.as_deref(), Architecture::modified(width, layers))
         }
         Parsed::Asked(Args { command: Command::Solve(options) }) => solve::solve(&options),
         Parsed::Asked(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),

@@ -175,6 +175,9 @@ fn lists_and_explains() {
     for part in ["source    f", "[N]", "parameter m0", "0.005", "channels 3", "skipped"] {
         assert!(explained.stdout.contains(part), "{part}");
     }
+    // One product of two layers of ten units over three channels: two operations a multiply-add, forward, twice back.
+    let explained = place.run("explain pendulum --width 10").stdout;
+    assert!(explained.contains("matrix products        600       1200"), "{explained}");
     assert!(place.run("explain rlc --scene free").stdout.contains("scene free"));
     assert!(place.names().is_empty());
 }

@@ -135,6 +135,20 @@ pub struct Group {
     pub paired: bool,
     /// Floating-point operations per point of the residual program and its adjoint.
     pub flops: [usize; 2],
+    /// Floating-point operations per point and unit of the network's rules.
+    pub rule_flops: RuleFlops,
+}
+
+/// Floating-point operations of propagation rules on all channels, forward and on the way back (which computes a layer
+/// anew instead of storing it). `tanh` and its derivatives are not counted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct RuleFlops {
+    /// The activation of a hidden layer.
+    pub compose: [usize; 2],
+    /// The activation of an affine map of the coordinates.
+    pub affine: [usize; 2],
+    /// The product of a layer and its gate.
+    pub product: [usize; 2],
 }
 
 /// A network output or a derivative of it.

@@ -1,10 +1,12 @@
 //! The network: its architecture, where its parameters live, and the working form of its weights.
 
+mod cost;
 mod init;
 mod inputs;
 mod layout;
 mod weights;
 
+pub use cost::Cost;
 pub use init::initialise;
 pub use inputs::{Fourier, Function, Inputs, Stretched};
 

@@ -5,7 +5,7 @@ use quote::quote;
 
 use crate::channels::{ChannelSet, Operator};
 use crate::model::{self, Model, Role};
-use crate::plan::{GroupPlan, Jet, Plan, RowKind, Scalar, ScenePlan, TermPlan};
+use crate::plan::{GroupPlan, Jet, Plan, RowKind, Scalar, ScenePlan, SetPlan, TermPlan};
 use crate::rational::Rational;
 use crate::symbolic::exact::to_f64;
 use crate::unit::{Dimension, Unit};
@@ -129,13 +129,25 @@ fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene,
     let terms = group.terms.iter().map(|t| term(declared, group, source, t));
     let rows: usize = group.terms.iter().map(|t| t.rows).sum();
     let flops = [group.residual.flops(), group.adjoint.flops()];
+    let rule_flops = rule_flops(&plan.sets[group.hidden]);
     quote! {
         schema::Group {
             name: #name, docs: #docs, channels: &[#(#channels),*], order: #order, dense: #dense,
             jets: &[#(#jets),*], columns: &[#(#columns),*], terms: &[#(#terms),*],
-            rows: #rows, paired: #paired, flops: [#(#flops),*],
+            rows: #rows, paired: #paired, flops: [#(#flops),*], rule_flops: #rule_flops,
         }
     }
+}
+
+fn rule_flops(rules: &SetPlan) -> TokenStream {
+    let [compose, product] = [(&rules.compose, &rules.compose_adjoint), (&rules.product, &rules.product_adjoint)].map(
+        |(forward, adjoint)| {
+            let [forward, back] = [forward.flops(), forward.flops() + adjoint.flops()];
+            quote!([#forward, #back])
+        },
+    );
+    let (affine, back) = (rules.affine.flops(), rules.affine_adjoint.flops());
+    quote!(schema::RuleFlops { compose: #compose, affine: [#affine, #back], product: #product })
 }
 
 fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {
