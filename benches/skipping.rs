@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use nisp::network::{Architecture, initialise};
 use nisp::simd::Isa;
-use nisp::{Problem, SceneRef, scene};
+use nisp::{Problem, SceneRef, scene_in_both_precisions as scene};
 use support::{best, group, scatter};
 
 nisp::pde! {

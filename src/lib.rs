@@ -6,7 +6,7 @@
 pub mod language {}
 
 pub use nisp_macros::pde;
-pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene};
+pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene, scene_in_both_precisions};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
     Estimate, LearnedValue, Optimizer, RecoverError, Report, Settings, Solution, TermReport, Width, recover,
@@ -16,10 +16,12 @@ pub use nisp_runtime::{engine, local, network, peak, real, schema, simd, solve};
 /// What emitted code refers to; not for direct use.
 #[doc(hidden)]
 pub mod __private {
+    pub use nisp_runtime::compiled::{CompiledLayers, CompiledPrograms};
     pub use nisp_runtime::functions;
-    pub use nisp_runtime::kernel::{Compiled, GroupKernel, Residuals, Rules, scene};
+    pub use nisp_runtime::kernel::{GroupKernel, Residuals, Rules};
     pub use nisp_runtime::real::Real;
     pub use nisp_runtime::residual::{Lane, Sink};
     pub use nisp_runtime::schema;
     pub use nisp_runtime::simd::Simd;
+    pub use nisp_runtime::values::{Precompiled, Values};
 }

@@ -8,7 +8,7 @@ use nisp::network::{Architecture, Fourier, Inputs, initialise};
 use nisp::simd::Isa;
 use nisp::solve::adam::{Adam, AdamSettings};
 use nisp::solve::method::Method;
-use nisp::{Points, Precision, Problem, scene};
+use nisp::{Points, Precision, Problem, scene_in_both_precisions as scene};
 
 nisp::pde! {
     /// Every kind of term that gradients go through.

@@ -1,6 +1,6 @@
 //! Five operators: as `pde!` scenes, and as scenes of the dense jet that read the same derivatives.
 
-use nisp::__private::{Compiled, GroupKernel, Lane, Real, Residuals, Simd, Sink, schema};
+use nisp::__private::{CompiledLayers, CompiledPrograms, GroupKernel, Lane, Real, Residuals, Simd, Sink, schema};
 use nisp::{Problem, Scene, scene};
 
 use crate::dense::{Dense, channel};
@@ -120,11 +120,12 @@ macro_rules! dense_scene {
                 }],
                 ..SIMPLEST
             };
-            fn kernels<E: Real>() -> Vec<Box<dyn GroupKernel<E>>> {
+            fn kernels<E: Real>() -> Vec<GroupKernel<E>> {
                 type Rules = Dense<$channels, { $order + 2 }, $coordinates>;
-                vec![Box::new(
-                    Compiled::<Rules, Rules, Sum<$jets>, $channels, { $order + 2 }, $coordinates>::default(),
-                )]
+                vec![GroupKernel {
+                    layers: CompiledLayers::<Rules, Rules, $channels, { $order + 2 }, $coordinates>::erased(),
+                    programs: CompiledPrograms::<Sum<$jets>>::erased(),
+                }]
             }
         }
     };

@@ -1,6 +1,6 @@
 //! The paper's scenes at the paper's sizes, on points that fill their domains evenly.
 
-use nisp::{Points, Problem, scene};
+use nisp::{Points, Problem, scene_in_both_precisions as scene};
 
 use crate::support::{group, scatter};
 

@@ -1,6 +1,6 @@
 //! An inflated elliptical membrane, pressed by an unknown object (paper, section 4.4).
 
-use nisp::scene;
+use nisp::scene_in_both_precisions as scene;
 
 use crate::catalogue::{Binding, Entry};
 use crate::contact;

@@ -1,6 +1,6 @@
 //! Double pendulum on a cart, pushed by an unknown force (paper, section 4.1, with its errata corrected).
 
-use nisp::scene;
+use nisp::scene_in_both_precisions as scene;
 
 use crate::catalogue::{Binding, Entry};
 use crate::rivals::{Pendulum, System};

@@ -2,7 +2,7 @@
 
 #![allow(deprecated, reason = "scene `edge_only` leaves the plate without its second edge condition on purpose")]
 
-use nisp::{Points, Problem, scene};
+use nisp::{Points, Problem, scene_in_both_precisions as scene};
 use nisp_data::Table;
 use nisp_data::domain::{Domain, Sampling};
 use serde::Deserialize;

@@ -2,7 +2,7 @@
 
 #![allow(deprecated, reason = "scene `free` leaves the source under a null space on purpose")]
 
-use nisp::scene;
+use nisp::scene_in_both_precisions as scene;
 
 use crate::catalogue::{Binding, Entry};
 use crate::rivals::{Rlc, System};

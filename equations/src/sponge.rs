@@ -1,6 +1,6 @@
 //! A soft cube on unknown terrain: linear elasticity with contact (paper, section 4.3).
 
-use nisp::scene;
+use nisp::scene_in_both_precisions as scene;
 
 use crate::catalogue::{Binding, Entry};
 use crate::contact;

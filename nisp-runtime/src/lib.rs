@@ -3,6 +3,7 @@
 //! Data flows one way: points, channels through the network, residuals, loss, step, report.
 
 pub mod aligned;
+pub mod compiled;
 pub mod engine;
 pub mod features;
 pub mod functions;
@@ -20,3 +21,4 @@ pub mod schema;
 pub mod simd;
 pub mod solve;
 pub mod tanh;
+pub mod values;

@@ -2,12 +2,17 @@
 
 use crate::gemm::Multiply;
 use crate::simd::Dispatch;
+use crate::values::Precompiled;
 
 /// A floating-point element type of the engine: `f32` or `f64`, no other can exist.
 #[expect(private_bounds, reason = "seals the trait and ties vectors and products to it")]
 pub trait Real:
     Dispatch
     + Multiply
+    + Precompiled<1>
+    + Precompiled<2>
+    + Precompiled<3>
+    + Precompiled<4>
     + Copy
     + Send
     + Sync

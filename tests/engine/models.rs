@@ -1,6 +1,6 @@
 //! Scenes, each beside its equations written by hand.
 
-use nisp::scene;
+use nisp::scene_in_both_precisions as scene;
 
 use crate::number::Number;
 use crate::reference::{Data, Model, Point};

@@ -50,7 +50,8 @@ pub(crate) fn rows(scene: SceneRef, group: &str, given: &[(&str, f64)], point: &
         seeds: &[],
     };
     let mut rows = vec![0.0; group.rows * LANES];
-    f64::kernels(&scene)[at].residual(Isa::detect(), points, &mut rows);
+    let kernels = f64::kernels(&scene).expect("double precision");
+    kernels[at].programs.residual(Isa::detect(), points, &mut rows);
     rows.into_iter().step_by(LANES).collect()
 }
 

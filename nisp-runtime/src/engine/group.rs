@@ -7,7 +7,7 @@ use crate::schema::{self, TermKind};
 
 /// A group, its points and how its rows count. All quantities are in the engine's own units.
 pub struct BoundGroup<E: Real> {
-    pub(crate) kernel: Box<dyn GroupKernel<E>>,
+    pub(crate) kernel: GroupKernel<E>,
     pub(crate) schema: &'static schema::Group,
     /// Number of points.
     pub(crate) points: usize,
@@ -73,7 +73,7 @@ impl<E: Real> BoundGroup<E> {
     /// Binds a group to its points (engine units, `[point][coordinate]`), their partners (likewise; none unless the
     /// group is paired) and columns (`[column][point]`).
     pub(crate) fn new(
-        kernel: Box<dyn GroupKernel<E>>,
+        kernel: GroupKernel<E>,
         schema: &'static schema::Group,
         scaling: &Scaling,
         coordinates: &[f64],

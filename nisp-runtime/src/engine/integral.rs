@@ -82,7 +82,7 @@ impl<E: Real> Engine<E> {
             let term = &group.terms[integral.term];
             let sum: f64 =
                 parts.iter().filter(|(range, _)| range.group == integral.group).map(|(_, sums)| sums[at]).sum();
-            group.kernel.target(scalars, targets);
+            group.kernel.programs.target(scalars, targets);
             let scale = term.factor / term.size;
             let misfit = (sum - targets[integral.row]) * scale;
             if !misfit.is_finite() {
@@ -98,7 +98,7 @@ impl<E: Real> Engine<E> {
         let Integrals { rows, scalars, slopes, .. } = &mut self.integrals;
         scalars.iter_mut().zip(&self.scalars).for_each(|(to, from)| *to = from.to_f64());
         for integral in rows {
-            self.groups[integral.group].kernel.target_slopes(scalars, slopes);
+            self.groups[integral.group].kernel.programs.target_slopes(scalars, slopes);
             let learned = integral.target_slopes.len();
             integral.target_slopes.copy_from_slice(&slopes[integral.row * learned..][..learned]);
         }
@@ -119,7 +119,7 @@ fn sum_tile<E: Real>(
     let Buffers { jets, points, columns, rows, .. } = buffers;
     let scalars = network.scalars;
     let inputs = Points { count: tile.count, stride, jets, coordinates: points, columns, scalars, seeds: &[] };
-    tile.group.kernel.residual(network.isa, inputs, rows);
+    tile.group.kernel.programs.residual(network.isa, inputs, rows);
     for (integral, sum) in integrals.iter().zip(sums).filter(|(integral, _)| integral.group == group) {
         let weights = tile.group.terms[integral.term].point_weights.as_deref();
         let rows = &rows[integral.row * stride..][..tile.count];

@@ -120,7 +120,7 @@ impl<E: Real> Engine<E> {
         learned: Vec<Learned>,
     ) -> Self {
         for group in &mut groups {
-            group.tile = tile_points::<E>(&layout, group.kernel.channels() * group.sites(), group.points);
+            group.tile = tile_points::<E>(&layout, group.kernel.layers.channels() * group.sites(), group.points);
         }
         let terms = groups.iter().map(|g| g.terms.len()).sum();
         let chunks = cut(&groups)
@@ -332,7 +332,7 @@ fn weigh<E: Real>(
     let Buffers { jets, points, columns, rows, seeds, row_slopes, .. } = buffers;
     let inputs =
         Points { count: tile.count, stride, jets, coordinates: points, columns, scalars: network.scalars, seeds: &[] };
-    tile.group.kernel.residual(network.isa, inputs, rows);
+    tile.group.kernel.programs.residual(network.isa, inputs, rows);
     let mut fault = None;
     for ((index, term), share) in tile.group.terms.iter().enumerate().zip(shares) {
         if term.schema.kind == TermKind::Integral {
@@ -401,7 +401,7 @@ fn cut<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
         .iter()
         .enumerate()
         .flat_map(|(at, group)| {
-            let cost = group.sites() * group.kernel.channels();
+            let cost = group.sites() * group.kernel.layers.channels();
             group.tiles().map(move |(first, count)| (TileRange { group: at, first, count }, count * cost))
         })
         .collect();

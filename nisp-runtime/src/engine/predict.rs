@@ -90,5 +90,5 @@ fn residuals<E: Real>(network: &Network<'_, E>, tile: &Tile<'_, E>, buffers: &mu
         scalars: network.scalars,
         seeds: &[],
     };
-    tile.group.kernel.residual(network.isa, inputs, rows);
+    tile.group.kernel.programs.residual(network.isa, inputs, rows);
 }

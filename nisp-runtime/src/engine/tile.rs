@@ -5,7 +5,7 @@
 use super::group::BoundGroup;
 use super::heads::{Heads, HeadsRowsAdjoint, HeadsWeightsAdjoint};
 use crate::aligned::AlignedVec;
-use crate::layer::{Gate, GateAdjoint, Layer, LayerAdjoint, Shape, row_distance};
+use crate::layer::{Gate, GateAdjoint, Gated, GatedAdjoint, Layer, LayerAdjoint, Shape, row_distance};
 use crate::network::{Layout, ProductAdjoint, Weights};
 use crate::real::Real;
 use crate::residual::Points;
@@ -60,7 +60,7 @@ impl Extent {
     pub(crate) fn of<'a, E: Real>(groups: impl Iterator<Item = &'a BoundGroup<E>>) -> Self {
         groups.fold(Self::default(), |extent, group| Self {
             points: extent.points.max(group.tile * group.sites()),
-            rows: extent.rows.max(group.tile * group.sites() * group.kernel.channels()),
+            rows: extent.rows.max(group.tile * group.sites() * group.kernel.layers.channels()),
             sites: extent.sites.max(group.sites()),
             outputs: extent.outputs.max(group.outputs.len()),
             jets: extent.jets.max(group.jets.len()),
@@ -144,15 +144,14 @@ impl<E: Real> Network<'_, E> {
         self.load(tile, buffers);
         let shape = tile.shape(self.layout);
         let group = tile.group;
-        let kernel = &*group.kernel;
+        let kernel = group.kernel.layers;
         self.lift(tile, shape, buffers);
         let rows = shape.points * kernel.channels();
         let (first, gates) = split_gates(&mut buffers.lifted, rows * shape.ld);
         let layers = self.layout.architecture.layers;
         match gates {
             Some(gate) => {
-                let layer = Layer { shape, argument: first, bias: &[], slope: &mut [], output: &mut buffers.output };
-                kernel.gate(self.isa, layer, gate, layers == 1);
+                kernel.gate(self.isa, Gated { shape, input: first, gate, output: &mut buffers.output });
             }
             None => buffers.output[..first.len()].copy_from_slice(first),
         }
@@ -194,7 +193,7 @@ impl<E: Real> Network<'_, E> {
         let (stride, output_stride) = (tile.stride(), tile.output_stride());
         let heads = Heads {
             shape,
-            channels: group.kernel.channels(),
+            channels: group.kernel.layers.channels(),
             outputs: &group.outputs,
             weights: self.weights.matrix(&self.layout.head),
             rows: &buffers.output,
@@ -225,15 +224,15 @@ impl<E: Real> Network<'_, E> {
     /// the points, or one gradient per point, `padded_len` apart.
     pub(crate) fn adjoint(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>, gradient: &mut [E], per_point: bool) {
         let group = tile.group;
-        let kernel = &*group.kernel;
+        let kernel = group.kernel.layers;
         let shape = tile.shape(self.layout);
         let channels = kernel.channels();
         let parts = Parts { count: tile.count, points: shape.points, per_point, distance: self.layout.padded_len };
         self.programs_adjoint(tile, buffers, gradient, parts);
         let rows = shape.points * channels;
         let gated = self.layout.affine.len() > 1;
-        if self.layout.hidden.is_empty() && !gated {
-            // The affine layer's adjoint reads all channels; the heads wrote only those that are read.
+        if self.layout.hidden.is_empty() || !gated {
+            // Without a gate of its own a last layer's adjoint reads all channels; the heads write only those they read.
             buffers.seed[..rows * shape.ld].fill(E::ZERO);
         }
         let heads = HeadsRowsAdjoint {
@@ -286,7 +285,7 @@ impl<E: Real> Network<'_, E> {
             scalars: self.scalars,
             seeds: &buffers.seeds,
         };
-        group.kernel.adjoint(self.isa, points, &mut buffers.bars);
+        group.kernel.programs.adjoint(self.isa, points, &mut buffers.bars);
         let output_stride = tile.output_stride();
         buffers.output_bars[..group.outputs.len() * output_stride].fill(E::ZERO);
         for (map, bar) in group.jets.iter().zip(buffers.bars.chunks_exact(stride)) {
@@ -325,7 +324,7 @@ impl<E: Real> Network<'_, E> {
         parts: Parts,
         layer: usize,
     ) {
-        let channels = tile.group.kernel.channels();
+        let channels = tile.group.kernel.layers.channels();
         let next = self.layout.hidden.get(layer);
         for (first, count, at) in parts.ranges() {
             let start = first * channels * shape.ld;
@@ -366,23 +365,23 @@ impl<E: Real> Network<'_, E> {
         gradient: &mut [E],
         parts: Parts,
     ) {
-        let kernel = &*tile.group.kernel;
+        let kernel = tile.group.kernel.layers;
         let gated = self.layout.affine.len() > 1;
         if gated {
-            let layer = LayerAdjoint {
-                shape,
-                argument: &buffers.lifted[0],
-                slope: &[],
-                seed: &buffers.seed,
-                argument_bar: &mut buffers.bar,
-                output: &mut buffers.output,
-            };
             let gate = GateAdjoint {
                 gate: Gate { difference: &buffers.lifted[1], floor: &buffers.lifted[2] },
                 difference_bar: &mut buffers.difference_bar,
                 floor_bar: &mut buffers.floor_bar,
             };
-            kernel.gate_adjoint(self.isa, layer, gate, self.layout.hidden.is_empty());
+            let layer = GatedAdjoint {
+                shape,
+                input: &buffers.lifted[0],
+                seed: &buffers.seed,
+                gate,
+                input_bar: &mut buffers.bar,
+                output: &mut buffers.output,
+            };
+            kernel.gate_adjoint(self.isa, layer);
             // z = d + (c - d) z': c takes the adjoint of the difference, d what is left of its own.
             for (floor, &difference) in buffers.floor_bar.iter_mut().zip(buffers.difference_bar.iter()) {
                 *floor -= difference;

@@ -75,6 +75,15 @@ pub enum BindError {
         /// The term.
         term: &'static str,
     },
+    /// A scene whose kernels have not been compiled in the precision asked for.
+    #[error(
+        "scene `{scene}` is compiled in double precision only; call `.in_single_precision()` before `.problem()`, or solve \
+         in f64"
+    )]
+    NotCompiled {
+        /// The scene.
+        scene: &'static str,
+    },
     /// A network that cannot be.
     #[error(
         "a network of {layers} layers of {width} units cannot be built; both must be at least 1, and their product not huge"
@@ -314,7 +323,8 @@ impl Bound {
             return Err(BindError::Architecture { layers: architecture.layers, width: architecture.width });
         }
         let mut groups = Vec::new();
-        for (at, kernel) in E::kernels(&scene).into_iter().enumerate().take(scene.schema.groups.len()) {
+        let kernels = E::kernels(&scene).ok_or(BindError::NotCompiled { scene: scene.schema.name })?;
+        for (at, kernel) in kernels.into_iter().enumerate().take(scene.schema.groups.len()) {
             let schema = &scene.schema.groups[at];
             let mut group = BoundGroup::new(
                 kernel,
@@ -360,18 +370,18 @@ impl Bound {
     }
 
     /// The outputs group at points given in declared units, as an engine with no terms that count.
-    pub(crate) fn readout<E: Precision>(&self, architecture: Architecture, points: &[f64]) -> Engine<E> {
+    pub(crate) fn readout(&self, architecture: Architecture, points: &[f64]) -> Engine<f64> {
         let scene = self.problem.scene;
         let coordinates = scene.schema.coordinates;
         let factors: Vec<f64> = coordinates.iter().map(|c| self.system.inward(&c.unit)).collect();
         let points: Vec<f64> = points.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect();
         let isa = Isa::detect();
-        let lanes = isa.lanes::<E>();
+        let lanes = isa.lanes::<f64>();
         let layout = Layout::new(architecture, coordinates.len(), scene.schema.heads.len(), self.learned.len(), lanes);
-        let kernel = E::kernels(&scene).pop();
+        let kernel = scene.double().pop();
         let groups =
             kernel.map(|kernel| BoundGroup::new(kernel, &scene.schema.outputs, &self.scaling, &points, &[], &[]));
-        let scalars = self.scalars.iter().map(|&x| E::from_f64(x)).collect();
+        let scalars = self.scalars.clone();
         Engine::new(isa, layout, groups.into_iter().collect(), scalars, self.learned.clone())
     }
 }

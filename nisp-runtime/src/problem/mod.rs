@@ -86,6 +86,13 @@ impl Problem {
         self.scene
     }
 
+    /// The same bindings to the same scene, compiled otherwise; for emitted builders.
+    #[doc(hidden)]
+    #[must_use]
+    pub fn with_scene(self, scene: SceneRef) -> Self {
+        Self { scene, ..self }
+    }
+
     /// Gives a parameter its value, in its declared unit.
     ///
     /// # Errors

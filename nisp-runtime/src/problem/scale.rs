@@ -4,7 +4,7 @@
 //! size that makes their term as large as the rest of it. Rows are then divided by the sum of their terms' sizes.
 
 use crate::engine::Scaling;
-use crate::kernel::{GroupKernel, Precision, SceneRef};
+use crate::kernel::{GroupKernel, SceneRef};
 use crate::network::Inputs;
 use crate::residual::Points;
 use crate::schema::{self, Origin, TermKind};
@@ -42,7 +42,8 @@ pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>, inpu
     // Derivatives are sized by the steepest change that is expected, not by the whole range.
     let steepness = inputs.steepness(whole.len());
     let half: Vec<f64> = whole.iter().map(|half| half / steepness).collect();
-    let probes: Vec<Probe> = <f64 as Precision>::kernels(scene)
+    let probes: Vec<Probe> = scene
+        .double()
         .into_iter()
         .zip(schema.groups)
         .enumerate()
@@ -101,7 +102,7 @@ fn extents(schema: &schema::Scene, coordinates: &[Vec<f64>]) -> (Vec<f64>, Vec<f
 
 /// A group's programs on a sample of its points, with jets to choose.
 struct Probe {
-    kernel: Box<dyn GroupKernel<f64>>,
+    kernel: GroupKernel<f64>,
     schema: &'static schema::Group,
     count: usize,
     stride: usize,
@@ -110,13 +111,7 @@ struct Probe {
 }
 
 impl Probe {
-    fn new(
-        kernel: Box<dyn GroupKernel<f64>>,
-        schema: &'static schema::Group,
-        data: Data<'_>,
-        at: usize,
-        inputs: usize,
-    ) -> Self {
+    fn new(kernel: GroupKernel<f64>, schema: &'static schema::Group, data: Data<'_>, at: usize, inputs: usize) -> Self {
         let (coordinates, partners) = (&data.coordinates[at], &data.partners[at]);
         let points = coordinates.len() / inputs;
         let step = points.div_ceil(SAMPLE).max(1);
@@ -161,7 +156,7 @@ impl Probe {
         let mut seeds = vec![0.0; self.schema.rows * self.stride];
         seeds[row * self.stride..][..self.stride].fill(1.0);
         let mut bars = vec![0.0; (self.schema.jets.len() + scalars.len()) * self.stride];
-        self.kernel.adjoint(Isa::detect(), self.points(jets, scalars, &seeds), &mut bars);
+        self.kernel.programs.adjoint(Isa::detect(), self.points(jets, scalars, &seeds), &mut bars);
         bars
     }
 
@@ -169,9 +164,9 @@ impl Probe {
         let mut rows = vec![0.0; self.schema.rows * self.stride];
         let points = self.points(jets, scalars, &[]);
         if magnitude {
-            self.kernel.magnitude(Isa::detect(), points, &mut rows);
+            self.kernel.programs.magnitude(points, &mut rows);
         } else {
-            self.kernel.residual(Isa::detect(), points, &mut rows);
+            self.kernel.programs.residual(Isa::detect(), points, &mut rows);
         }
         rows
     }

@@ -1,6 +1,6 @@
 //! AVX2 with FMA: 8 lanes of f32, 4 of f64.
 
-use super::{Simd, intrinsics, map_by_lane};
+use super::{Simd, enter, intrinsics, map_by_lane};
 use crate::real::Real;
 use std::arch::x86_64::*;
 
@@ -67,6 +67,8 @@ unsafe fn exp2_pd(n: __m256d) -> __m256d {
         _mm256_castsi256_pd(_mm256_slli_epi64::<52>(_mm256_castpd_si256(shifted)))
     }
 }
+
+enter!("avx2,fma": F32x8, F64x4);
 
 impl Simd for F32x8 {
     type Elem = f32;

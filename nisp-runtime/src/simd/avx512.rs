@@ -1,6 +1,6 @@
 //! AVX-512: 16 lanes of f32, 8 of f64.
 
-use super::{Simd, intrinsics, map_by_lane};
+use super::{Simd, enter, intrinsics, map_by_lane};
 use crate::real::Real;
 use std::arch::x86_64::*;
 
@@ -16,6 +16,8 @@ pub(super) struct F32x16(__m512);
 #[derive(Clone, Copy)]
 #[repr(transparent)]
 pub(super) struct F64x8(__m512d);
+
+enter!("avx512f,avx512dq,avx512vl,avx2,fma": F32x16, F64x8);
 
 impl Simd for F32x16 {
     type Elem = f32;

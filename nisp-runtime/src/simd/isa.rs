@@ -99,6 +99,12 @@ pub trait Kernel<E: Real> {
     fn run<V: Simd<Elem = E>>(self) -> Self::Output;
 }
 
+/// Runs `kernel` one element at a time, on every machine: for work that no vector speeds up, compiled once.
+#[inline(always)]
+pub(crate) fn plain<E: Real, K: Kernel<E>>(kernel: K) -> K::Output {
+    E::plain(kernel)
+}
+
 /// Runs `kernel` with the vectors of `isa`, compiled for that instruction set whatever the crate is compiled for.
 #[inline(always)]
 pub fn dispatch<E: Real, K: Kernel<E>>(isa: Isa, kernel: K) -> K::Output {
@@ -111,6 +117,11 @@ pub(crate) trait Dispatch: Sized {
     fn dispatch<K: Kernel<Self>>(isa: Isa, kernel: K) -> K::Output
     where
         Self: Real;
+
+    /// See the function [`plain`].
+    fn plain<K: Kernel<Self>>(kernel: K) -> K::Output
+    where
+        Self: Real;
 }
 
 macro_rules! impl_dispatch {
@@ -121,15 +132,22 @@ macro_rules! impl_dispatch {
                 match isa.0 {
                     // SAFETY: an Isa of this level exists only if the machine has the features.
                     #[cfg(target_arch = "x86_64")]
-                    Level::Avx512 => unsafe { run_avx512::<super::avx512::$avx512, K>(kernel) },
+                    Level::Avx512 => unsafe { super::avx512::$avx512::enter(kernel) },
                     // SAFETY: as above.
                     #[cfg(target_arch = "x86_64")]
-                    Level::Avx2 => unsafe { run_avx2::<super::avx2::$avx2, K>(kernel) },
+                    Level::Avx2 => unsafe { super::avx2::$avx2::enter(kernel) },
                     // SAFETY: as above.
                     #[cfg(target_arch = "aarch64")]
-                    Level::Neon => unsafe { run_neon::<super::neon::$neon, K>(kernel) },
-                    Level::Scalar => run_scalar::<scalar::Array<$elem, $lanes>, K>(kernel),
+                    Level::Neon => unsafe { super::neon::$neon::enter(kernel) },
+                    // SAFETY: asks for no features.
+                    Level::Scalar => unsafe { scalar::Array::<$elem, $lanes>::enter(kernel) },
                 }
+            }
+
+            #[inline(always)]
+            fn plain<K: Kernel<Self>>(kernel: K) -> K::Output {
+                // SAFETY: asks for no features.
+                unsafe { scalar::Array::<$elem, 1>::enter(kernel) }
             }
         }
     };
@@ -138,33 +156,15 @@ macro_rules! impl_dispatch {
 impl_dispatch!(f32, F32x16, F32x8, F32x4, 4);
 impl_dispatch!(f64, F64x8, F64x4, F64x2, 2);
 
-/// # Safety
-/// The machine must have the features.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
-unsafe fn run_avx512<V: Simd, K: Kernel<V::Elem>>(kernel: K) -> K::Output {
-    kernel.run::<V>()
-}
-
-/// # Safety
-/// The machine must have the features.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2,fma")]
-unsafe fn run_avx2<V: Simd, K: Kernel<V::Elem>>(kernel: K) -> K::Output {
-    kernel.run::<V>()
-}
-
-/// # Safety
-/// The machine must have the features.
-#[cfg(target_arch = "aarch64")]
-#[target_feature(enable = "neon")]
-unsafe fn run_neon<V: Simd, K: Kernel<V::Elem>>(kernel: K) -> K::Output {
-    kernel.run::<V>()
-}
-
-#[inline(never)]
-fn run_scalar<V: Simd, K: Kernel<V::Elem>>(kernel: K) -> K::Output {
-    kernel.run::<V>()
+/// The trampoline into an instruction set. It is a method of the vector type, not a free function, because rustc cuts a
+/// crate into units of compilation by the modules of such types: an instruction set's kernels are compiled beside the
+/// others', not after them.
+pub(super) trait Enter: Simd {
+    /// Runs a kernel with vectors of this type.
+    ///
+    /// # Safety
+    /// The machine must have the instruction set.
+    unsafe fn enter<K: Kernel<Self::Elem>>(kernel: K) -> K::Output;
 }
 
 struct Lanes;

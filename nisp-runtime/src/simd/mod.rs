@@ -37,7 +37,7 @@ mod neon;
 mod scalar;
 
 use crate::real::Real;
-pub(crate) use isa::Dispatch;
+pub(crate) use isa::{Dispatch, plain};
 pub use isa::{Isa, Kernel, dispatch};
 
 /// A vector of `LANES` elements.
@@ -124,6 +124,21 @@ macro_rules! intrinsics {
     };
 }
 
+/// Writes the trampolines into an instruction set for its vectors.
+#[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
+macro_rules! enter {
+    ($features:literal: $($vector:ident),*) => {
+        $(
+            impl $crate::simd::isa::Enter for $vector {
+                #[target_feature(enable = $features)]
+                unsafe fn enter<K: $crate::simd::Kernel<Self::Elem>>(kernel: K) -> K::Output {
+                    kernel.run::<Self>()
+                }
+            }
+        )*
+    };
+}
+
 /// Writes [`Simd::map`] through an array.
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
 macro_rules! map_by_lane {
@@ -143,4 +158,4 @@ macro_rules! map_by_lane {
 }
 
 #[cfg(any(target_arch = "x86_64", target_arch = "aarch64"))]
-use {intrinsics, map_by_lane};
+use {enter, intrinsics, map_by_lane};

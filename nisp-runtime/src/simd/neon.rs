@@ -1,6 +1,6 @@
 //! NEON: 4 lanes of f32, 2 of f64.
 
-use super::{Simd, intrinsics, map_by_lane};
+use super::{Simd, enter, intrinsics, map_by_lane};
 use crate::real::Real;
 use std::arch::aarch64::*;
 
@@ -13,6 +13,8 @@ pub(super) struct F32x4(float32x4_t);
 #[derive(Clone, Copy)]
 #[repr(transparent)]
 pub(super) struct F64x2(float64x2_t);
+
+enter!("neon": F32x4, F64x2);
 
 /// Writes [`Simd`] for one element type. The shift and the number to add are those of its exponent: adding the number moves
 /// `n + bias` into the lowest bits of the mantissa, from where the shift takes it to the exponent.

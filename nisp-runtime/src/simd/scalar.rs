@@ -1,6 +1,7 @@
 //! Arrays: for machines without one of our instruction sets, and as the plain reading of the others.
 
-use super::Simd;
+use super::isa::Enter;
+use super::{Kernel, Simd};
 use crate::real::Real;
 
 /// `N` elements of type `E`: as wide as the vectors that any target's compiler makes of it (SSE2, WebAssembly).
@@ -46,6 +47,13 @@ impl<E: Bits, const N: usize> Array<E, N> {
     #[inline(always)]
     fn binary(self, b: Self, f: impl Fn(E, E) -> E) -> Self {
         Self(std::array::from_fn(|i| f(self.0[i], b.0[i])))
+    }
+}
+
+impl<E: Bits, const N: usize> Enter for Array<E, N> {
+    #[inline(never)]
+    unsafe fn enter<K: Kernel<E>>(kernel: K) -> K::Output {
+        kernel.run::<Self>()
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) fn emit(model: &Model, scene: &ScenePlan, declared: &model::Scene) ->
         #parameters
         #[doc = #doc]
         pub fn bind(parameters: Parameters) -> #first {
-            #first(::nisp::Problem::new(::nisp::__private::scene::<Scene>()).with_parameters(&parameters.values()))
+            #first(::nisp::Problem::new(::nisp::scene::<Scene>()).with_parameters(&parameters.values()))
         }
         #(#steps)*
         /// Everything is bound.
@@ -31,6 +31,12 @@ pub(super) fn emit(model: &Model, scene: &ScenePlan, declared: &model::Scene) ->
         impl #last {
             /// The bound problem, ready to be solved.
             pub fn problem(self) -> ::nisp::Problem { self.0 }
+            /// Compiles the scene in single precision too, for settings with `Width::F32`. It takes as long again.
+            #[inline]
+            #[must_use]
+            pub fn in_single_precision(self) -> Self {
+                Self(self.0.with_scene(::nisp::scene_in_both_precisions::<Scene>()))
+            }
         }
     }
 }

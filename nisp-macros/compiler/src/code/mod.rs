@@ -30,7 +30,8 @@ pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
     let name = ident(&model.name);
     let visibility = &model.visibility;
     let docs = docs(&model.docs);
-    let sets = plan.sets.iter().enumerate().map(|(at, set)| rules::emit(at, set, model));
+    let sets = plan.sets.iter().enumerate().filter(|(_, set)| !set.is_precompiled());
+    let sets = sets.map(|(at, set)| rules::emit(at, set, model));
     let groups = plan
         .scenes
         .iter()

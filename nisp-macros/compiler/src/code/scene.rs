@@ -5,7 +5,7 @@ use quote::{format_ident, quote};
 
 use super::{bind, docs, ident, residuals_type, rules_type, schema};
 use crate::model::{self, Model};
-use crate::plan::{Plan, ScenePlan};
+use crate::plan::{GroupPlan, Plan, ScenePlan};
 
 /// The module of one scene.
 pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene) -> TokenStream {
@@ -14,11 +14,9 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
     let equations = equations(model, scene);
     let schema = schema::emit(model, plan, scene, declared);
     let kernels = scene.groups.iter().map(|group| {
-        let set = &plan.sets[group.hidden].set;
-        let (hidden, last) = (rules_type(group.hidden), rules_type(group.last));
+        let layers = layers(plan, group);
         let residuals = residuals_type(declared, &model.groups[group.group]);
-        let (k, d, s) = (set.len(), set.order() as usize + 2, set.coordinates);
-        quote!(Box::new(Compiled::<kernels::#hidden, kernels::#last, kernels::#residuals, #k, #d, #s>::default()))
+        quote!(GroupKernel { layers: #layers, programs: CompiledPrograms::<kernels::#residuals>::erased() })
     });
     let latex = latex(model, scene);
     let bind = bind::emit(model, scene, declared);
@@ -27,7 +25,7 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
         #(#equations)*
         pub mod #name {
             use super::kernels;
-            use ::nisp::__private::{Compiled, GroupKernel, Real, schema};
+            use ::nisp::__private::{CompiledPrograms, GroupKernel, Real, schema};
 
             /// This scene, as the engine takes it.
             #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -35,7 +33,7 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
 
             impl ::nisp::Scene for Scene {
                 const SCHEMA: &'static schema::Scene = &#schema;
-                fn kernels<E: Real>() -> Vec<Box<dyn GroupKernel<E>>> {
+                fn kernels<E: Real>() -> Vec<GroupKernel<E>> {
                     vec![#(#kernels),*]
                 }
             }
@@ -44,6 +42,23 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
             #bind
         }
     }
+}
+
+/// The layers of a group: its own, or those of values that the runtime has compiled.
+fn layers(plan: &Plan, group: &GroupPlan) -> TokenStream {
+    let set = &plan.sets[group.hidden].set;
+    let (k, d, s) = (set.len(), set.order() as usize + 2, set.coordinates);
+    if plan.sets[group.last].is_precompiled() {
+        return quote!(<E as ::nisp::__private::Precompiled<#s>>::values());
+    }
+    let [hidden, last] = [group.hidden, group.last].map(|at| match plan.sets[at].is_precompiled() {
+        true => quote!(::nisp::__private::Values),
+        false => {
+            let name = rules_type(at);
+            quote!(kernels::#name)
+        }
+    });
+    quote!(::nisp::__private::CompiledLayers::<#hidden, #last, #k, #d, #s>::erased())
 }
 
 /// Documentation lines: every equation with its group and unit.

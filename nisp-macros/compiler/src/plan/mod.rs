@@ -192,6 +192,16 @@ pub enum RowKind {
     },
 }
 
+impl SetPlan {
+    /// Whether the runtime has the rules: those of values alone.
+    pub fn is_precompiled(&self) -> bool {
+        self.set.len() == 1 && self.read[0] && self.set.coordinates <= MOST_PRECOMPILED
+    }
+}
+
+/// Coordinates up to which the runtime has rules of values.
+const MOST_PRECOMPILED: usize = 4;
+
 impl ScenePlan {
     /// Parameters that are learned, by index in the model.
     pub fn learned<'a>(&'a self, scene: &'a crate::model::Scene) -> impl Iterator<Item = usize> + 'a {
