@@ -5,6 +5,7 @@ mod contact;
 mod dense_jet;
 mod determinism;
 mod gradients;
+mod hard;
 mod models;
 mod number;
 mod reference;

@@ -133,6 +133,19 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    mod held {
+        units: off;
+        coordinates: x, y;
+        fields: w;
+        sources: s;
+        hard w = x * y by 1 - x^2 - y^2;
+        on inside { balance: laplacian(w) == s; }
+        on samples { observe w; }
+        scene solve { }
+    }
+}
+
 /// Points that fill a box evenly: multiples of the golden ratio's generalisation (Roberts).
 fn scatter(count: usize, dimension: usize, low: f64, high: f64) -> Vec<f64> {
     let ratio = (0..60).fold(2.0_f64, |g, _| (1.0 + g).powf(1.0 / (dimension as f64 + 1.0)));
@@ -385,6 +398,31 @@ impl Model for Ring {
 }
 
 /// Runs a generic check on every model.
+pub(crate) struct Held;
+
+impl Model for Held {
+    const ORDER: usize = 2;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<held::solve::Scene>()
+    }
+    fn groups(&self) -> Vec<Data> {
+        let samples = Data { columns: vec![wave(25, 0.6)], ..group("samples", scatter(25, 2, -1.0, 1.0)) };
+        vec![group("inside", scatter(60, 2, -1.0, 1.0)), samples]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        let [x, y] = [0, 1].map(|i| T::of(at.x[i]));
+        let distance = T::of(1.0) - x * x - y * y;
+        let inner = &at.heads[0];
+        if group == "samples" {
+            return vec![x * y + distance * inner.value() - T::of(at.columns[0])];
+        }
+        // The product rule, by hand; x y is harmonic.
+        let along = x * inner.by(0).value() + y * inner.by(1).value();
+        let laplacian = distance * inner.laplacian(2).value() - T::of(4.0) * (along + inner.value());
+        vec![laplacian - at.heads[1].value()]
+    }
+}
+
 macro_rules! each_model {
     ($check:ident) => {
         $check(&crate::models::Cart);
@@ -395,6 +433,7 @@ macro_rules! each_model {
         $check(&crate::models::Heat);
         $check(&crate::models::Shape);
         $check(&crate::models::Ring);
+        $check(&crate::models::Held);
     };
 }
 
