@@ -59,13 +59,12 @@ pub(crate) fn rows(scene: SceneRef, group: &str, given: &[(&str, f64)], point: &
 fn value(jet: &Jet, heads: &[nisp::schema::Head], names: &[&str], state: &dyn Fn(&str, &[usize]) -> f64) -> f64 {
     let head = &heads[jet.head];
     let parts = jet.name.split(" + ").map(|part| {
-        let letters = part.strip_prefix(head.name).expect("a jet is named after its head");
-        let letters = letters.strip_prefix('_').unwrap_or(letters);
-        let (factor, letters) = match letters.split_once(' ') {
-            Some((factor, letters)) => (factor.parse().expect("a number"), letters),
-            None => (1.0, letters),
+        let (factor, name) = match part.split_once(' ') {
+            Some((factor, name)) => (factor.parse().expect("a number"), name),
+            None => (1.0, part),
         };
-        let mut rest = letters;
+        let letters = name.strip_prefix(head.name).expect("a jet is named after its head");
+        let mut rest = letters.strip_prefix('_').unwrap_or(letters);
         let mut orders = vec![0; names.len()];
         while !rest.is_empty() {
             let by = names.iter().position(|name| rest.starts_with(name)).expect("a coordinate");

@@ -42,10 +42,11 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
 
 /// Channels as people write them: `1`, `x`, `xx`, `xxx + xyy`.
 pub(super) fn channel_names(set: &ChannelSet, model: &Model) -> Vec<String> {
-    set.basis.iter().map(|operator| operator_name(operator, model)).collect()
+    set.basis.iter().map(|operator| operator_name(operator, model, "")).collect()
 }
 
-fn operator_name(operator: &Operator, model: &Model) -> String {
+/// An operator by its coordinates, each part behind `prefix`: `w_xxx + 2 w_xyy`.
+fn operator_name(operator: &Operator, model: &Model, prefix: &str) -> String {
     let mut name = String::new();
     for (at, (index, &coefficient)) in operator.terms().enumerate() {
         let letters: String = index
@@ -60,6 +61,7 @@ fn operator_name(operator: &Operator, model: &Model) -> String {
         if coefficient != Rational::from_integer(1) {
             name.push_str(&format!("{coefficient} "));
         }
+        name.push_str(prefix);
         name.push_str(&letters);
     }
     name
@@ -153,11 +155,9 @@ fn rule_flops(rules: &SetPlan) -> TokenStream {
 fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {
     let head = jet.head;
     let field = &model.fields[scene.heads[head]].name.text;
-    let operator = operator_name(&jet.operator, model);
-    let name = if operator == "1" {
-        field.clone()
-    } else {
-        format!("{field}_{}", operator.replace(" + ", &format!(" + {field}_")))
+    let name = match jet.operator.degree() {
+        0 => field.clone(),
+        _ => operator_name(&jet.operator, model, &format!("{field}_")),
     };
     let degree = degree(&jet.operator, model.coordinates.len());
     let site = jet.site;
