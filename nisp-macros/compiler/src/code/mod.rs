@@ -22,14 +22,16 @@ mod schema;
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::model::{Model, Name};
+use crate::model::{Model, Name, Role};
 use crate::plan::Plan;
+use crate::unit::Unit;
 
 /// Emits the module of a model.
 pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
     let name = ident(&model.name);
     let visibility = &model.visibility;
-    let docs = docs(&model.docs);
+    let documentation = docs(&model.docs);
+    let quantities = docs(&quantities(model));
     let sets = plan.sets.iter().enumerate().filter(|(_, set)| !set.is_precompiled());
     let sets = sets.map(|(at, set)| rules::emit(at, set, model));
     let groups = plan
@@ -41,7 +43,8 @@ pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
         plan.scenes.iter().zip(&model.scenes).map(|(scene, declared)| scene::emit(model, plan, scene, declared));
     let warnings = model.warnings.iter().enumerate().map(|(at, (message, span))| warning(at, message, *span));
     quote! {
-        #(#docs)*
+        #(#documentation)*
+        #(#quantities)*
         #[allow(non_snake_case, reason = "users name moduli and temperatures by capitals")]
         #visibility mod #name {
             #(#warnings)*
@@ -55,6 +58,31 @@ pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
             #(#scenes)*
         }
     }
+}
+
+/// Documentation lines: every quantity with its unit and what the user says of it.
+fn quantities(model: &Model) -> Vec<String> {
+    let line = |name: &Name, unit: &Unit, docs: &[String]| {
+        let unit = if unit.text.is_empty() { "1" } else { &unit.text };
+        let docs: Vec<&str> = docs.iter().map(|line| line.trim()).collect();
+        format!(" - `{}` \\[{unit}\\] {}", name.text, docs.join(" "))
+    };
+    let role = |role: Role| {
+        let fields = model.fields.iter().filter(move |field| field.role == role);
+        fields.map(|field| line(&field.name, &field.unit, &field.docs)).collect()
+    };
+    let sections: [(&str, Vec<String>); 4] = [
+        ("Coordinates", model.coordinates.iter().map(|c| line(&c.name, &c.unit, &c.docs)).collect()),
+        ("Fields", role(Role::Field)),
+        ("Sources", role(Role::Source)),
+        ("Parameters", model.parameters.iter().map(|p| line(&p.name, &p.unit, &p.docs)).collect()),
+    ];
+    let mut lines = Vec::new();
+    for (title, mut entries) in sections.into_iter().filter(|(_, entries)| !entries.is_empty()) {
+        lines.extend([String::new(), format!(" # {title}"), String::new()]);
+        lines.append(&mut entries);
+    }
+    lines
 }
 
 /// The least that keeps names defined when a module has errors, so that one mistake gives one error.
