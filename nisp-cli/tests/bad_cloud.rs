@@ -82,6 +82,8 @@ fn parameters() {
     cloud("--set p=5670 --set a=-1", &["`a` is -1 m"]);
     cloud("--set p=5670 --set q=1", &["there is no parameter `q`; the scene has: E, nu, t, p, a, b"]);
     refused(&[], "sponge --set nu=0", &["`nu` is 0"]);
+    refused(&[], "sponge --set force_z=0", &["`force_z` is 0 N", "terrain presses up"]);
+    refused(&[], "sponge --set force_z=-3", &["`force_z` is -3 N", "terrain on the sponge"]);
 }
 
 #[test]

@@ -56,6 +56,10 @@ const SIZES: [Size; 1] = [Size { name: "side", usual: 0.046 }];
 const POSITIVE: &Positive = &[
     ("E", "a sponge has a modulus above zero: give it with --set E=VALUE"),
     ("nu", "the equations divide by it: give Poisson's ratio with --set nu=VALUE"),
+    (
+        "force_z",
+        "terrain presses up: give the force of the terrain on the sponge, in its frame, with --set force_z=VALUE",
+    ),
 ];
 
 /// Points inside, on the whole boundary for the equations and for the surface that the cloud is compared with.
