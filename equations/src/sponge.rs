@@ -80,13 +80,13 @@ nisp::pde! {
             force_balance: integral(f * m) == force;
             torque_balance: integral(cross([x, y, z], f * m)) == torque;
         }
+        /// nothing touches them
         on sides {
             columns:
                 /// outward normal at rest
                 n: vector [1];
             free: sigma * n == 0;
             free_of_u: sigma_of_u * n == 0;
-            no_contact: f == 0;
         }
         on surface { cloud: chamfer [x, y, z] + u; }
         on top { held: u == 0; }

@@ -49,7 +49,7 @@ const POINTS: (usize, usize, usize) = (1500, 2000, 200);
 const LOCAL_POINTS: (usize, usize, usize) = (17_000, 8000, 400);
 /// Local functions: cells of two millimetres on the paper's membrane for a pressure with edges, of four where nothing
 /// touches it.
-const LOCAL: Local = Local { cells: 30, finer: 2, source_dimensions: 2, patches: None };
+const LOCAL: Local = Local { cells: 30, degree: 3, finer: 2, source_dimensions: 2, patches: None };
 const CELLS_FOR_PATCHES: usize = 60;
 /// What touches the membrane presses it out of its bulge, which takes the gauge pressure at least.
 const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.3, area: 0.6 };

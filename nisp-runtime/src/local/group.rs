@@ -24,7 +24,7 @@ const LEAST_MASS: f64 = 0.05;
 /// A group at its points.
 pub(super) struct Group {
     pub(super) schema: &'static schema::Group,
-    kernel: Box<dyn GroupKernel<f64>>,
+    kernel: GroupKernel<f64>,
     pub(super) sites: Sites,
     operators: Vec<Vec<(Exponents, f64)>>,
     /// By row: what it is divided by.
@@ -84,7 +84,7 @@ impl Group {
     /// A group whose points' weights are given, or none.
     pub(super) fn new(
         schema: &'static schema::Group,
-        kernel: Box<dyn GroupKernel<f64>>,
+        kernel: GroupKernel<f64>,
         sites: Sites,
         weights: Vec<f64>,
         base: &Lattice,
@@ -157,7 +157,7 @@ impl Group {
             seeds: &[],
         };
         let mut rows = vec![0.0; self.schema.rows * stride];
-        self.kernel.residual(Isa::detect(), points, &mut rows);
+        self.kernel.programs.residual(Isa::detect(), points, &mut rows);
         let straight = bounded.iter().all(|b| b.iter().all(|&(_, rest)| rest == 0.0));
         if !slopes && straight {
             return Evaluated { stride, rows, bars: Vec::new() };
@@ -168,7 +168,7 @@ impl Group {
                 let mut seeds = vec![0.0; self.schema.rows * stride];
                 seeds[row * stride..][..stride].fill(1.0);
                 let mut bars = vec![0.0; (count + scalars.len()) * stride];
-                self.kernel.adjoint(Isa::detect(), Points { seeds: &seeds, ..points }, &mut bars);
+                self.kernel.programs.adjoint(Isa::detect(), Points { seeds: &seeds, ..points }, &mut bars);
                 bars
             })
             .collect();
@@ -296,7 +296,7 @@ impl Group {
             return Vec::new();
         }
         let mut targets = vec![0.0; self.schema.rows];
-        self.kernel.target(scalars, &mut targets);
+        self.kernel.programs.target(scalars, &mut targets);
         let evaluated = self.evaluate(heads, theta, scalars, true);
         let weight = |p: usize| self.weights.get(p).copied().unwrap_or(1.0);
         rows.iter()

@@ -37,6 +37,8 @@ use solver::{End, Solver};
 pub struct Local {
     /// Cells along the longest coordinate.
     pub cells: usize,
+    /// Degree of the state's splines; at least the order of its highest derivative.
+    pub degree: usize,
     /// Cells of a source along one of the state's.
     pub finer: usize,
     /// Coordinates along which sources are spread: fewer than there are, if they live on a face.

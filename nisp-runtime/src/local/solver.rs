@@ -14,7 +14,6 @@ use super::prior::Sparse;
 use super::surface::{self, Surface};
 use super::{Local, LocalError};
 use crate::engine::Learned;
-use crate::kernel::Precision;
 use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::driver::{Flow, Status};
@@ -97,7 +96,7 @@ impl<'a> Solver<'a> {
             lattice.keep(places.into_iter(), if schema.heads[head].source { 2e-2 } else { 1e-4 });
         }
         let heads = Heads::new(bound, lattices);
-        let kernels = <f64 as Precision>::kernels(&bound.problem.scene());
+        let kernels = bound.problem.scene().double();
         let mut groups = Vec::new();
         let mut surfaces = Vec::new();
         let cell = (0..inputs).map(|axis| base.spacing(axis)).fold(0.0, f64::max);
@@ -369,7 +368,7 @@ fn base(bound: &Bound, cells: usize) -> Lattice {
     Lattice::new(1, low, spacing, count)
 }
 
-/// A head's lattice: a degree above the highest derivative for a field, hats on finer cells for a source.
+/// A head's lattice: splines of at least its highest derivative for a field, hats on finer cells for a source.
 fn lattice(bound: &Bound, settings: &Local, base: &Lattice, head: usize) -> Lattice {
     let schema = bound.problem.scene().schema;
     if schema.heads[head].source {
@@ -377,7 +376,7 @@ fn lattice(bound: &Bound, settings: &Local, base: &Lattice, head: usize) -> Latt
     }
     let jets = schema.groups.iter().flat_map(|group| group.jets).filter(|jet| jet.head == head);
     let order = jets.map(|jet| jet.degree.iter().map(|&n| usize::from(n)).sum::<usize>()).max().unwrap_or(0);
-    base.refined(order.max(1) + 1, 1)
+    base.refined(settings.degree.max(order), 1)
 }
 
 /// Coefficients that may occur in the same row: those around each node of the base lattice that points are near.
