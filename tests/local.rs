@@ -1,0 +1,185 @@
+//! Local functions on a drumhead with known answers: a disc of radius `R` under uniform tension `T`, inflated by `p` and
+//! pressed by `f` on a disc of radius `a` around its middle. With `r` the distance from the middle, `-T laplacian(w) = p - f`
+//! and `w(R) = 0` integrate to
+//!
+//! ```text
+//! w = p (R^2 - r^2) / 4T + f a^2 ln(r / R) / 2T         outside the patch
+//! w = w(a) + (p - f) (a^2 - r^2) / 4T                    inside
+//! ```
+
+use std::time::Duration;
+
+use nisp::local::{Local, Patches};
+use nisp::solve::driver::{Flow, Status};
+use nisp::{Points, Problem, Settings, Solution, recover, scene};
+
+nisp::pde! {
+    /// A drumhead.
+    pub mod drum {
+        coordinates:
+            /// place
+            x [mm],
+            /// place
+            y [mm];
+        fields:
+            /// height
+            w [mm];
+        sources:
+            /// pressure from above
+            f [Pa] >= 0;
+        parameters:
+            /// tension
+            T [N/m] in 1 .. 1000 = 20,
+            /// pressure from below
+            p [Pa];
+
+        on interior { balance: -T * laplacian(w) == p - f; }
+        on surface { cloud: chamfer [x, y, w]; }
+        on rim { held: w == 0; }
+
+        /// The pressure from above.
+        scene pressed { }
+        /// The tension of a drumhead that nothing presses.
+        scene free { f = 0; learn T; }
+    }
+}
+
+/// Radius in millimetres, tension, and the gauge pressure.
+const R: f64 = 40.0;
+const T: f64 = 50.0;
+const P: f64 = 4000.0;
+
+/// Height in millimetres at a distance from the middle, pressed by `f` within `a`.
+fn height(r: f64, f: f64, a: f64) -> f64 {
+    // N/m2 mm2 / (N/m) = 1e-3 mm
+    let outside = |r: f64| 1e-3 * (P * (R * R - r * r) / (4.0 * T) + f * a * a * (r / R).ln() / (2.0 * T));
+    if r >= a { outside(r) } else { outside(a) + 1e-3 * (P - f) * (a * a - r * r) / (4.0 * T) }
+}
+
+/// Points of a disc: a sunflower.
+fn disc(count: usize) -> Vec<f64> {
+    let point = |i: usize| {
+        let (r, angle) = (R * ((i as f64 + 0.5) / count as f64).sqrt(), i as f64 * 2.399_963_229_728_653);
+        [r * angle.cos(), r * angle.sin()]
+    };
+    (0..count).flat_map(point).collect()
+}
+
+fn bind(problem: &mut Problem, f: f64, a: f64) {
+    let (interior, rim) = (
+        disc(4000),
+        (0..240).flat_map(|i| {
+            let angle = std::f64::consts::TAU * f64::from(i) / 240.0;
+            [R * angle.cos(), R * angle.sin()]
+        }),
+    );
+    let weights = vec![std::f64::consts::PI * R * R / 4000.0; 4000];
+    problem.set_parameter("p", P).unwrap();
+    problem.set_group("interior", Points { coordinates: interior, weights, ..Points::default() }, Vec::new()).unwrap();
+    problem.set_group("surface", disc(3000).into(), Vec::new()).unwrap();
+    problem.set_group("rim", rim.collect::<Vec<_>>().into(), Vec::new()).unwrap();
+    // Clouds are given in the unit of their term.
+    let unit = 1e-3 / problem.scene().schema.groups[1].terms[0].unit.factor;
+    let seen = disc(1500);
+    let cloud = seen.chunks(2).flat_map(|c| [c[0], c[1], height(c[0].hypot(c[1]), f, a)]);
+    let cloud = cloud.map(|x| unit * x).collect();
+    problem.set_cloud("surface", "cloud", cloud).unwrap();
+    problem.set_view("surface", "cloud", [0.0, 0.0, 1.0]).unwrap();
+}
+
+fn solve(problem: &Problem, patches: Option<Patches>, threads: usize) -> Solution {
+    let local = Local { cells: 24, degree: 3, finer: 2, source_dimensions: 2, patches };
+    // Steps end the run, not time.
+    let budget = Some(Duration::from_secs(3600));
+    let settings = Settings { local: Some(local), iterations: Some(40), budget, threads, ..Settings::default() };
+    recover(problem, &settings, &mut |_| Flow::Continue).unwrap()
+}
+
+fn values<'a>(estimates: &'a [nisp::Estimate], name: &str) -> &'a [f64] {
+    &estimates.iter().find(|estimate| estimate.name == name).unwrap().values
+}
+
+#[test]
+fn the_tension_of_an_inflated_drumhead_is_found() {
+    let mut problem = Problem::new(scene::<drum::free::Scene>());
+    bind(&mut problem, 0.0, 1.0);
+    let mut solution = solve(&problem, None, 2);
+    let tension = &solution.learned()[0];
+    assert_eq!(solution.status, Status::Converged);
+    assert!((tension.value / T - 1.0).abs() < 1e-3, "{tension:?}");
+    let deviation = tension.deviation.unwrap();
+    assert!(deviation > 0.0 && deviation < 0.05 * T, "{deviation}");
+}
+
+#[test]
+fn a_pressed_patch_is_found_with_its_force_and_its_edge() {
+    let (f, a) = (12_000.0, 12.0);
+    let mut problem = Problem::new(scene::<drum::pressed::Scene>());
+    problem.set_parameter("T", T).unwrap();
+    bind(&mut problem, f, a);
+    let patches = Patches { level: P, edges: 0.3, area: 0.6 };
+    let solution = solve(&problem, Some(patches), 2);
+    let points = disc(6000);
+    let found = solution.evaluate(&points);
+    let pressure = values(&found, "f");
+    let area = 1e-6 * std::f64::consts::PI * R * R / 6000.0;
+    let force: f64 = pressure.iter().map(|f| f * area).sum();
+    let truth = 1e-6 * std::f64::consts::PI * a * a * f;
+    assert!((force / truth - 1.0).abs() < 0.02, "{force} {truth}");
+    let (mut both, mut either) = (0, 0);
+    for (pressure, point) in pressure.iter().zip(points.chunks(2)) {
+        let masks = (*pressure > 0.5 * f, point[0].hypot(point[1]) < a);
+        both += usize::from(masks.0 && masks.1);
+        either += usize::from(masks.0 || masks.1);
+    }
+    // Half a cell of the pressure's lattice around the edge.
+    assert!(f64::from(both as u32) > 0.85 * f64::from(either as u32), "{both} {either}");
+    let off = points.chunks(2).zip(values(&found, "w")).map(|(c, w)| (w - height(c[0].hypot(c[1]), f, a)).abs());
+    assert!(off.sum::<f64>() / 6000.0 < 0.02, "mean error of the height in mm");
+}
+
+#[test]
+fn the_answer_does_not_depend_on_the_threads() {
+    let mut problem = Problem::new(scene::<drum::pressed::Scene>());
+    problem.set_parameter("T", T).unwrap();
+    bind(&mut problem, 12_000.0, 12.0);
+    let patches = Patches { level: P, edges: 0.3, area: 0.6 };
+    let of = |threads| values(&solve(&problem, Some(patches), threads).evaluate(&disc(50)), "f").to_vec();
+    assert_eq!(of(1), of(3));
+}
+
+nisp::pde! {
+    /// A load on a beam of which only the sum is known.
+    pub mod load {
+        coordinates:
+            /// place
+            x [mm];
+        sources:
+            /// load
+            f [N/m];
+        parameters:
+            /// its sum
+            F [N];
+
+        on beam { even: d(f, x) == 0; total: integral(f) == F; }
+
+        /// The even load.
+        scene even_load { }
+    }
+}
+
+/// 3 N over 20 mm are 150 N/m, whatever the unit of the weights.
+#[test]
+fn weights_are_in_the_unit_of_the_coordinates() {
+    let mut problem = Problem::new(scene::<load::even_load::Scene>());
+    problem.set_parameter("F", 3.0).unwrap();
+    let points: Vec<f64> = (0..40).map(|i| 0.5 * (f64::from(i) + 0.5)).collect();
+    problem
+        .set_group("beam", Points { coordinates: points, weights: vec![0.5; 40], ..Points::default() }, Vec::new())
+        .unwrap();
+    let settings = Settings { iterations: Some(300), ..Settings::default() };
+    let solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
+    for value in values(&solution.evaluate(&[1.0, 10.0, 19.0]), "f") {
+        assert!((value - 150.0).abs() < 1e-3, "{value}");
+    }
+}
