@@ -117,7 +117,7 @@ fn a_pressed_patch_is_found_with_its_force_and_its_edge() {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
     bind(&mut problem, f, a);
-    let patches = Patches { level: P, edges: 0.3, area: 0.6 };
+    let patches = Patches { level: P, edges: 0.15, area: 0.75 };
     let solution = solve(&problem, Some(patches), 2);
     let points = disc(6000);
     let found = solution.evaluate(&points);
@@ -143,7 +143,7 @@ fn the_answer_does_not_depend_on_the_threads() {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
     bind(&mut problem, 12_000.0, 12.0);
-    let patches = Patches { level: P, edges: 0.3, area: 0.6 };
+    let patches = Patches { level: P, edges: 0.15, area: 0.75 };
     let of = |threads| values(&solve(&problem, Some(patches), threads).evaluate(&disc(50)), "f").to_vec();
     assert_eq!(of(1), of(3));
 }

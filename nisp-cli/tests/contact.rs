@@ -186,3 +186,23 @@ fn units_and_missing_points_are_taken_care_of() {
     // Without a truth there is a force, and nothing to compare it with.
     assert_eq!(metres["errors"].as_object().unwrap().len(), 1, "{metres}");
 }
+
+/// Not the best that the solver reaches: so many steps that a wrong turn would show.
+#[test]
+fn local_functions_find_the_patch_and_the_modulus() {
+    let place = Place::new();
+    let answer = |line: &str| {
+        let ran = place.run(&format!("solve {line} --budget 3600 --json"));
+        assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+        object(&ran.stdout)
+    };
+    let contact = answer("membrane --iterations 14");
+    assert_eq!(contact["optimizer"], "gauss-newton");
+    let of = |name: &str| contact["errors"][name].as_f64().unwrap();
+    assert!(of("iou") > 0.7, "{}", contact["errors"]);
+    assert!(of("force_error_N") < 0.05 * of("force_N"), "{}", contact["errors"]);
+    let (sample, truth) = (data("membrane/inflated_3.toml"), 285_000.0);
+    let modulus = answer(&format!("membrane --scene identify --sample {} --cloud 0", sample.display()));
+    let found = modulus["errors"]["E"].as_f64().unwrap();
+    assert!((found / truth - 1.0).abs() < 0.005, "{found}");
+}

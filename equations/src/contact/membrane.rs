@@ -52,7 +52,7 @@ const LOCAL_POINTS: (usize, usize, usize) = (17_000, 8000, 400);
 const LOCAL: Local = Local { cells: 30, degree: 3, finer: 2, source_dimensions: 2, patches: None };
 const CELLS_FOR_PATCHES: usize = 60;
 /// What touches the membrane presses it out of its bulge, which takes the gauge pressure at least.
-const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.3, area: 0.6 };
+const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.15, area: 0.75 };
 /// Points of the net force's quadrature, and of the surface in pictures.
 const FINE: (usize, usize) = (20_000, 4000);
 /// Spacing of the points where the answer is wanted.

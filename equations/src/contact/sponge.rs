@@ -69,7 +69,7 @@ const LOCAL_POINTS: (usize, usize, usize) = (13_824, 6144, 12_696);
 /// Local functions: cells of nearly six millimetres on the paper's sponge.
 const LOCAL: Local = Local { cells: 8, degree: 2, finer: 2, source_dimensions: 2, patches: Some(PATCHES) };
 /// A patch carries some hundreds of pascals.
-const PATCHES: Patches = Patches { level: 500.0, edges: 0.2, area: 1.0 };
+const PATCHES: Patches = Patches { level: 500.0, edges: 0.15, area: 0.75 };
 /// Nodes along an edge where the answer is wanted: a millimetre apart on the paper's sponge.
 const NODES: usize = 47;
 /// Nodes along an edge of the surface in pictures.

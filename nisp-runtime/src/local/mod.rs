@@ -23,7 +23,7 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use crate::problem::Bound;
-use crate::solve::driver::{Flow, Status};
+use crate::solve::driver::{Flow, Status, Warning};
 use crate::solve::fault::Fault;
 
 pub use prior::Patches;
@@ -78,6 +78,7 @@ pub(crate) struct LocalSolution {
     pub(crate) status: Status,
     pub(crate) iterations: u64,
     pub(crate) loss: f64,
+    pub(crate) warnings: Vec<Warning>,
     factor: Option<Factor>,
 }
 
@@ -103,7 +104,7 @@ pub(crate) fn solve(
         end.iterations += before;
         solver = fine;
     }
-    let End { state, status, iterations, loss, factor } = end;
+    let End { state, status, iterations, loss, warnings, factor } = end;
     Ok(LocalSolution {
         heads: solver.heads,
         theta: state.theta,
@@ -111,6 +112,7 @@ pub(crate) fn solve(
         status,
         iterations,
         loss,
+        warnings,
         factor,
     })
 }

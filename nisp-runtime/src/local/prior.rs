@@ -9,15 +9,16 @@ use super::heads::Heads;
 use super::lattice::Lattice;
 use super::normal::Normal;
 
-/// A prior for a source that is zero nearly everywhere.
+/// A prior for a source that is zero nearly everywhere. Its penalties are those for clouds that are as noisy as a cell is
+/// wide: finer data can pretend smaller patches, so that penalties rise as noise falls, that of an area as the square of that
+/// of a length.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Patches {
     /// The least that the source is where it is not zero, in its declared unit.
     pub level: f64,
     /// Penalty of an edge, by its length over one cell of the state and its height over `level`.
     pub edges: f64,
-    /// Penalty of a patch by its area over that of one cell of the state, where clouds are as noisy as a cell is wide. Finer
-    /// data can pretend smaller patches, so that the penalty rises as noise falls.
+    /// Penalty of a patch by its area over that of one cell of the state.
     pub area: f64,
 }
 
@@ -25,8 +26,8 @@ pub struct Patches {
 const CAP: f64 = 10.0;
 /// Differences of less than this share of a level are smoothed.
 const SMOOTH: f64 = 0.02;
-/// How the penalty of a patch depends on the noise, and the noise below which it rises no more.
-const FALL: f64 = -0.6;
+/// How the penalty of a length depends on the noise in cells, and the noise below which it rises no more.
+const FALL: f64 = -0.3;
 const FINEST: f64 = 0.03;
 /// Stiffness of the wall at the bound, by area as above.
 const WALL: f64 = 200.0;
@@ -66,13 +67,14 @@ impl Sparse<'_> {
         let (area, length) = self.measures();
         let f: Vec<f64> = theta[first..first + self.lattice().len()].iter().map(|c| c / self.level).collect();
         let steepness = self.steepness(&f);
-        let penalty = self.prior.area * self.noise.max(FINEST).powf(FALL);
+        let per_length = self.noise.max(FINEST).powf(FALL);
+        let (edges, patch) = (self.prior.edges * per_length, self.prior.area * per_length * per_length);
         let number = |at: u32| first as u32 + at;
         let square = 1.0 / (self.level * self.level);
         for axis in 0..self.lattice().dimensions() {
             for (a, b) in self.lattice().neighbours(axis) {
                 let (i, j) = (a as usize, b as usize);
-                let weight = self.prior.edges * length * compression(0.5 * (f[i] + f[j])) / steepness[i].max(SMOOTH);
+                let weight = edges * length * compression(0.5 * (f[i] + f[j])) / steepness[i].max(SMOOTH);
                 let slope = weight * (f[j] - f[i]) / self.level;
                 normal.gradient[first + i] -= slope;
                 normal.gradient[first + j] += slope;
@@ -82,7 +84,7 @@ impl Sparse<'_> {
             }
         }
         for (at, &f) in f.iter().enumerate() {
-            let slope = penalty * area * if concave { small(f) } else { 1.0 };
+            let slope = patch * area * if concave { small(f) } else { 1.0 };
             normal.gradient[first + at] += slope / self.level;
             if f < 0.0 {
                 normal.gradient[first + at] += WALL * area * f / self.level;

@@ -16,7 +16,7 @@ use super::{Local, LocalError};
 use crate::engine::Learned;
 use crate::problem::Bound;
 use crate::schema::TermKind;
-use crate::solve::driver::{Flow, Status};
+use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 
 /// How far equations may be off, as a share of their natural size: about the error of splines on their lattice. Held to less,
@@ -37,12 +37,14 @@ const CONVEX_STEPS: u64 = 6;
 const WARM_STEPS: u64 = 3;
 /// Largest change of a field in one step, in its natural sizes.
 const FARTHEST: f64 = 5.0;
+/// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
+const MOST_OFF: f64 = 5.0;
 /// Random vectors for the trace of the influence matrix (Hutchinson).
 const PROBES: usize = 2;
 /// Stiffness of a parameter that is held.
 const HELD: f64 = 1e30;
 /// Relative change of the coefficients at which the answer counts as converged.
-const CONVERGED: f64 = 5e-3;
+const CONVERGED: f64 = 2e-2;
 /// The same on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
 const ROUGHLY: f64 = 0.1;
 const COARSE_STEPS: u64 = 4;
@@ -76,6 +78,8 @@ pub(super) struct End {
     pub(super) status: Status,
     pub(super) iterations: u64,
     pub(super) loss: f64,
+    /// What the last step left open; empty if nothing.
+    pub(super) warnings: Vec<Warning>,
     pub(super) factor: Option<Factor>,
 }
 
@@ -182,6 +186,7 @@ impl<'a> Solver<'a> {
         let skipped = if from.is_some() { CONVEX_STEPS - WARM_STEPS } else { 0 };
         let mut state = from.unwrap_or_else(|| self.first());
         let mut loss = f64::INFINITY;
+        let mut rows = 0;
         let mut status = Status::Budget;
         let mut factor = None;
         let mut iteration = 0;
@@ -194,8 +199,8 @@ impl<'a> Solver<'a> {
             let (next, found) = self.step(&state, iteration + skipped, coarse)?;
             let change = self.change(&state, &next);
             state = next;
-            loss = found.0;
-            factor = Some(found.1);
+            (loss, rows) = (found.loss, found.rows);
+            factor = Some(found.factor);
             iteration += 1;
             longest = longest.max(start.elapsed().as_secs_f64() - began);
             if monitor(iteration, start.elapsed().as_secs_f64(), loss) == Flow::Stop {
@@ -208,11 +213,35 @@ impl<'a> Solver<'a> {
                 break;
             }
         }
-        Ok(End { state, status, iterations: iteration, loss, factor })
+        let warnings = self.doubts(loss, rows);
+        if !warnings.is_empty() && status != Status::Interrupted {
+            status = Status::NotConverged;
+        }
+        Ok(End { state, status, iterations: iteration, loss, warnings, factor })
     }
 
-    /// One step; also the loss before it, and the factorised matrix.
-    fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, (f64, Factor)), LocalError> {
+    /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.
+    fn doubts(&self, loss: f64, rows: usize) -> Vec<Warning> {
+        let mut doubts = Vec::new();
+        let off = (2.0 * loss / rows.max(1) as f64).sqrt();
+        if off > MOST_OFF {
+            doubts.push(format!(
+                "rows are off by {off:.0} times their tolerance: the steps did not reach a solution of the equations; give \
+                 more --budget, and check the parameters"
+            ));
+        }
+        let all: usize = self.surfaces.iter().map(Surface::len).sum();
+        let lost = all - self.surfaces.iter().map(|surface| surface.misfits().count()).sum::<usize>();
+        if 2 * lost > all {
+            doubts.push(format!(
+                "{lost} of the cloud's {all} points are not near the surface: is it a cloud of this body, in its frame?"
+            ));
+        }
+        doubts.into_iter().map(|message| Warning { kind: WarningKind::Stagnation, message }).collect()
+    }
+
+    /// One step; also what it found on its way.
+    fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, Found), LocalError> {
         let slopes = self.set_learned(&state.learned);
         let theta = &state.theta;
         let regress = iteration == 0;
@@ -223,7 +252,7 @@ impl<'a> Solver<'a> {
         let mut probes = vec![vec![0.0; theta.len()]; PROBES];
         let mut random = StdRng::seed_from_u64(0);
         self.normal.clear();
-        let mut loss = 0.0;
+        let (mut loss, mut rows) = (0.0, 0);
         for group in &self.groups {
             // The first step regresses data and pointwise conditions; equations come after.
             if regress && !group.weights.is_empty() {
@@ -231,6 +260,7 @@ impl<'a> Solver<'a> {
             }
             for block in group.blocks(&self.heads, theta, &self.scalars, &slopes) {
                 loss += half_square(&block, group.schema.name)?;
+                rows += block.misfits.len();
                 self.normal.add(&block);
             }
             if regress {
@@ -251,6 +281,7 @@ impl<'a> Solver<'a> {
                     block.kept().for_each(|(at, dof)| probe[dof as usize] += sign * block.slopes[at]);
                 }
             }
+            rows += surface.misfits().count();
             loss += surface.misfits().map(|misfit| 0.5 * surface::loss(misfit / noise)).sum::<f64>();
         }
         for at in 0..theta.len() as u32 {
@@ -272,7 +303,7 @@ impl<'a> Solver<'a> {
         let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
         next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
         next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
-        Ok((next, (loss, factor)))
+        Ok((next, Found { loss, rows, factor }))
     }
 
     /// Priors of sources, or of all heads' roughness while only data are regressed.
@@ -336,6 +367,13 @@ impl<'a> Solver<'a> {
         }
         (sum / (count - used).max(0.2 * count).max(1.0)).sqrt().max(LEAST_NOISE * self.cell)
     }
+}
+
+/// The loss before a step, from so many rows, and the factorised matrix.
+struct Found {
+    loss: f64,
+    rows: usize,
+    factor: Factor,
 }
 
 fn half_square(block: &Block, group: &str) -> Result<f64, LocalError> {

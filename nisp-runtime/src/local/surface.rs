@@ -71,6 +71,11 @@ impl Surface {
         }
     }
 
+    /// Points of the cloud.
+    pub(super) fn len(&self) -> usize {
+        self.cloud.len()
+    }
+
     /// Misfits of the points whose feet were found.
     pub(super) fn misfits(&self) -> impl Iterator<Item = f64> + '_ {
         self.misfits.iter().zip(&self.found).filter(|(_, found)| **found).map(|(misfit, _)| *misfit)

@@ -123,7 +123,7 @@ impl Solution {
             loss: found.loss,
             iterations: found.iterations,
             wall_s: start.elapsed().as_secs_f64(),
-            warnings: Vec::new(),
+            warnings: found.warnings.clone(),
             optimizer: Optimizer::Marquardt,
             settings: settings.clone(),
             bound,
