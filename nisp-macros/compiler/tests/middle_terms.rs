@@ -71,7 +71,7 @@ fn an_integral_has_integrands_and_targets() {
     let mut m = two_fields();
     let (force, gain) = (m.parameter("F", NONE), m.parameter("g", NONE));
     let target = vec![mul(&[&pow(&gain, 2), &force]), n(0)];
-    m.group("g", 0, vec![("r", TermKind::Integral { integrand: vec![field(0), field(1)], target })]);
+    m.group("g", 0, vec![("r", TermKind::Integral { integrand: vec![field(0), field(1)], target, measure: None })]);
     m.scene().learned = vec![false, true];
     let plan = plan::build(&m).unwrap();
     let term = &plan.scenes[0].groups[0].terms[0];

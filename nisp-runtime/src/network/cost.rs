@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn products_go_over_channels_and_heads_over_what_is_read() {
-        let jet = |head, combination| Jet { head, name: "", degree: &[], combination, site: 0 };
+        let jet = |head, combination| Jet { head, name: "", degree: &[], combination, operator: &[], site: 0 };
         let jets = [jet(0, &[(0, 1.0)]), jet(0, &[(3, 2.0), (0, 1.0)]), jet(1, &[(0, 1.0)])];
         let group = Group {
             name: "",

@@ -273,7 +273,7 @@ pub(crate) fn elasticity() -> Model {
         3,
         vec![
             ("traction", TermKind::Residual(traction.clone())),
-            ("force", TermKind::Integral { integrand: traction, target }),
+            ("force", TermKind::Integral { integrand: traction, target, measure: None }),
         ],
     );
     m.scene().learned = vec![true, true];
