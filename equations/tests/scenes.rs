@@ -154,7 +154,7 @@ fn bending_adds_the_biharmonic() {
         _ => 0.0,
     };
     let point = Point { coordinates: &[0.0, 0.0], columns: &[], state: &state };
-    let with = rows(scene::<membrane::contact::Scene>(), "interior", &[("p", 0.0)], &point)[0];
+    let with = rows(scene::<membrane::contact_bending::Scene>(), "interior", &[("p", 0.0)], &point)[0];
     let rigidity = 341260.0 * 4.5e-4_f64.powi(3) / (12.0 * 0.75);
     assert!((with - rigidity * (3.0 + 10.0 + 7.0)).abs() <= 1e-12 * with, "{with}");
 }

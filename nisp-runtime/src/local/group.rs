@@ -132,9 +132,9 @@ impl Group {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
             let is_value = jet.degree.iter().all(|&n| n == 0);
             let mut scratch = Vec::new();
-            for p in 0..sites.count {
+            for (p, out) in jets.iter_mut().enumerate().take(sites.count) {
                 let value = heads.derivative(jet.head, &sites.places[jet.head][p], operator, theta, &mut scratch);
-                jets[p] = if heads.bound[jet.head].is_some() && is_value {
+                *out = if heads.bound[jet.head].is_some() && is_value {
                     let (raw, slope, rest) = heads.raw(jet.head, value);
                     bounded.push((slope, rest));
                     raw

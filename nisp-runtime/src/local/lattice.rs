@@ -95,8 +95,8 @@ impl Lattice {
     /// Where a point is; points outside count to the nearest cell.
     pub(super) fn place(&self, point: &[f64]) -> Place {
         let mut place = Place::default();
-        for axis in 0..self.dimensions() {
-            let along = (point[axis] - self.low[axis]) / self.spacing[axis];
+        for (axis, x) in point.iter().enumerate().take(self.dimensions()) {
+            let along = (x - self.low[axis]) / self.spacing[axis];
             let cell = along.floor().clamp(0.0, (self.cells[axis] - 1) as f64);
             place.cell[axis] = cell as usize;
             place.within[axis] = along - cell;
@@ -134,8 +134,8 @@ impl Lattice {
         let mut line = [0.0; 16];
         out[0] = 1.0;
         let mut filled = 1;
-        for axis in 0..self.dimensions() {
-            let order = usize::from(exponents[axis]);
+        for (axis, &order) in exponents.iter().enumerate().take(self.dimensions()) {
+            let order = usize::from(order);
             on_cell(self.degree, order, place.within[axis], &mut line);
             let scale = self.spacing[axis].powi(-(order as i32));
             for j in (0..count).rev() {

@@ -118,7 +118,7 @@ impl<'a> Solver<'a> {
                 if !matches!(term.kind, TermKind::Chamfer { .. }) {
                     continue;
                 }
-                if term.rows != 3 || inputs < 2 || inputs > 3 {
+                if term.rows != 3 || !(2..=3).contains(&inputs) {
                     return Err(LocalError::Unsupported("a cloud that is not in space"));
                 }
                 let view = bound.view(at, term.name);

@@ -11,23 +11,32 @@ use crate::unit::{Dimension, Unit};
 /// Past this many coordinates only areas and volumes are tried as measures.
 const MOST_COORDINATES: usize = 8;
 
+/// One integral of a term.
+struct Integral {
+    integrand: Vec<Expr>,
+    target: Vec<Expr>,
+    dim: Dim,
+    /// Unit of the points' weights, where units tell.
+    measure: Option<Unit>,
+}
+
 impl TermInput<'_, '_> {
     pub(super) fn integrals(&mut self, relations: &[&Comparison]) -> Checked<Body> {
         let (mut integrand, mut target, mut dims) = (Vec::new(), Vec::new(), Vec::new());
         let mut measure = None;
         for relation in relations {
-            let (inside, outside, dim, unit) = self.integral(relation)?;
-            measure = measure.or(unit);
-            integrand.extend(inside);
-            target.extend(outside);
-            dims.push(dim);
+            let found = self.integral(relation)?;
+            measure = measure.or(found.measure);
+            integrand.extend(found.integrand);
+            target.extend(found.target);
+            dims.push(found.dim);
         }
         let parts: Vec<(&syntax::Expr, &Dim)> = relations.iter().map(|relation| &relation.left).zip(&dims).collect();
         let dim = self.elaborator.agree(&parts, "integrals of one term");
         Ok(self.body(TermKind::Integral { integrand, target, measure }, &dim, relations))
     }
 
-    fn integral(&mut self, relation: &Comparison) -> Checked<(Vec<Expr>, Vec<Expr>, Dim, Option<Unit>)> {
+    fn integral(&mut self, relation: &Comparison) -> Checked<Integral> {
         let place = relation.left.place.to(relation.right.place);
         let Some(([inner], target)) = integral_side(relation) else {
             let message = catalogue::wrong_arguments("integral", &catalogue::count(1), 0);
@@ -52,7 +61,8 @@ impl TermInput<'_, '_> {
             _ => vec![build::zero().expr; count],
         };
         let dim = if outside.dim == Dim::Any { inside.dim.clone() } else { outside.dim.clone() };
-        Ok((inside.entries.into_iter().map(|entry| entry.expr).collect(), targets, dim, measure))
+        let integrand = inside.entries.into_iter().map(|entry| entry.expr).collect();
+        Ok(Integral { integrand, target: targets, dim, measure })
     }
 
     /// The target's unit must be the integrand's times a length, an area, a volume or an extent of coordinates.
