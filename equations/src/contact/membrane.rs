@@ -100,14 +100,12 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let patches = level.map(|level| Patches { level, ..PATCHES });
     let cells = if patches.is_some() { CELLS_FOR_PATCHES } else { LOCAL.cells };
     let local = (!request.network).then_some(Local { cells, patches, ..LOCAL });
+    let (counts, sampling) = if local.is_some() { (LOCAL_POINTS, Sampling::Grid) } else { (POINTS, Sampling::Sobol) };
     for group in schema.groups {
-        let points = match (group.name, &local) {
-            ("rim", None) => ellipse.boundary(POINTS.2),
-            ("surface", None) => ellipse.interior(POINTS.1, Sampling::Sobol, 0),
-            (_, None) => ellipse.interior(POINTS.0, Sampling::Sobol, 0),
-            ("rim", Some(_)) => ellipse.boundary(LOCAL_POINTS.2),
-            ("surface", Some(_)) => ellipse.interior(LOCAL_POINTS.1, Sampling::Grid, 0),
-            (_, Some(_)) => ellipse.interior(LOCAL_POINTS.0, Sampling::Grid, 0),
+        let points = match group.name {
+            "rim" => ellipse.boundary(counts.2),
+            "surface" => ellipse.interior(counts.1, sampling, 0),
+            _ => ellipse.interior(counts.0, sampling, 0),
         };
         // Equations are tested by weighted means; conditions on the rim and places of the surface are single points.
         let weights = points.weights.filter(|_| local.is_some() && group.name == "interior").unwrap_or_default();

@@ -117,17 +117,14 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
 
     let cube = Domain::cuboid(&low, &high)?;
     let local = (!request.network).then_some(LOCAL);
-    let counts = if local.is_some() { LOCAL_POINTS } else { POINTS };
+    let (counts, sampling) = if local.is_some() { (LOCAL_POINTS, Sampling::Grid) } else { (POINTS, Sampling::Sobol) };
     for group in schema.groups {
         let count = if group.name == "surface" { counts.2 } else { counts.1 };
-        let points = match (group.name, &local) {
-            ("volume", None) => cube.interior(counts.0, Sampling::Sobol, 0),
-            ("volume", Some(_)) => cube.interior(counts.0, Sampling::Grid, 0),
-            (name, _) => match name {
-                "bottom" => cube.boundary(count).select(|_, normal| normal[2] < -0.5),
-                "top" => cube.boundary(count).select(|_, normal| normal[2] > 0.5),
-                _ => cube.boundary(count).select(|_, normal| normal[2].abs() < 0.5),
-            },
+        let points = match group.name {
+            "volume" => cube.interior(counts.0, sampling, 0),
+            "bottom" => cube.boundary(count).select(|_, normal| normal[2] < -0.5),
+            "top" => cube.boundary(count).select(|_, normal| normal[2] > 0.5),
+            _ => cube.boundary(count).select(|_, normal| normal[2].abs() < 0.5),
         };
         let columns = group.columns.iter().map(|column| normals(&points, column.name, presses)).collect();
         let weights = points.weights.unwrap_or_default();
