@@ -78,7 +78,7 @@ pub(crate) struct Options {
     /// Element type of the network.
     #[arg(long, default_value = "f64", value_parser = ["f32", "f64"], help_heading = METHOD)]
     pub(crate) precision: String,
-    /// A network even where local functions suit the scene better (membrane, sponge).
+    /// A network even where local functions suit the scene better (membrane, sponge); so does --optimizer.
     #[arg(long, help_heading = METHOD)]
     pub(crate) network: bool,
     /// Method of minimisation; auto chooses by the noise in the data.

@@ -20,6 +20,7 @@ const NOT_CONVERGED: u8 = 3;
 /// Solves, writes the results, and says how well it went.
 pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let entry = crate::entry(&options.equation)?;
+    let settings = settings(options)?;
     let request = Request {
         scene: options.scene.clone(),
         data: options.data.clone(),
@@ -27,11 +28,11 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         cloud: options.cloud,
         unit: options.unit,
         truth: options.truth.clone(),
-        network: options.network,
+        // Whoever names a method means one of those that train networks.
+        network: options.network || settings.optimizer != Optimizer::Auto,
         columns: options.column.clone(),
         parameters: options.set.clone(),
     };
-    let settings = settings(options)?;
     let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
     let settings = Settings { local: prepared.local, ..settings };
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;

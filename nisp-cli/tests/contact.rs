@@ -206,3 +206,10 @@ fn local_functions_find_the_patch_and_the_modulus() {
     let found = modulus["errors"]["E"].as_f64().unwrap();
     assert!((found / truth - 1.0).abs() < 0.005, "{found}");
 }
+
+/// Local functions have one method of their own, so that naming another asks for a network.
+#[test]
+fn a_named_method_trains_a_network() {
+    let ran = Place::new().run("solve membrane --optimizer adam --iterations 2 --width 4 --json");
+    assert_eq!(object(&ran.stdout)["optimizer"], "adam", "{}", ran.stderr);
+}
