@@ -168,6 +168,17 @@ nisp::pde! {
     }
 }
 
+#[test]
+fn a_lattice_without_cells_is_refused() {
+    let mut problem = Problem::new(scene::<load::even_load::Scene>());
+    problem.set_parameter("F", 3.0).unwrap();
+    problem.set_group("beam", vec![0.0, 1.0, 2.0].into(), Vec::new()).unwrap();
+    let local = Local { cells: 0, degree: 3, finer: 2, source_dimensions: 1, patches: None };
+    let settings = Settings { local: Some(local), ..Settings::default() };
+    let refused = recover(&problem, &settings, &mut |_| Flow::Continue).err().unwrap().to_string();
+    assert!(refused.contains("fewer than two cells"), "{refused}");
+}
+
 /// 3 N over 20 mm are 150 N/m, whatever the unit of the weights.
 #[test]
 fn weights_are_in_the_unit_of_the_coordinates() {

@@ -195,6 +195,13 @@ impl Group {
         own.flat_map(|term| term.first..term.first + term.rows).collect()
     }
 
+    /// Name of the term of one of [`Group::own_rows`], as the user wrote it.
+    pub(super) fn name(&self, at: usize) -> String {
+        let row = self.own_rows()[at];
+        let term = self.schema.terms.iter().find(|term| (term.first..term.first + term.rows).contains(&row));
+        format!("{}.{}", self.schema.name, term.map_or("", |term| term.name))
+    }
+
     /// Rows over their tolerances and their derivatives.
     pub(super) fn blocks(&self, heads: &Heads, theta: &[f64], scalars: &[f64], learned: &[f64]) -> Vec<Block> {
         let rows = self.own_rows();
@@ -348,15 +355,8 @@ fn nodes(base: &Lattice, flat: &[f64], weights: &[f64]) -> Vec<Node> {
         let place = hats.place(point);
         hats.values(&place, &Exponents::default(), &mut values);
         let span = hats.cell_span(&place);
-        for (corner, (number, value)) in hats.numbers(span).zip(&values).enumerate() {
-            let node = found.entry(number).or_insert_with(|| {
-                let mut cell = [0; MOST_COORDINATES];
-                for (axis, cell) in cell.iter_mut().enumerate().take(hats.dimensions()) {
-                    let index = place.cell[axis] + (corner >> axis & 1);
-                    *cell = index.saturating_sub(1).min(hats.cells[axis].saturating_sub(2));
-                }
-                Node { points: Vec::new(), cell, weight: 0.0 }
-            });
+        for ((number, value), cell) in hats.numbers(span).zip(&values).zip(base.around(&place)) {
+            let node = found.entry(number).or_insert_with(|| Node { points: Vec::new(), cell, weight: 0.0 });
             node.points.push((p as u32, weights[p] * value));
             node.weight += weights[p] * value;
         }

@@ -66,7 +66,7 @@ impl Heads {
             lattice.values(place, exponents, scratch);
             let numbers = lattice.kept(lattice.cell_span(place));
             let parts = numbers.zip(scratch.iter()).map(|(number, value)| match number {
-                super::lattice::NONE => 0.0,
+                NONE => 0.0,
                 number => theta[self.first[head] + number as usize] * value,
             });
             sum += coefficient * parts.sum::<f64>();

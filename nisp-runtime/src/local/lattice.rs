@@ -104,6 +104,19 @@ impl Lattice {
         place
     }
 
+    /// For each corner of a place's cell, in the order of hat functions: the first of the cells around it.
+    pub(super) fn around(&self, place: &Place) -> impl Iterator<Item = [usize; MOST_COORDINATES]> + '_ {
+        let place = *place;
+        (0..1usize << self.dimensions()).map(move |corner| {
+            let mut cell = [0; MOST_COORDINATES];
+            for (axis, cell) in cell.iter_mut().enumerate().take(self.dimensions()) {
+                let node = place.cell[axis] + (corner >> axis & 1);
+                *cell = node.saturating_sub(1).min(self.cells[axis].saturating_sub(2));
+            }
+            cell
+        })
+    }
+
     /// The functions that do not vanish on a place's cell.
     pub(super) fn cell_span(&self, place: &Place) -> Span {
         Span { first: place.cell, count: self.degree + 1 }

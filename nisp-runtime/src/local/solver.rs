@@ -15,7 +15,7 @@ use super::surface::{self, Surface};
 use super::{Local, LocalError};
 use crate::engine::Learned;
 use crate::problem::Bound;
-use crate::schema::TermKind;
+use crate::schema::{self, TermKind};
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 
@@ -87,9 +87,7 @@ impl<'a> Solver<'a> {
     pub(super) fn new(bound: &'a Bound, settings: &'a Local, cells: usize) -> Result<Self, LocalError> {
         let schema = bound.problem.scene().schema;
         let inputs = schema.coordinates.len();
-        if inputs > MOST_COORDINATES || schema.groups.iter().any(|group| group.paired) {
-            return Err(LocalError::Unsupported("paired points or more than four coordinates"));
-        }
+        refuse_what_networks_do(schema, settings)?;
         let base = base(bound, cells);
         let mut lattices: Vec<Lattice> =
             (0..schema.heads.len()).map(|head| lattice(bound, settings, &base, head)).collect();
@@ -118,11 +116,8 @@ impl<'a> Solver<'a> {
                 if !matches!(term.kind, TermKind::Chamfer { .. }) {
                     continue;
                 }
-                if term.rows != 3 || !(2..=3).contains(&inputs) {
-                    return Err(LocalError::Unsupported("a cloud that is not in space"));
-                }
                 let view = bound.view(at, term.name);
-                surfaces.push(Surface::new(at, term.first, cloud, view, flat, inputs, cell));
+                surfaces.push(Surface::new(at, term, cloud, view, flat, inputs, cell));
             }
             groups.push(group);
         }
@@ -259,7 +254,7 @@ impl<'a> Solver<'a> {
                 continue;
             }
             for block in group.blocks(&self.heads, theta, &self.scalars, &slopes) {
-                loss += half_square(&block, group.schema.name)?;
+                loss += half_square(&block, |row| group.name(row))?;
                 rows += block.misfits.len();
                 self.normal.add(&block);
             }
@@ -274,7 +269,7 @@ impl<'a> Solver<'a> {
         for surface in &self.surfaces {
             let group = &self.groups[surface.group];
             for block in surface.blocks(group, &self.heads, theta, &self.scalars, &slopes, noise) {
-                half_square(&block, group.schema.name)?;
+                half_square(&block, |_| format!("{}.{}", group.schema.name, surface.term))?;
                 self.normal.add(&block);
                 for probe in &mut probes {
                     let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
@@ -369,6 +364,37 @@ impl<'a> Solver<'a> {
     }
 }
 
+/// Splines of a higher degree than this are a slip.
+const HIGHEST_DEGREE: usize = 8;
+
+/// What only networks do must not be left out quietly.
+fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(), LocalError> {
+    let inputs = schema.coordinates.len();
+    let terms = || schema.groups.iter().flat_map(|group| group.terms);
+    let one_sided = |head: &schema::Head| head.lower.is_some() != head.upper.is_some();
+    let derived = |jet: &schema::Jet| schema.heads[jet.head].transformed && jet.degree.iter().any(|&n| n > 0);
+    let cloud = |term: &schema::Term| matches!(term.kind, TermKind::Chamfer { .. });
+    let refused = [
+        (inputs > MOST_COORDINATES, "more than four coordinates"),
+        (schema.groups.iter().any(|group| group.paired), "paired points"),
+        (
+            schema.heads.iter().any(|h| h.transformed && !one_sided(h)),
+            "heads between two bounds or with hard conditions",
+        ),
+        (schema.groups.iter().flat_map(|g| g.jets).any(derived), "derivatives of bounded heads"),
+        (terms().any(|t| t.kind == TermKind::Observation && t.within.is_none()), "measurements without `within`"),
+        (terms().any(|t| t.kind == TermKind::Chamfer { symmetric: true, plane: false }), "symmetric Chamfer distances"),
+        (terms().any(|t| !cloud(t) && t.loss != schema::Loss::Square), "robust losses of equations"),
+        (terms().any(|t| cloud(t) && (t.rows != 3 || !(2..=3).contains(&inputs))), "clouds that are not in space"),
+        (settings.cells < 2 || settings.finer == 0, "lattices of fewer than two cells"),
+        (settings.degree > HIGHEST_DEGREE, "splines of such a degree"),
+    ];
+    match refused.into_iter().find(|(is_so, _)| *is_so) {
+        Some((_, what)) => Err(LocalError::Unsupported(what)),
+        None => Ok(()),
+    }
+}
+
 /// The loss before a step, from so many rows, and the factorised matrix.
 struct Found {
     loss: f64,
@@ -376,9 +402,12 @@ struct Found {
     factor: Factor,
 }
 
-fn half_square(block: &Block, group: &str) -> Result<f64, LocalError> {
-    let sum: f64 = block.misfits.iter().map(|m| 0.5 * m * m).sum();
-    if sum.is_finite() { Ok(sum) } else { Err(LocalError::Fault(Fault::residual(group, None))) }
+/// Half the sum of a block's squares; `name` names a row's term.
+fn half_square(block: &Block, name: impl Fn(usize) -> String) -> Result<f64, LocalError> {
+    match block.misfits.iter().position(|misfit| !misfit.is_finite()) {
+        Some(row) => Err(LocalError::Fault(Fault::residual(name(row), None))),
+        None => Ok(block.misfits.iter().map(|misfit| 0.5 * misfit * misfit).sum()),
+    }
 }
 
 /// The lattice of the state: `cells` of them along the longest of the coordinates that share a scale.
@@ -395,7 +424,8 @@ fn base(bound: &Bound, cells: usize) -> Lattice {
         let group = schema.coordinates[axis].scale_group;
         let tied = (0..inputs).filter(|&other| schema.coordinates[other].scale_group == group);
         let longest = tied.map(|other| ranges[other].1 - ranges[other].0).fold(0.0, f64::max);
-        let h = longest / cells as f64;
+        // Along a coordinate that all points share, any size will do.
+        let h = if longest > 0.0 { longest / cells as f64 } else { 1.0 };
         let (from, to) = ranges[axis];
         // Rounding must not add a cell.
         let own = ((to - from) / h - 1e-9).ceil().max(2.0);
@@ -423,15 +453,7 @@ fn together(heads: &Heads, base: &Lattice, bound: &Bound) -> Vec<Vec<u32>> {
     let mut nodes = std::collections::BTreeSet::new();
     for points in &bound.coordinates {
         for point in points.chunks_exact(inputs) {
-            let place = base.place(point);
-            for corner in 0..1usize << inputs {
-                let mut cell = [0; MOST_COORDINATES];
-                for (axis, cell) in cell.iter_mut().enumerate().take(inputs) {
-                    let index = place.cell[axis] + (corner >> axis & 1);
-                    *cell = index.saturating_sub(1).min(base.cells[axis] - 2);
-                }
-                nodes.insert(cell);
-            }
+            nodes.extend(base.around(&base.place(point)));
         }
     }
     let around = |cell: [usize; MOST_COORDINATES]| {

@@ -9,6 +9,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use super::block::Block;
 use super::group::{Group, Sites};
 use super::heads::Heads;
+use crate::schema;
 
 /// Newton steps for the feet, at most.
 const STEPS: usize = 8;
@@ -16,6 +17,8 @@ const STEPS: usize = 8;
 /// A cloud of a term, and the feet of its points.
 pub(super) struct Surface {
     pub(super) group: usize,
+    /// Name of its term.
+    pub(super) term: &'static str,
     first: usize,
     cloud: Vec<Vector3<f64>>,
     /// The direction along which the cloud is off; nothing if across the surface.
@@ -40,7 +43,7 @@ pub(super) struct Surface {
 impl Surface {
     pub(super) fn new(
         group: usize,
-        first: usize,
+        term: &schema::Term,
         cloud: &[f64],
         view: Option<[f64; 3]>,
         samples: &[f64],
@@ -55,7 +58,8 @@ impl Surface {
         let count = cloud.len();
         Self {
             group,
-            first,
+            term: term.name,
+            first: term.first,
             cloud,
             view: view.map(|v| Vector3::from(v).normalize()),
             inputs,
