@@ -105,6 +105,12 @@ pub(crate) struct Options {
     /// Folder for results; made if it is not there.
     #[arg(long, value_name = "DIR", default_value = "nisp-out", help_heading = RESULTS)]
     pub(crate) out: PathBuf,
+    /// Keep checkpoint.nisp there: every few seconds and at the end.
+    #[arg(long, help_heading = RESULTS)]
+    pub(crate) checkpoint: bool,
+    /// Folder whose checkpoint.nisp to go on from, with the same scene, data and method.
+    #[arg(long, value_name = "DIR", help_heading = RESULTS)]
+    pub(crate) resume: Option<PathBuf>,
     /// One JSON object on standard output, and nothing else there.
     #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
@@ -129,6 +135,9 @@ Examples:
   nisp solve membrane --scene identify --data bubble.ply --unit mm --set p=5670
       your cloud; nothing touches the membrane, and its modulus is wanted
   nisp solve sponge --data sides.ply --set force_z=2.4 --set force_x=0 ...
+  nisp solve plate --budget 600 --checkpoint
+  nisp solve plate --budget 600 --checkpoint --resume nisp-out
+      goes on where the first run stopped, or was stopped
 
 Data:
   A CSV with one header line, a time that rises, and a column for each observed quantity. For `q` in metres the headers
@@ -150,8 +159,12 @@ Results, in the folder of --out:
   For contact also surface.svg, surface.vtu and surface.ply: the deformed surface, coloured by pressure.
   All are written together at the end; files of those names are replaced.
 
-Ctrl-C (or SIGTERM) ends the run at the best state so far, which is written; the status is not_converged. A second
-Ctrl-C ends it at once.
+Ctrl-C (or SIGTERM) ends the run at the best state so far, which is written together with checkpoint.nisp; the status
+is not_converged. A second Ctrl-C ends it at once.
+
+Checkpoints (--checkpoint, Ctrl-C) hold the whole state of the solver. `nisp solve SCENE --resume DIR`, with the other
+options as before, goes on as if the run had not stopped, to the last bit on the same kind of processor; --budget counts
+from now, --iterations from the first start. A checkpoint that is damaged or of another problem is refused.
 
 Exit codes:
   0  solved, or the budget is spent (status `converged`, `budget`)

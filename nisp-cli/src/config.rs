@@ -6,7 +6,7 @@ use std::path::Path;
 use toml::{Table, Value};
 
 /// Options whose values are paths.
-const PATHS: [&str; 4] = ["data", "sample", "truth", "out"];
+const PATHS: [&str; 5] = ["data", "sample", "truth", "out", "resume"];
 
 /// The flags that a file stands for.
 ///

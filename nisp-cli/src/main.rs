@@ -1,6 +1,7 @@
 //! The `nisp` command: list, explain and solve the equations that NISP ships, and measure how well.
 
 mod args;
+mod checkpoint;
 mod config;
 mod explain;
 mod frontier;

@@ -89,6 +89,7 @@ pub(crate) fn json(
             "budget_s": options.budget,
             "iterations": options.iterations,
             "out": options.out,
+            "resume": options.resume,
             "isa": solution.isa(),
         },
     });

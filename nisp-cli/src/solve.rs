@@ -6,11 +6,12 @@ use std::time::Duration;
 
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Optimizer, Settings, Solution, Width, recover};
+use nisp::{Checkpoint, Optimizer, Report, Settings, Solution, Width, recover, resume};
 use nisp_data::OutDir;
 use nisp_equations::{Prepared, Request, Truth};
 
 use crate::args::Options;
+use crate::checkpoint::{self, Keeper};
 use crate::score::Found;
 use crate::{interrupt, report, results};
 
@@ -35,10 +36,13 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     };
     let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
     let settings = Settings { local: prepared.local, ..settings };
-    let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
+    let from = options.resume.as_deref().map(checkpoint::read).transpose()?;
+    let mut out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::listen()?;
-    let mut solution = run(&prepared, &settings)?;
+    let mut keeper = options.checkpoint.then(|| Keeper::new(&mut out));
+    let mut solution = run(&prepared, &settings, from.as_ref(), keeper.as_mut())?;
     let mut warnings = prepared.warnings.clone();
+    warnings.extend(keeper.and_then(|keeper| keeper.failure));
     warnings.extend(solution.warnings.iter().map(|warning| warning.message.clone()));
     // What the compiler found: one line each, without its advice to whoever writes the equations.
     let open = solution.scene().warnings.iter().filter_map(|message| message.lines().next());
@@ -49,7 +53,10 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     warnings.extend(prepared.truth.as_ref().and_then(unscored));
     let found = Found::of(&mut solution, &prepared);
     warnings.extend(found.warnings());
-    let files = results::files(&prepared, &mut solution).map_err(|error| error.to_string())?;
+    let mut files = results::files(&prepared, &mut solution).map_err(|error| error.to_string())?;
+    if options.checkpoint || solution.status == Status::Interrupted {
+        files.push((checkpoint::NAME, solution.checkpoint.to_bytes()));
+    }
     out.write(&files).map_err(|error| error.to_string())?;
     let written = report::written(&files, &out);
     let text = if options.json {
@@ -95,18 +102,30 @@ pub(crate) fn processors() -> usize {
 const MOST_THREADS: usize = 1024;
 
 /// Runs the solver, with a line of progress on a terminal.
-fn run(prepared: &Prepared, settings: &Settings) -> Result<Solution, String> {
+fn run(
+    prepared: &Prepared,
+    settings: &Settings,
+    from: Option<&Checkpoint>,
+    mut keeper: Option<&mut Keeper<'_>>,
+) -> Result<Solution, String> {
     let terminal = std::io::stderr().is_terminal();
     let budget = settings.budget.unwrap_or_default().as_secs_f64();
     let mut shown = 0.0;
-    let result = recover(&prepared.problem, settings, &mut |report| {
+    let mut monitor = |report: Report<'_>| {
+        if let Some(keeper) = &mut keeper {
+            keeper.see(&report);
+        }
         if terminal && report.elapsed_s >= shown {
             shown = report.elapsed_s + 0.1;
             let (now, step, loss) = (report.elapsed_s, report.iteration, report.loss);
             eprint!("\r{now:6.1} of {budget} s  step {step}  loss {loss:.3e}\x1b[K");
         }
         if interrupt::asked() { Flow::Stop } else { Flow::Continue }
-    });
+    };
+    let result = match from {
+        None => recover(&prepared.problem, settings, &mut monitor),
+        Some(checkpoint) => resume(&prepared.problem, settings, checkpoint, &mut monitor),
+    };
     if terminal {
         eprint!("\r\x1b[K");
     }

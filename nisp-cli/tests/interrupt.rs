@@ -39,5 +39,10 @@ fn ctrl_c_writes_the_best_state_and_says_so() {
     assert_eq!(object["status"], "not_converged");
     assert!(object["warnings"].to_string().contains("interrupted after"));
     assert!(object["iterations"].as_u64().unwrap() > 0);
-    assert_eq!(names(&place.path("nisp-out")), ["plot.svg", "source.csv", "state.csv"]);
+    assert_eq!(names(&place.path("nisp-out")), ["checkpoint.nisp", "plot.svg", "source.csv", "state.csv"]);
+    let stopped = object["iterations"].as_u64().unwrap();
+    let ran = place.run(&format!("solve pendulum --resume nisp-out --iterations {} --json", stopped + 2));
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    let object: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    assert_eq!(object["iterations"], stopped + 2);
 }

@@ -4,7 +4,7 @@ mod solve_common;
 
 use nisp_runtime::solve::adam::{Adam, AdamSettings};
 use nisp_runtime::solve::broyden::{Broyden, Update};
-use nisp_runtime::solve::driver::{Flow, Limits, Status, WarningKind, run};
+use nisp_runtime::solve::driver::{Flow, Limits, Outcome, Status, WarningKind, resume, run};
 use nisp_runtime::solve::fault::Kind;
 use nisp_runtime::solve::gauss_newton::GaussNewton;
 use nisp_runtime::solve::lbfgs::Lbfgs;
@@ -88,7 +88,32 @@ fn steps_are_limited_and_a_monitor_may_stop() {
         Flow::Continue
     });
     assert_eq!((outcome.status, outcome.iterations), (Status::Interrupted, 3));
-    assert_eq!(saved.unwrap(), Method::<f64, Function>::save(&method));
+    let mut other = Broyden::new(vec![0.0, 0.0], Update::Bfgs);
+    Method::<f64, Function>::restore(&mut other, &saved.unwrap()).unwrap();
+    assert_eq!(Method::<f64, Function>::save(&other), Method::<f64, Function>::save(&method));
+}
+
+#[test]
+fn a_resumed_run_is_judged_and_remembered_as_if_it_had_not_stopped() {
+    let start = || Marquardt::new(vec![1.0, 0.1, 0.0], WeightPrior::uniform(1e-4, 3));
+    let function = || {
+        let mut rows = exponential(25);
+        rows.faulty = vec![4];
+        rows
+    };
+    let straight = run(&mut start(), &mut function(), Limits::default(), &mut |_| Flow::Continue);
+    assert_eq!(straight.status, Status::Converged);
+    assert!(matches!(straight.warnings[0].kind, WarningKind::Fault(_)));
+    // After the fault: who goes on may evaluate once more than who does not stop, so that calls are numbered otherwise.
+    for stop in 4..straight.iterations {
+        let limits = Limits { iterations: stop, ..Limits::default() };
+        let mut shared = function();
+        let first = run(&mut start(), &mut shared, limits, &mut |_| Flow::Continue);
+        let mut method = start();
+        let resumed =
+            resume(&mut method, &mut shared, &first.state, Limits::default(), &mut |_| Flow::Continue).unwrap();
+        assert_eq!(Outcome { wall_s: straight.wall_s, ..resumed }, straight, "after {stop}");
+    }
 }
 
 #[test]

@@ -40,7 +40,7 @@ impl Trial {
         };
         let (mut errors, mut seconds) = (0.0, 0.0);
         for sample in samples {
-            let go_on = &mut |_| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
+            let go_on = &mut |_: nisp::Report<'_>| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
             let solution = recover(&sample.problem, &settings, go_on).map_err(|error| error.to_string())?;
             let scores = sample.truth.as_ref().map_or_else(Vec::new, |truth| score(&solution, truth));
             let sources = || scores.iter().filter(|score| score.if_zero.is_some());

@@ -14,17 +14,19 @@ mod group;
 mod heads;
 mod lattice;
 mod normal;
+mod place;
 mod prior;
 mod solver;
 mod surface;
 
-use std::time::{Duration, Instant};
+use std::time::Instant;
 
 use thiserror::Error;
 
 use crate::problem::Bound;
-use crate::solve::driver::{Flow, Status, Warning};
+use crate::solve::driver::{Flow, Limits, Status, Warning};
 use crate::solve::fault::Fault;
+use crate::solve::state::State;
 
 pub use prior::Patches;
 
@@ -80,31 +82,55 @@ pub(crate) struct LocalSolution {
     pub(crate) loss: f64,
     pub(crate) warnings: Vec<Warning>,
     factor: Option<Factor>,
+    /// Where the solver stopped.
+    pub(crate) checkpoint: State,
 }
 
-/// Solves a bound problem within a budget.
+/// What the caller sees after every step.
+pub(crate) struct Progress<'a> {
+    /// Steps so far, on all lattices.
+    pub(crate) iteration: u64,
+    /// Seconds so far.
+    pub(crate) elapsed_s: f64,
+    /// The loss before the step.
+    pub(crate) loss: f64,
+    /// Gives the state before the step, which whoever goes on from it repeats.
+    pub(crate) checkpoint: &'a dyn Fn() -> State,
+}
+
+/// Name of the method in saved states.
+const METHOD: &str = "local functions";
+
+/// Solves a bound problem within its limits, from the start or from a saved state.
 pub(crate) fn solve(
     bound: &Bound,
     settings: &Local,
-    budget: Duration,
-    iterations: u64,
-    monitor: &mut dyn FnMut(u64, f64, f64) -> Flow,
+    limits: Limits,
+    from: Option<&State>,
+    monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
 ) -> Result<LocalSolution, LocalError> {
     let start = Instant::now();
     let coarse = settings.cells.div_ceil(COARSER).max(FEWEST).min(settings.cells);
-    let mut solver = Solver::new(bound, settings, coarse)?;
-    let mut end = solver.run(None, start, budget, iterations, coarse < settings.cells, monitor)?;
-    let left = iterations - end.iterations;
-    if coarse < settings.cells && end.status != Status::Interrupted && left > 0 && start.elapsed() < budget {
+    let (lattice, before) = match from {
+        None => (0, 0),
+        Some(state) => saved_place(state).map_err(LocalError::Fault)?,
+    };
+    let first_is_coarse = coarse < settings.cells && lattice == 0;
+    let mut stage = Stage { start, limits, before, lattice, monitor };
+    let mut solver = Solver::new(bound, settings, if first_is_coarse { coarse } else { settings.cells })?;
+    let place = match from {
+        None => solver.first(),
+        Some(state) => solver.restore(state).map_err(LocalError::Fault)?,
+    };
+    let mut end = solver.run(place, first_is_coarse, &mut stage)?;
+    if first_is_coarse && end.status != Status::Interrupted && !stage.is_spent(end.iterations) {
         let mut fine = Solver::new(bound, settings, settings.cells)?;
-        let before = end.iterations;
-        let from = fine.taken_over(&solver.heads, &end.state)?;
-        end =
-            fine.run(Some(from), start, budget, left, false, &mut |step, at, loss| monitor(before + step, at, loss))?;
-        end.iterations += before;
+        let place = fine.taken_over(&solver.heads, &end.state)?;
+        (stage.before, stage.lattice) = (end.iterations, 1);
+        end = fine.run(place, false, &mut stage)?;
         solver = fine;
     }
-    let End { state, status, iterations, loss, warnings, factor } = end;
+    let End { state, status, iterations, loss, warnings, factor, checkpoint } = end;
     Ok(LocalSolution {
         heads: solver.heads,
         theta: state.theta,
@@ -114,7 +140,31 @@ pub(crate) fn solve(
         loss,
         warnings,
         factor,
+        checkpoint,
     })
+}
+
+/// The lattice of a saved state, and the steps before it.
+fn saved_place(state: &State) -> Result<(u64, u64), Fault> {
+    state.check_method(METHOD)?;
+    Ok((state.counter("lattice")?, state.counter("before")?))
+}
+
+/// A run on one lattice as part of the whole.
+struct Stage<'a> {
+    start: Instant,
+    limits: Limits,
+    /// Steps on lattices before.
+    before: u64,
+    lattice: u64,
+    monitor: &'a mut dyn FnMut(Progress<'_>) -> Flow,
+}
+
+impl Stage<'_> {
+    /// True where steps or time are spent after so many steps in all.
+    fn is_spent(&self, iterations: u64) -> bool {
+        iterations >= self.limits.iterations || self.limits.budget.is_some_and(|budget| self.start.elapsed() >= budget)
+    }
 }
 
 impl LocalSolution {

@@ -1,7 +1,5 @@
 //! Gauss-Newton on sparse rows, with the prior of the sources majorised anew before every step.
 
-use std::time::{Duration, Instant};
-
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -10,14 +8,17 @@ use super::group::{Group, Sites};
 use super::heads::Heads;
 use super::lattice::{Lattice, MOST_COORDINATES, NONE, Span};
 use super::normal::{Factor, Normal};
+use super::place::{Place, State};
 use super::prior::Sparse;
-use super::surface::{self, Surface};
-use super::{Local, LocalError};
+use super::surface::{self, Feet, Surface};
+use super::{Local, LocalError, Progress, Stage};
 use crate::engine::Learned;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
+use crate::solve::method::FAULTS_IN_A_ROW;
+use crate::solve::state;
 
 /// How far equations may be off, as a share of their natural size: about the error of splines on their lattice. Held to less,
 /// they would take that error for a load.
@@ -48,6 +49,8 @@ const CONVERGED: f64 = 2e-2;
 /// The same on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
 const ROUGHLY: f64 = 0.1;
 const COARSE_STEPS: u64 = 4;
+/// Share of a step that is tried where the whole led to numbers that are not finite.
+const RETREAT: f64 = 0.25;
 
 /// A problem on its lattices.
 pub(super) struct Solver<'a> {
@@ -62,16 +65,6 @@ pub(super) struct Solver<'a> {
     cell: f64,
 }
 
-/// An iterate: coefficients, parameters of learned scalars, and the noise of the clouds.
-#[derive(Clone, Debug)]
-pub(super) struct State {
-    pub(super) theta: Vec<f64>,
-    pub(super) learned: Vec<f64>,
-    pub(super) noise: f64,
-    /// Numbers of the clouds that the answer has used up: the trace of its influence matrix.
-    used: f64,
-}
-
 /// How a run ended.
 pub(super) struct End {
     pub(super) state: State,
@@ -81,6 +74,8 @@ pub(super) struct End {
     /// What the last step left open; empty if nothing.
     pub(super) warnings: Vec<Warning>,
     pub(super) factor: Option<Factor>,
+    /// The state before the last step, which whoever goes on from it repeats.
+    pub(super) checkpoint: state::State,
 }
 
 impl<'a> Solver<'a> {
@@ -127,13 +122,14 @@ impl<'a> Solver<'a> {
     }
 
     /// Where the solver starts: all heads at their offsets.
-    fn first(&self) -> State {
-        State {
+    pub(super) fn first(&self) -> Place {
+        let state = State {
             theta: vec![0.0; self.heads.len()],
             learned: vec![0.0; self.bound.learned.len()],
             noise: self.cell,
             used: 0.0,
-        }
+        };
+        self.place(&state, 0)
     }
 
     /// Takes over learned scalars; returns their derivatives by their parameters.
@@ -147,7 +143,7 @@ impl<'a> Solver<'a> {
     }
 
     /// The state of another lattice on this one: its values at all points, by least squares.
-    pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<State, LocalError> {
+    pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<Place, LocalError> {
         let inputs = self.heads.lattices[0].dimensions();
         let unmoved = vec![0.0; state.learned.len()];
         self.normal.clear();
@@ -164,41 +160,55 @@ impl<'a> Solver<'a> {
         (0..unmoved.len()).for_each(|at| self.normal.add_learned(at, 1.0, 0.0));
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
         let (theta, _) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
-        Ok(State { theta, ..state.clone() })
+        // Who comes with a state needs no regression, and few steps before the penalty may end at its level.
+        Ok(Place { skipped: CONVEX_STEPS - WARM_STEPS, ..self.place(&State { theta, ..state.clone() }, 0) })
     }
 
-    /// Repeats steps from a state, or from nothing, until they change nothing, or time is spent.
-    pub(super) fn run(
-        &mut self,
-        from: Option<State>,
-        start: Instant,
-        budget: Duration,
-        iterations: u64,
-        coarse: bool,
-        monitor: &mut dyn FnMut(u64, f64, f64) -> Flow,
-    ) -> Result<End, LocalError> {
-        // Who comes with a state needs no regression, and few steps before the penalty may end at its level.
-        let skipped = if from.is_some() { CONVEX_STEPS - WARM_STEPS } else { 0 };
-        let mut state = from.unwrap_or_else(|| self.first());
+    /// Repeats steps until they change nothing, or steps or time are spent.
+    pub(super) fn run(&mut self, from: Place, coarse: bool, stage: &mut Stage<'_>) -> Result<End, LocalError> {
+        let Place { mut state, step: mut iteration, skipped, feet } = from;
+        self.set_feet(feet);
+        let mut good = self.place(&state, iteration);
         let mut loss = f64::INFINITY;
         let mut rows = 0;
         let mut status = Status::Budget;
         let mut factor = None;
-        let mut iteration = 0;
+        let mut faults = Vec::new();
         let mut longest = 0.0f64;
-        while iteration < iterations {
-            let began = start.elapsed().as_secs_f64();
-            if began + longest > budget.as_secs_f64() && iteration > 0 {
+        while factor.is_none() || stage.before + iteration < stage.limits.iterations {
+            let began = stage.start.elapsed().as_secs_f64();
+            let budget = stage.limits.budget.map_or(f64::INFINITY, |budget| budget.as_secs_f64());
+            if began + longest > budget && factor.is_some() {
                 break;
             }
-            let (next, found) = self.step(&state, iteration + skipped, coarse)?;
+            let place = self.place(&state, iteration);
+            let (next, found) = match self.step(&state, iteration + skipped, coarse) {
+                Ok(found) => found,
+                // The step that led here was too long: it is taken back, and a part of it is tried.
+                Err(LocalError::Fault(fault)) if factor.is_some() => {
+                    faults.push(fault);
+                    self.set_feet(good.feet.clone());
+                    if faults.len() >= FAULTS_IN_A_ROW as usize {
+                        (state, status) = (good.state.clone(), Status::NotConverged);
+                        break;
+                    }
+                    state = good.state.towards(&state, RETREAT);
+                    continue;
+                }
+                Err(error) => return Err(error),
+            };
+            good = place;
+            faults.clear();
             let change = self.change(&state, &next);
             state = next;
             (loss, rows) = (found.loss, found.rows);
             factor = Some(found.factor);
             iteration += 1;
-            longest = longest.max(start.elapsed().as_secs_f64() - began);
-            if monitor(iteration, start.elapsed().as_secs_f64(), loss) == Flow::Stop {
+            let elapsed_s = stage.start.elapsed().as_secs_f64();
+            longest = longest.max(elapsed_s - began);
+            let (before, lattice) = (stage.before, stage.lattice);
+            let checkpoint = &|| good.save(before, lattice);
+            if (stage.monitor)(Progress { iteration: before + iteration, elapsed_s, loss, checkpoint }) == Flow::Stop {
                 status = Status::Interrupted;
                 break;
             }
@@ -208,11 +218,32 @@ impl<'a> Solver<'a> {
                 break;
             }
         }
-        let warnings = self.doubts(loss, rows);
+        let mut warnings = self.doubts(loss, rows);
         if !warnings.is_empty() && status != Status::Interrupted {
             status = Status::NotConverged;
         }
-        Ok(End { state, status, iterations: iteration, loss, warnings, factor })
+        let fault = faults.pop().filter(|_| status == Status::NotConverged);
+        warnings.extend(fault.map(|fault| Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) }));
+        let checkpoint = good.save(stage.before, stage.lattice);
+        Ok(End { state, status, iterations: stage.before + iteration, loss, warnings, factor, checkpoint })
+    }
+
+    fn set_feet(&mut self, feet: Vec<Feet>) {
+        self.surfaces.iter_mut().zip(feet).for_each(|(surface, feet)| surface.set_feet(feet));
+    }
+
+    /// A place of which every step is still to be taken.
+    fn place(&self, state: &State, step: u64) -> Place {
+        let feet = self.surfaces.iter().map(Surface::feet).collect();
+        Place { state: state.clone(), step, skipped: 0, feet }
+    }
+
+    /// Where a saved run stood on this lattice.
+    pub(super) fn restore(&self, saved: &state::State) -> Result<Place, Fault> {
+        let mut place = self.first();
+        place.restore(saved)?;
+        place.skipped = if saved.counter("lattice")? > 0 { CONVEX_STEPS - WARM_STEPS } else { 0 };
+        Ok(place)
     }
 
     /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.

@@ -40,6 +40,15 @@ pub(super) struct Surface {
     misfits: Vec<f64>,
 }
 
+/// Feet of a cloud's points; none before the first search.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Feet {
+    /// Places at rest, flat.
+    pub(super) feet: Vec<f64>,
+    /// The sample nearest to each.
+    pub(super) nearest: Vec<usize>,
+}
+
 impl Surface {
     pub(super) fn new(
         group: usize,
@@ -73,6 +82,16 @@ impl Surface {
             normals: vec![Vector3::zeros(); count],
             misfits: vec![0.0; count],
         }
+    }
+
+    /// Where the feet are, and which samples are nearest to them: where the next search begins.
+    pub(super) fn feet(&self) -> Feet {
+        Feet { feet: self.feet.clone(), nearest: self.nearest.clone() }
+    }
+
+    /// Puts the feet back.
+    pub(super) fn set_feet(&mut self, feet: Feet) {
+        (self.feet, self.nearest) = (feet.feet, feet.nearest);
     }
 
     /// Points of the cloud.

@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use super::{Optimizer, Settings};
+use super::{Checkpoint, Optimizer, Settings};
 use crate::engine::{Engine, Learned};
 use crate::local::LocalSolution;
 use crate::problem::Bound;
@@ -30,6 +30,8 @@ pub struct Solution {
     pub optimizer: Optimizer,
     /// How it was run.
     pub settings: Settings,
+    /// Where the method stopped, for [`resume`](super::resume).
+    pub checkpoint: Checkpoint,
     bound: Bound,
     carrier: Carrier,
 }
@@ -112,6 +114,7 @@ impl Solution {
             warnings: outcome.warnings,
             optimizer,
             settings: settings.clone(),
+            checkpoint: Checkpoint::new(&bound.problem, settings, outcome.state),
             bound,
             carrier: Carrier::Network(Box::new(Network { engine, theta: outcome.theta, prior })),
         }
@@ -126,6 +129,7 @@ impl Solution {
             warnings: found.warnings.clone(),
             optimizer: Optimizer::Marquardt,
             settings: settings.clone(),
+            checkpoint: Checkpoint::new(&bound.problem, settings, found.checkpoint.clone()),
             bound,
             carrier: Carrier::Local(Box::new(found)),
         }

@@ -2,7 +2,9 @@
 
 use super::fault::Fault;
 use super::judge::{Judge, Judgement};
-use super::method::{Method, Step, Verdict};
+use super::method::{Method, Step};
+use super::objective::Objective;
+use super::record::Record;
 use super::state::State;
 use crate::real::Real;
 use std::time::{Duration, Instant};
@@ -41,7 +43,7 @@ pub struct Progress<'a, E> {
     pub best_loss: f64,
     /// The present iterate.
     pub theta: &'a [E],
-    /// Gives the method's state, for a checkpoint.
+    /// Gives the state of the run, for [`resume`].
     pub checkpoint: &'a dyn Fn() -> State,
 }
 
@@ -84,6 +86,8 @@ pub struct Outcome<E> {
     pub wall_s: f64,
     /// What a user should know, each with a remedy.
     pub warnings: Vec<Warning>,
+    /// Where the run stopped, for [`resume`].
+    pub state: State,
 }
 
 /// Something that a user should know.
@@ -110,46 +114,6 @@ pub enum WarningKind {
     Settled,
 }
 
-/// What a run remembers of its steps.
-struct Record<E> {
-    theta: Vec<E>,
-    loss: f64,
-    /// The function has changed since `loss` was computed.
-    changed: bool,
-    iterations: u64,
-    evaluations: u64,
-    warnings: Vec<Warning>,
-}
-
-impl<E: Real> Record<E> {
-    fn add(&mut self, step: &Step, theta: &[E]) {
-        self.iterations += 1;
-        self.evaluations += step.evaluations as u64;
-        let now_changed = step.verdict == Verdict::Changed;
-        // Losses before and after a change are those of different functions.
-        if self.changed || now_changed || step.loss < self.loss {
-            self.theta.copy_from_slice(theta);
-            self.loss = step.loss;
-        }
-        self.changed = now_changed;
-        if let Verdict::Faulty(fault) = &step.verdict {
-            warn_of(&mut self.warnings, fault.clone());
-        }
-    }
-
-    fn finish(self, status: Status, wall: Duration) -> Outcome<E> {
-        Outcome {
-            status,
-            theta: self.theta,
-            loss: self.loss,
-            iterations: self.iterations,
-            evaluations: self.evaluations,
-            wall_s: wall.as_secs_f64(),
-            warnings: self.warnings,
-        }
-    }
-}
-
 /// Takes steps of `method` on `objective` within `limits`, and shows each to `monitor`.
 pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
     method: &mut M,
@@ -157,16 +121,41 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
     limits: Limits,
     monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
 ) -> Outcome<E> {
-    let start = Instant::now();
-    let mut record = Record {
-        theta: method.theta().to_vec(),
-        loss: f64::INFINITY,
-        changed: false,
-        iterations: 0,
-        evaluations: 0,
-        warnings: Vec::new(),
-    };
+    let judge = Judge::new(limits, E::NAME, E::EPSILON.to_f64());
+    let record = Record::new(method.theta());
+    go(method, objective, limits, monitor, record, judge)
+}
+
+/// Goes on from a state that a run with the same method, objective and settings has left: every later iterate has the same
+/// bits as if that run had not stopped. Steps count from its beginning, time from now.
+///
+/// # Errors
+/// The state is of another method or size, or not finite.
+pub fn resume<E: Real, O: Objective<E> + ?Sized, M: Method<E, O> + ?Sized>(
+    method: &mut M,
+    objective: &mut O,
+    state: &State,
+    limits: Limits,
+    monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
+) -> Result<Outcome<E>, Fault> {
     let mut judge = Judge::new(limits, E::NAME, E::EPSILON.to_f64());
+    judge.restore(state)?;
+    let record = Record::restore(state, method.theta().len())?;
+    method.restore(state)?;
+    // What is frozen during a step is that of the last accepted iterate.
+    objective.accepted(method.theta());
+    Ok(go(method, objective, limits, monitor, record, judge))
+}
+
+fn go<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
+    method: &mut M,
+    objective: &mut O,
+    limits: Limits,
+    monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
+    mut record: Record<E>,
+    mut judge: Judge,
+) -> Outcome<E> {
+    let start = Instant::now();
     let mut clock = Clock::new(limits.budget);
     let status = loop {
         if record.iterations >= limits.iterations || clock.is_spent(start.elapsed()) {
@@ -175,25 +164,26 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
         let step = match method.step(objective) {
             Ok(step) => step,
             Err(fault) => {
-                warn_of(&mut record.warnings, fault);
+                record.warn_of(fault);
                 break Status::NotConverged;
             }
         };
         record.add(&step, method.theta());
         let elapsed = start.elapsed();
         clock.tick(elapsed);
+        let judgement = judge.judge(&step);
         let progress = Progress {
             iteration: record.iterations,
             elapsed,
             step: &step,
             best_loss: record.loss,
             theta: method.theta(),
-            checkpoint: &|| method.save(),
+            checkpoint: &|| judge.save(record.save(method.save())),
         };
         if monitor(&progress) == Flow::Stop {
             break Status::Interrupted;
         }
-        match judge.judge(&step) {
+        match judgement {
             Judgement::GoOn => {}
             Judgement::Converged => break Status::Converged,
             Judgement::GiveUp(warning) => {
@@ -202,18 +192,8 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
             }
         }
     };
-    record.finish(status, start.elapsed())
-}
-
-/// Adds a warning of a fault, once for each term and kind.
-fn warn_of(warnings: &mut Vec<Warning>, fault: Fault) {
-    let known = warnings.iter().any(|warning| match &warning.kind {
-        WarningKind::Fault(known) => known.term == fault.term && known.what == fault.what,
-        _ => false,
-    });
-    if !known {
-        warnings.push(Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) });
-    }
+    let state = judge.save(record.save(method.save()));
+    record.finish(status, start.elapsed(), state)
 }
 
 /// Foresees the end of the next step, so that a budget is kept.

@@ -32,6 +32,23 @@ pub enum Kind {
 }
 
 impl Kind {
+    const ALL: [Self; 4] = [Self::Residual, Self::Gradient, Self::Factorisation, Self::State];
+
+    /// Name in saved states.
+    pub(super) fn code(self) -> &'static str {
+        match self {
+            Self::Residual => "residual",
+            Self::Gradient => "gradient",
+            Self::Factorisation => "factorisation",
+            Self::State => "state",
+        }
+    }
+
+    /// The kind of a name.
+    pub(super) fn from_code(code: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|kind| kind.code() == code)
+    }
+
     fn remedy(self) -> &'static str {
         match self {
             Self::Residual => {

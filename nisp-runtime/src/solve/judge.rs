@@ -1,7 +1,9 @@
 //! Judges from the steps of a run whether it has converged, or will not.
 
 use super::driver::{Limits, Warning, WarningKind};
+use super::fault::Fault;
 use super::method::{Step, Verdict};
+use super::state::State;
 
 /// What to do after a step.
 pub(crate) enum Judgement {
@@ -89,7 +91,7 @@ impl Judge {
         self.decrement = step.decrement;
         let tolerance = self.limits.tolerance;
         let window = if step.decrement.is_some() { WINDOW } else { LONG_WINDOW };
-        self.losses.resize(window, f64::INFINITY);
+        self.losses.resize(window, 0.0);
         let earlier = std::mem::replace(&mut self.losses[self.seen % window], step.loss);
         self.seen += 1;
         let first_gradient = *self.first_gradient.get_or_insert(step.gradient_norm);
@@ -112,6 +114,33 @@ impl Judge {
         if self.since_best > patience { self.give_up() } else { Judgement::GoOn }
     }
 
+    /// Adds itself to the state of the method.
+    pub(crate) fn save(&self, method: State) -> State {
+        method
+            .with("judged losses", &self.losses)
+            .with("first gradient", finite(self.first_gradient).as_slice())
+            .with("last decrement", finite(self.decrement).as_slice())
+            .with("judged best", finite(Some(self.best)).as_slice())
+            .with_counter("seen", self.seen as u64)
+            .with_counter("agreeing", self.agreeing)
+            .with_counter("since best", self.since_best)
+            .with_counter("stuck", self.stuck)
+    }
+
+    /// Goes on from a saved state.
+    pub(crate) fn restore(&mut self, state: &State) -> Result<(), Fault> {
+        let optional = |name: &str| Ok(state.vector(name)?.first().copied());
+        self.losses = state.vector("judged losses")?.to_vec();
+        self.first_gradient = optional("first gradient")?;
+        self.decrement = optional("last decrement")?;
+        self.best = optional("judged best")?.unwrap_or(f64::INFINITY);
+        self.seen = state.counter("seen")? as usize;
+        self.agreeing = state.counter("agreeing")?;
+        self.since_best = state.counter("since best")?;
+        self.stuck = state.counter("stuck")?;
+        Ok(())
+    }
+
     fn give_up(&self) -> Judgement {
         let (kind, message) = if self.precision == "f32" {
             let message = "the loss no longer falls: the accuracy of f32 is reached; go on in f64";
@@ -123,4 +152,9 @@ impl Judge {
         };
         Judgement::GiveUp(Warning { kind, message: message.into() })
     }
+}
+
+/// States hold finite numbers only; what is infinite is as good as not known.
+fn finite(x: Option<f64>) -> Option<f64> {
+    x.filter(|x| x.is_finite())
 }

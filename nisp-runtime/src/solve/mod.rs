@@ -23,6 +23,7 @@ mod normal;
 pub mod objective;
 pub mod posterior;
 pub mod prior;
+mod record;
 pub mod state;
 mod symmetric;
 mod vector;
