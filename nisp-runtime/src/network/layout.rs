@@ -121,10 +121,10 @@ impl Layout {
     }
 
     /// A prior of one precision to begin with on two groups that may learn different ones: how wiggly the last layer's
-    /// units are, and how much of them the heads take.
+    /// units are, and how much of them the heads take. Learned scalars have none but what the scene states.
     pub(crate) fn prior(&self, precision: f64) -> WeightPrior {
         let group = |name: &str, range| PriorGroup { name: name.into(), range, precision };
-        WeightPrior::of([group("layers", 0..self.head.weights), group("heads", self.head.weights..self.len)])
+        WeightPrior::of([group("layers", 0..self.head.weights), group("heads", self.head.weights..self.learned.start)])
     }
 
     /// True if the network sees features of the coordinates instead of the coordinates.
