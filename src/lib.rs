@@ -20,6 +20,7 @@ pub mod __private {
     pub use nisp_runtime::compiled::{CompiledLayers, CompiledPrograms};
     pub use nisp_runtime::functions;
     pub use nisp_runtime::kernel::{GroupKernel, Residuals, Rules};
+    pub use nisp_runtime::problem::component;
     pub use nisp_runtime::real::Real;
     pub use nisp_runtime::residual::{Lane, Sink};
     pub use nisp_runtime::schema;

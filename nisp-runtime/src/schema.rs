@@ -139,6 +139,13 @@ pub struct Group {
     pub rule_flops: RuleFlops,
 }
 
+impl Group {
+    /// True for the group of what is believed of learned parameters, which the compiler adds and which is bound by itself.
+    pub fn is_beliefs(&self) -> bool {
+        self.name == "(beliefs)"
+    }
+}
+
 /// Floating-point operations of propagation rules on all channels, forward and on the way back (which computes a layer
 /// anew instead of storing it). `tanh` and its derivatives are not counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

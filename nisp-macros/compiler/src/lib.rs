@@ -23,6 +23,7 @@ pub mod symbolic;
 pub mod syntax;
 pub mod unit;
 
+mod beliefs;
 mod outputs;
 
 use proc_macro2::TokenStream;
@@ -51,8 +52,9 @@ pub fn compile(tokens: TokenStream) -> TokenStream {
     }
 }
 
-/// Plans a model twice: once to see which fields have a head, once with the group that reads them out.
+/// Plans a model twice, with the groups that users do not write: once to see which fields have a head, once with the group that reads them out.
 fn plan_with_outputs(model: &mut model::Model) -> Result<plan::Plan, Vec<plan::PlanError>> {
+    beliefs::append(model);
     let first = plan::build(model)?;
     outputs::append(model, &first);
     plan::build(model)

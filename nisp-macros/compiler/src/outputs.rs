@@ -31,5 +31,12 @@ pub(crate) fn append(model: &mut Model, plan: &Plan) {
         scene.uses.push((0..terms.len()).map(|field| plan.heads.contains(&field)).collect());
         scene.weights.push(vec![1.0; terms.len()]);
     }
-    model.groups.push(Group { name: name(NAME), columns: Vec::new(), terms, paired: false, docs: Vec::new() });
+    model.groups.push(Group {
+        name: name(NAME),
+        columns: Vec::new(),
+        terms,
+        paired: false,
+        definitions: Vec::new(),
+        docs: Vec::new(),
+    });
 }

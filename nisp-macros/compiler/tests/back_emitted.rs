@@ -84,3 +84,65 @@ fn the_same_input_gives_the_same_code() {
         assert_eq!(emitted(&program), emitted(&program), "{name}");
     }
 }
+
+/// Doc comments in what is emitted, as text.
+fn documentation(program: &str) -> String {
+    fn lines(items: &[Item], found: &mut String) {
+        let add = |attributes: &[syn::Attribute], found: &mut String| {
+            for attribute in attributes.iter().filter(|attribute| attribute.path().is_ident("doc")) {
+                if let syn::Meta::NameValue(syn::MetaNameValue { value: Expr::Lit(text), .. }) = &attribute.meta
+                    && let syn::Lit::Str(text) = &text.lit
+                {
+                    found.push_str(&text.value());
+                    found.push('\n');
+                }
+            }
+        };
+        for item in items {
+            match item {
+                Item::Mod(module) => {
+                    add(&module.attrs, found);
+                    module.content.iter().for_each(|(_, items)| lines(items, found));
+                }
+                Item::Struct(item) => item.fields.iter().for_each(|field| add(&field.attrs, found)),
+                Item::Const(item) => add(&item.attrs, found),
+                _ => {}
+            }
+        }
+    }
+    let mut found = String::new();
+    lines(&syn::parse_str::<syn::File>(&emitted(program)).unwrap().items, &mut found);
+    found
+}
+
+#[test]
+fn documentation_reads_like_a_paper() {
+    let text = documentation(
+        "mod bar {
+            coordinates: x [mm], y [mm];
+            fields: u: vector [mm], /** temperature */ T [K] in 200 .. 400;
+            parameters: E [GPa] in 1 .. 300 = 210 within 5, g: vector [m/s^2] = [0, -9.81];
+            constants: width [mm] = 2 * 23;
+            let eps = sym(grad(u));
+            on inside { let grown = E * tr(eps); balance: div(eps) == g * T / (width * 1 [m K/s^2]); heat: grown == 0; }
+            on edge { columns: n: vector, air [K]; flux: dot(grad(T), n) == (T - air) / width; clamp: u == 0; }
+            scene solve { learn E; }
+        }",
+    );
+    for line in [
+        r" - `u` \[mm\], a vector of 2: `u_x`; `u_y`",
+        r" - `T` \[K\] temperature, 200 to 400",
+        r" - `E` \[GPa\], 1 to 300, 210 unless given",
+        r" - `g` \[m/s^2\], a vector of 2: `g_x`, 0 unless given; `g_y`, -9.81 unless given",
+        r" - `width` = `2 * 23` \[mm\]",
+        r" - `eps` = `sym(grad(u))` \[1\], a 2 x 2 matrix",
+        r" - `grown` = `E * tr(eps)` \[Pa\], on `inside`",
+        r" - on `edge`, `flux`: `dot(grad(T), n) == (T - air) / width` \[K/m\]",
+        r" \[1\]; 2 numbers for each point, point by point.",
+        r" \[K\]; one number for each point.",
+        r" \[GPa\]; learned, believed to be this give or take 5 GPa",
+        r" `eps = sym(grad(u))`, as LaTeX.",
+    ] {
+        assert!(text.lines().any(|found| found == line), "{line}\n\n{text}");
+    }
+}

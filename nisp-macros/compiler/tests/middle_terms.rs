@@ -96,7 +96,7 @@ fn a_partner_is_a_second_site() {
 #[test]
 fn a_hard_condition_is_part_of_the_field() {
     let mut m = two_fields();
-    m.fields[0].hard = Some(Hard { distance: pow(&coordinate(0), 2), value: n(3) });
+    m.fields[0].hard = Some(Hard { text: Default::default(), distance: pow(&coordinate(0), 2), value: n(3) });
     let plan = plan_of(&mut m, TermKind::Residual(vec![d(&field(0), &[0])]));
     let group = &plan.scenes[0].groups[0];
     // (3 + x^2 r)' = 2 x r + x^2 r' at x = 1/2.

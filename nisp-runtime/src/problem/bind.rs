@@ -130,7 +130,8 @@ impl Problem {
     /// Checks what is bound and expresses it in the engine's units.
     pub(crate) fn bound(&self, inputs: Inputs) -> Result<Bound, BindError> {
         let schema = self.scene.schema;
-        let bindings = self.bindings()?;
+        let problem = self.clone().with_beliefs();
+        let bindings = problem.bindings()?;
         for (scalar, value) in schema.scalars.iter().zip(&self.scalars) {
             let own = matches!(scalar.origin, Origin::HeadScale(_) | Origin::SideScale { .. });
             match value {
@@ -170,18 +171,7 @@ impl Problem {
             }
         }
         let learned = learned(schema, &system, &scalars);
-        Ok(Bound {
-            problem: self.clone(),
-            system,
-            scaling,
-            scalars,
-            learned,
-            sizes,
-            coordinates,
-            partners,
-            columns,
-            clouds,
-        })
+        Ok(Bound { problem, system, scaling, scalars, learned, sizes, coordinates, partners, columns, clouds })
     }
 
     /// What is bound to each group, checked for lengths and finite numbers.

@@ -1,5 +1,6 @@
 //! A scene bound to parameters, points and data; numbers cross this boundary in their declared units.
 
+mod beliefs;
 mod bind;
 mod evaluate;
 mod scale;
@@ -66,6 +67,13 @@ impl Binding {
     fn view(&self, term: &str) -> Option<[f64; 3]> {
         self.views.iter().rev().find(|(name, _)| name == term).map(|(_, view)| *view)
     }
+}
+
+/// Every `count`-th number from `index`: one entry of what is given point by point. For emitted builders.
+#[doc(hidden)]
+#[must_use]
+pub fn component(values: &[f64], index: usize, count: usize) -> Vec<f64> {
+    values.iter().skip(index).step_by(count).copied().collect()
 }
 
 impl Problem {

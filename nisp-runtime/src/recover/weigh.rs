@@ -15,9 +15,18 @@ const EQUATION_TOLERANCE: f64 = 1e-2;
 /// Smallest noise that data are credited with, as a share of their natural size.
 const LEAST_NOISE: f64 = 1e-6;
 
+/// Noise that data count with beside beliefs where they are taken as exact, as a share of their natural size.
+const ASSUMED_NOISE: f64 = 1e-3;
+
 /// Mean squares of rows over their natural sizes, times the user's weights: for exact data.
 pub(crate) fn by_size<E: Real>(engine: &mut Engine<E>) {
+    let points = engine.groups.iter().map(|group| group.points).max().unwrap_or(1);
     for group in &mut engine.groups {
+        if group.schema.is_beliefs() {
+            // A row over its spread stands beside rows over their noise, not beside mean squares.
+            group.terms.iter_mut().for_each(|term| term.factor = ASSUMED_NOISE / (points as f64).sqrt());
+            continue;
+        }
         for term in &mut group.terms {
             let count = match (&term.chamfer, term.schema.kind) {
                 (Some(chamfer), _) => chamfer.cloud_points(),

@@ -3,15 +3,16 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
+use super::document::{comment, in_unit};
 use super::scene::public;
-use super::{ident, raw};
-use crate::model::{self, Model, TermKind};
+use super::{data, ident, raw, unit_text};
+use crate::model::{self, Model};
 use crate::plan::{GroupPlan, Scalar, ScenePlan};
 
 /// `Parameters`, the data types of groups, and the chain of builders that ends in a `Problem`.
 pub(super) fn emit(model: &Model, scene: &ScenePlan, declared: &model::Scene) -> TokenStream {
     let parameters = parameters(model, scene, declared);
-    let groups = public(scene);
+    let groups = public(model, scene);
     let count = groups.len();
     let steps = groups.iter().enumerate().map(|(at, group)| step(model, at, group));
     let list: Vec<String> = groups.iter().map(|group| format!("`{}`", model.groups[group.group].name.text)).collect();
@@ -43,7 +44,7 @@ pub(super) fn emit(model: &Model, scene: &ScenePlan, declared: &model::Scene) ->
 
 /// The parameters that the scene reads, as a struct in declared units.
 fn parameters(model: &Model, scene: &ScenePlan, declared: &model::Scene) -> TokenStream {
-    let read: Vec<&model::Parameter> = scene
+    let read: Vec<(&usize, &model::Parameter)> = scene
         .scalars
         .iter()
         .filter_map(|scalar| match scalar {
@@ -51,15 +52,14 @@ fn parameters(model: &Model, scene: &ScenePlan, declared: &model::Scene) -> Toke
             _ => None,
         })
         .filter(|(at, _)| declared.fixed_parameters[**at].is_none())
-        .map(|(_, parameter)| parameter)
         .collect();
-    let fields = read.iter().map(|parameter| {
+    let fields = read.iter().map(|(at, parameter)| {
         let name = ident(&parameter.name);
-        let unit = if parameter.unit.text.is_empty() { "1" } else { &parameter.unit.text };
-        let doc = format!(" `{}` in {unit}.{}", parameter.name.text, parameter.docs.concat());
+        let unit = unit_text(&parameter.unit);
+        let doc = format!(" \\[{unit}\\]{}{}", comment(&parameter.docs), learned(parameter, **at, declared));
         quote!(#[doc = #doc] pub #name: f64)
     });
-    let values = read.iter().map(|parameter| {
+    let values = read.iter().map(|(_, parameter)| {
         let (name, text) = (ident(&parameter.name), &parameter.name.text);
         quote!((#text, self.#name))
     });
@@ -74,55 +74,55 @@ fn parameters(model: &Model, scene: &ScenePlan, declared: &model::Scene) -> Toke
     }
 }
 
+/// What a parameter's documentation adds where the scene learns it.
+fn learned(parameter: &model::Parameter, at: usize, scene: &model::Scene) -> String {
+    let unit = &parameter.unit;
+    match (scene.learned[at], scene.spreads[at]) {
+        (false, _) => String::new(),
+        (true, None) => "; learned, from this value".into(),
+        (true, Some(spread)) => {
+            format!("; learned, believed to be this give or take {} {}", in_unit(spread, unit), unit.text)
+        }
+    }
+}
+
 /// The builder that waits for group `at`.
 fn step(model: &Model, at: usize, group: &GroupPlan) -> TokenStream {
     let declared = &model.groups[group.group];
     let text = &declared.name.text;
     let method = raw(text, declared.name.span);
     let (this, next) = (format_ident!("Needs{at}"), format_ident!("Needs{}", at + 1));
-    let columns: Vec<_> = group.columns.iter().map(|&column| &declared.columns[column]).collect();
-    let arguments = columns.iter().map(|column| {
-        let name = ident(&column.name);
-        quote!(#name: impl Into<Vec<f64>>)
-    });
-    let pushes = columns.iter().map(|column| {
-        let name = ident(&column.name);
-        quote!(#name.into())
-    });
-    let clouds = group
-        .terms
-        .iter()
-        .map(|term| &declared.terms[term.term])
-        .filter(|term| matches!(term.kind, TermKind::Chamfer { .. }));
-    let clouds: Vec<_> = clouds.map(|term| (format_ident!("{}", term.name.text), &term.name.text)).collect();
-    let cloud_arguments = clouds.iter().map(|(name, _)| quote!(#name: impl Into<Vec<f64>>));
-    let cloud_calls = clouds.iter().map(|(name, text)| quote!(.with_cloud(#at, #text, #name.into())));
-    let (partners, points) = match declared.paired {
-        true => (
-            quote!(partners: impl Into<Vec<f64>>,),
-            quote!(::nisp::Points { partners: partners.into(), ..points.into() }),
-        ),
-        false => (quote!(), quote!(points.into())),
-    };
-    let units: Vec<String> = columns.iter().map(|c| format!("`{}` in {}", c.name.text, c.unit.text)).collect();
     let waits = format!(" Waits for the points of group `{text}`.");
+    let data = data::of(model, group);
+    let coordinates: Vec<&str> = model.coordinates.iter().map(|c| c.name.text.as_str()).collect();
     let doc = format!(
-        " Points of group `{text}`: coordinates in their declared units, point by point ({}).{}",
-        model.coordinates.iter().map(|c| c.name.text.as_str()).collect::<Vec<_>>().join(", "),
-        if units.is_empty() { String::new() } else { format!(" Columns, one value per point: {}.", units.join(", ")) },
+        " Points of group `{text}`: {}, point by point, in their declared units.{}",
+        coordinates.join(", "),
+        if data.is_some() { " `data` is what belongs to them." } else { "" },
     );
+    let (definition, argument, bound) = match data {
+        None => (quote!(), quote!(), quote!(self.0.with_group(#at, points.into(), Vec::new()))),
+        Some(data) => {
+            let (name, columns) = (&data.name, &data.columns);
+            let points = match &data.partners {
+                Some(partners) => quote!(::nisp::Points { partners: #partners, ..points.into() }),
+                None => quote!(points.into()),
+            };
+            let clouds = data.clouds.iter().map(|(term, cloud)| quote!(.with_cloud(#at, #term, #cloud)));
+            let bound = quote!(self.0.with_group(#at, #points, vec![#(#columns),*]) #(#clouds)*);
+            (data.definition, quote!(data: #name), bound)
+        }
+    };
     quote! {
+        #definition
         #[doc = #waits]
         #[derive(Clone, Debug)]
         #[must_use = "a scene is not bound before all of its groups are"]
         pub struct #this(::nisp::Problem);
         impl #this {
             #[doc = #doc]
-            #[allow(clippy::too_many_arguments)]
-            pub fn #method(
-                self, points: impl Into<::nisp::Points>, #partners #(#arguments,)* #(#cloud_arguments,)*
-            ) -> #next {
-                #next(self.0.with_group(#at, #points, vec![#(#pushes),*]) #(#cloud_calls)*)
+            pub fn #method(self, points: impl Into<::nisp::Points>, #argument) -> #next {
+                #next(#bound)
             }
         }
     }

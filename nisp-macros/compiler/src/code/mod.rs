@@ -7,23 +7,27 @@
 //!
 //! ```text
 //! pub mod heat {
-//!     mod kernels { Channels0: Rules, RecoverInterior: Residuals }
-//!     pub mod recover { Scene (its schema and kernels), Parameters, bind() -> a builder that needs every group }
+//!     mod kernels { Channels0: Rules, recover_interior_0: Residuals }
+//!     pub mod recover { Scene (its schema and kernels), Parameters, InteriorData, bind() -> a builder that needs every group }
 //! }
 //! ```
 
 mod bind;
+mod data;
+mod document;
 mod lower;
 mod residuals;
 mod rules;
 mod scene;
 mod schema;
 
+use std::collections::BTreeSet;
+
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
-use crate::model::{Model, Name, Role};
-use crate::plan::Plan;
+use crate::model::{Model, Name, Scene};
+use crate::plan::{GroupPlan, Plan};
 use crate::unit::Unit;
 
 /// Emits the module of a model.
@@ -31,7 +35,7 @@ pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
     let name = ident(&model.name);
     let visibility = &model.visibility;
     let documentation = docs(&model.docs);
-    let quantities = docs(&quantities(model));
+    let quantities = docs(&document::quantities(model));
     let sets = plan.sets.iter().enumerate().filter(|(_, set)| !set.is_precompiled());
     let sets = sets.map(|(at, set)| rules::emit(at, set, model));
     let groups = plan
@@ -58,31 +62,6 @@ pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
             #(#scenes)*
         }
     }
-}
-
-/// Documentation lines: every quantity with its unit and what the user says of it.
-fn quantities(model: &Model) -> Vec<String> {
-    let line = |name: &Name, unit: &Unit, docs: &[String]| {
-        let unit = if unit.text.is_empty() { "1" } else { &unit.text };
-        let docs: Vec<&str> = docs.iter().map(|line| line.trim()).collect();
-        format!(" - `{}` \\[{unit}\\] {}", name.text, docs.join(" "))
-    };
-    let role = |role: Role| {
-        let fields = model.fields.iter().filter(move |field| field.role == role);
-        fields.map(|field| line(&field.name, &field.unit, &field.docs)).collect()
-    };
-    let sections: [(&str, Vec<String>); 4] = [
-        ("Coordinates", model.coordinates.iter().map(|c| line(&c.name, &c.unit, &c.docs)).collect()),
-        ("Fields", role(Role::Field)),
-        ("Sources", role(Role::Source)),
-        ("Parameters", model.parameters.iter().map(|p| line(&p.name, &p.unit, &p.docs)).collect()),
-    ];
-    let mut lines = Vec::new();
-    for (title, mut entries) in sections.into_iter().filter(|(_, entries)| !entries.is_empty()) {
-        lines.extend([String::new(), format!(" # {title}"), String::new()]);
-        lines.append(&mut entries);
-    }
-    lines
 }
 
 /// The least that keeps names defined when a module has errors, so that one mistake gives one error.
@@ -124,15 +103,32 @@ fn raw(text: &str, span: Span) -> Ident {
     )
 }
 
+/// Names taken so far.
+#[derive(Default)]
+struct Names(BTreeSet<String>);
+
+impl Names {
+    /// The name, with underscores behind it where it is taken.
+    fn free(&mut self, mut name: String) -> String {
+        while !self.0.insert(name.clone()) {
+            name.push('_');
+        }
+        name
+    }
+}
+
+/// A unit as it stands in brackets.
+fn unit_text(unit: &Unit) -> &str {
+    if unit.text.is_empty() { "1" } else { &unit.text }
+}
+
 fn docs(lines: &[String]) -> Vec<TokenStream> {
     lines.iter().map(|line| quote!(#[doc = #line])).collect()
 }
 
-/// `soft_bubble` and `contact` as `SoftBubbleContact`.
-fn camel(parts: &[&str]) -> String {
-    parts
-        .iter()
-        .flat_map(|part| part.split(|c: char| !c.is_alphanumeric()))
+/// `soft_bubble` as `SoftBubble`.
+fn camel(name: &str) -> String {
+    name.split(|c: char| !c.is_alphanumeric())
         .map(|word| {
             let mut letters = word.chars();
             letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
@@ -140,9 +136,11 @@ fn camel(parts: &[&str]) -> String {
         .collect()
 }
 
-/// The type that holds the residual programs of a group in a scene.
-fn residuals_type(scene: &crate::model::Scene, group: &crate::model::Group) -> Ident {
-    format_ident!("{}", camel(&[&scene.name.text, &group.name.text]))
+/// The type that holds the residual programs of a group in a scene. Its number keeps a group of the user's apart from one
+/// that the compiler adds.
+fn residuals_type(model: &Model, scene: &Scene, group: &GroupPlan) -> Ident {
+    let name = model.groups[group.group].name.text.trim_matches(['(', ')']);
+    format_ident!("{}_{name}_{}", scene.name.text, group.group)
 }
 
 /// The type that holds the rules of a channel set.

@@ -12,7 +12,7 @@ use crate::program::{Program, Slot};
 /// The type that holds the programs, and its implementation of `Residuals`.
 pub(super) fn emit(model: &Model, scene: &Scene, group: &GroupPlan) -> TokenStream {
     let declared = &model.groups[group.group];
-    let name = residuals_type(scene, declared);
+    let name = residuals_type(model, scene, group);
     let equations = group.terms.iter().map(|term| {
         let term = &declared.terms[term.term];
         let line = format!(" - `{}`: `{}`", term.name.text, term.equation);

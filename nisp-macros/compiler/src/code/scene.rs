@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::{bind, docs, ident, residuals_type, rules_type, schema};
+use super::{Names, bind, docs, document, ident, residuals_type, rules_type, schema};
 use crate::model::{self, Model};
 use crate::plan::{GroupPlan, Plan, ScenePlan};
 
@@ -11,11 +11,11 @@ use crate::plan::{GroupPlan, Plan, ScenePlan};
 pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene) -> TokenStream {
     let name = ident(&declared.name);
     let documentation = docs(&declared.docs);
-    let equations = equations(model, scene);
+    let equations = docs(&document::equations(model, scene));
     let schema = schema::emit(model, plan, scene, declared);
     let kernels = scene.groups.iter().map(|group| {
         let layers = layers(plan, group);
-        let residuals = residuals_type(declared, &model.groups[group.group]);
+        let residuals = residuals_type(model, declared, group);
         quote!(GroupKernel { layers: #layers, programs: CompiledPrograms::<kernels::#residuals>::erased() })
     });
     let latex = latex(model, scene);
@@ -61,43 +61,35 @@ fn layers(plan: &Plan, group: &GroupPlan) -> TokenStream {
     quote!(::nisp::__private::CompiledLayers::<#hidden, #last, #k, #d, #s>::erased())
 }
 
-/// Documentation lines: every equation with its group and unit.
-fn equations(model: &Model, scene: &ScenePlan) -> Vec<TokenStream> {
-    let mut lines = vec![String::new(), String::from(" # Equations"), String::new()];
-    for group in public(scene) {
+/// LaTeX constants, one for each equation and definition.
+fn latex(model: &Model, scene: &ScenePlan) -> TokenStream {
+    let mut names = Names::default();
+    let mut constants = Vec::new();
+    let mut add = |group: &str, name: &str, doc: String, latex: &str| {
+        let name = names.free(format!("{group}_{name}").to_uppercase());
+        let name = format_ident!("{name}");
+        constants.push(quote!(#[doc = #doc] pub const #name: &str = #latex;));
+    };
+    for group in public(model, scene) {
         let declared = &model.groups[group.group];
-        for term in &group.terms {
-            let term = &declared.terms[term.term];
-            let unit = if term.unit.text.is_empty() { "1" } else { &term.unit.text };
-            lines.push(format!(
-                " - on `{}`, `{}`: `{}` \\[{unit}\\]",
-                declared.name.text, term.name.text, term.equation
-            ));
+        for term in group.terms.iter().map(|term| &declared.terms[term.term]) {
+            let (place, name) = (&declared.name.text, &term.name.text);
+            add(place, name, format!(" `{}` on `{place}`, `{name}`, as LaTeX.", term.equation), &term.latex);
         }
     }
-    docs(&lines)
-}
-
-/// One LaTeX constant per equation.
-fn latex(model: &Model, scene: &ScenePlan) -> TokenStream {
-    let constants = public(scene).iter().flat_map(|group| {
-        let declared = &model.groups[group.group];
-        group.terms.iter().map(move |term| {
-            let term = &declared.terms[term.term];
-            let name = format!("{}_{}", declared.name.text, term.name.text).to_uppercase();
-            let name = format_ident!("{name}");
-            let doc = format!(" `{}` on `{}`, `{}`, as LaTeX.", term.equation, declared.name.text, term.name.text);
-            let latex = &term.latex;
-            quote!(#[doc = #doc] pub const #name: &str = #latex;)
-        })
-    });
+    let groups = public(model, scene).iter().flat_map(|group| &model.groups[group.group].definitions);
+    for definition in model.constants.iter().chain(&model.definitions).chain(groups) {
+        let name = &definition.name.text;
+        add("let", name, format!(" `{name} = {}`, as LaTeX.", definition.text), &definition.latex);
+    }
     quote! {
-        /// The equations of this scene as LaTeX.
+        /// The equations and definitions of this scene as LaTeX.
         pub mod latex { #(#constants)* }
     }
 }
 
-/// The groups that the user declared; the last group of a plan is the one that reads out the network.
-pub(super) fn public(scene: &ScenePlan) -> &[crate::plan::GroupPlan] {
-    scene.groups.split_last().map_or(&[], |(_, groups)| groups)
+/// The groups that the user declared: those that the compiler adds come after them.
+pub(super) fn public<'a>(model: &Model, scene: &'a ScenePlan) -> &'a [GroupPlan] {
+    let count = scene.groups.iter().take_while(|group| !model.groups[group.group].is_internal()).count();
+    &scene.groups[..count]
 }

@@ -195,6 +195,13 @@ pub(crate) fn takes_no_bounds(what: &str) -> String {
     help(format!("{what} takes no bounds"), "sources, fields and parameters do")
 }
 
+pub(crate) fn takes_no_spread(what: &str) -> String {
+    help(
+        format!("{what} takes no `within` here"),
+        "parameters do: how far a learned one is believed to be from its value; terms have one of their own, before their `;`",
+    )
+}
+
 pub(crate) fn unnamed_observation() -> String {
     help("an observed expression needs a name", "write `observe NAME: expression ~ column;`")
 }

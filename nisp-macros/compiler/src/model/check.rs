@@ -6,7 +6,7 @@ use super::check_group::{self, GroupNames};
 use super::elaborate::Elaborator;
 use super::scope::Meaning;
 use super::value::Reads;
-use super::{Hard, Model, Name, check_scene, declare, lint};
+use super::{Definition, Hard, Model, Name, check_scene, declare, lint};
 use crate::error::{Checked, Errors, catalogue};
 use crate::syntax::{self, Item, Module, print_text};
 
@@ -19,6 +19,8 @@ pub fn check(module: &Module, errors: &mut Errors) -> Option<Model> {
         coordinates: Vec::new(),
         fields: Vec::new(),
         parameters: Vec::new(),
+        constants: Vec::new(),
+        definitions: Vec::new(),
         groups: Vec::new(),
         scenes: Vec::new(),
         units_checked: !module.units_off,
@@ -27,7 +29,7 @@ pub fn check(module: &Module, errors: &mut Errors) -> Option<Model> {
     let mut elaborator = Elaborator::new(errors, model.units_checked);
     elaborator.scope.broken = module.broken.clone();
     declare::declare(module, &mut elaborator, &mut model);
-    definitions(module, &mut elaborator);
+    model.definitions = definitions(module, &mut elaborator);
     for item in &module.items {
         if let Item::Hard(hard) = item {
             // What is wrong was reported.
@@ -43,15 +45,13 @@ pub fn check(module: &Module, errors: &mut Errors) -> Option<Model> {
 }
 
 /// Definitions see those above them.
-fn definitions(module: &Module, elaborator: &mut Elaborator<'_>) {
+fn definitions(module: &Module, elaborator: &mut Elaborator<'_>) -> Vec<Definition> {
     let all = module.items.iter().filter_map(|item| match item {
         Item::Let(definition) => Some(definition),
         _ => None,
     });
     elaborator.scope.later = all.clone().map(|definition| definition.name.text.clone()).collect();
-    for definition in all {
-        check_group::define(definition, elaborator);
-    }
+    all.filter_map(|definition| check_group::define(definition, elaborator)).collect()
 }
 
 fn groups(module: &Module, elaborator: &mut Elaborator<'_>, model: &mut Model) -> Vec<GroupNames> {
@@ -120,7 +120,8 @@ fn hard_condition(hard: &syntax::Hard, elaborator: &mut Elaborator<'_>, model: &
         if field.lower.is_some() || field.upper.is_some() {
             return Err(elaborator.errors.report(hard.field.span, catalogue::hard_and_bounded(&hard.field.text)));
         }
-        let condition = Hard { distance: Rc::clone(&distance.expr), value: Rc::clone(&entry.expr) };
+        let text = [&hard.value, &hard.distance].map(print_text);
+        let condition = Hard { text, distance: Rc::clone(&distance.expr), value: Rc::clone(&entry.expr) };
         if field.hard.replace(condition).is_some() {
             return Err(elaborator.errors.report(hard.field.span, catalogue::hard_twice(&hard.field.text)));
         }

@@ -1,13 +1,14 @@
 //! Groups of points: their columns, definitions and terms.
 
 use super::check_term::TermInput;
-use super::declare::{add_components, components, shaped, unit_and_dim};
+use super::declare::{add_components, components, part, shaped, unit_and_dim};
 use super::elaborate::Elaborator;
 use super::scope::{Meaning, Symbol};
-use super::value::{Reads, Scalar};
-use super::{Column, Field, Group, Node, Term};
+use super::value::{Extent, Reads, Scalar};
+use super::{Column, Definition, Field, Group, Node, Term};
 use crate::error::catalogue;
-use crate::syntax::{self, Declaration, GroupItem, Let};
+use crate::syntax::{self, Declaration, Expr, ExprKind, GroupItem, Let, print_latex, print_text};
+use crate::unit::Unit;
 
 /// A group's and its terms' names, those of broken ones too, for scenes to refer to.
 pub(super) struct GroupNames {
@@ -22,6 +23,7 @@ pub(super) fn check(group: &syntax::Group, elaborator: &mut Elaborator<'_>, fiel
     elaborator.paired = group.paired;
     let mut checked = Group {
         name: group.name.clone(),
+        definitions: Vec::new(),
         columns: Vec::new(),
         terms: Vec::new(),
         paired: group.paired,
@@ -37,7 +39,7 @@ pub(super) fn check(group: &syntax::Group, elaborator: &mut Elaborator<'_>, fiel
     for item in &group.items {
         match item {
             GroupItem::Column(_) => {}
-            GroupItem::Let(definition) => define(definition, elaborator),
+            GroupItem::Let(definition) => checked.definitions.extend(define(definition, elaborator)),
             GroupItem::Broken(name) => names.terms.push((name.text.clone(), None)),
             GroupItem::Term(term) => {
                 let number = term_of(term, elaborator, fields, &mut checked, &names);
@@ -79,14 +81,36 @@ fn column(declaration: &Declaration, elaborator: &mut Elaborator<'_>, columns: &
     let entries = (0..names.len()).map(|k| Scalar::leaf(Node::Column(first + k), Reads::COLUMN)).collect();
     // Numbered even if a name is taken, which was reported.
     let _ = add_components(elaborator, declaration, Meaning::Column, first, &names, shaped(declaration, entries, dim));
-    columns.extend(names.into_iter().map(|name| Column { name, unit: unit.clone(), docs: declaration.docs.clone() }));
+    let count = names.len();
+    columns.extend(names.into_iter().enumerate().map(|(index, name)| Column {
+        name,
+        unit: unit.clone(),
+        part: part(declaration, index, count),
+        docs: declaration.docs.clone(),
+    }));
 }
 
-/// `let`, in a module or in a group.
-pub(super) fn define(definition: &Let, elaborator: &mut Elaborator<'_>) {
+/// `let`, in a module or in a group. None if it could not be read.
+pub(super) fn define(definition: &Let, elaborator: &mut Elaborator<'_>) -> Option<Definition> {
+    let name = &definition.name;
     let value = definition.value.as_ref().and_then(|value| elaborator.value(value).ok());
-    let symbol =
-        Symbol { meaning: Meaning::Definition, value, span: definition.name.span, index: 0, parent: None, used: false };
+    let written = definition.value.as_ref().zip(value.as_ref()).map(|(written, value)| Definition {
+        name: name.clone(),
+        text: print_text(written),
+        latex: print_definition(&name.text, written, elaborator),
+        unit: Unit::si(value.dim.known().cloned().unwrap_or_default()),
+        shape: if value.extent == Extent::Scalar { String::new() } else { value.extent.to_string() },
+        docs: Vec::new(),
+    });
+    let symbol = Symbol { meaning: Meaning::Definition, value, span: name.span, index: 0, parent: None, used: false };
     // A name that is taken was reported.
-    let _ = elaborator.scope.declare(&definition.name, symbol, elaborator.errors);
+    let _ = elaborator.scope.declare(name, symbol, elaborator.errors);
+    written
+}
+
+/// `name = value` as LaTeX.
+pub(super) fn print_definition(name: &str, value: &Expr, elaborator: &Elaborator<'_>) -> String {
+    let ordinary = elaborator.coordinates.len() == 1;
+    let name = Expr { kind: ExprKind::Name(name.into()), place: value.place };
+    format!("{} = {}", print_latex(&name, ordinary), print_latex(value, ordinary))
 }

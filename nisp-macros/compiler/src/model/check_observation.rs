@@ -3,7 +3,7 @@
 use super::check_term::{Body, TermInput};
 use super::scope::{Meaning, Symbol};
 use super::value::{Extent, Reads, Scalar, Value};
-use super::{Column, Name, Node, TermKind, build};
+use super::{Column, Name, Node, Part, TermKind, build};
 use crate::error::{Checked, catalogue};
 use crate::syntax::{self, Expr, print_text};
 use crate::unit::Unit;
@@ -114,8 +114,13 @@ impl TermInput<'_, '_> {
                 return Err(self.elaborator.errors.report(name.span, catalogue::column_twice(&text)));
             }
             measured.push(Scalar::leaf(Node::Column(self.columns.len()), Reads::COLUMN));
-            let name = Name { text, span: name.span };
-            self.columns.push(Column { name, unit: unit.clone(), docs: Vec::new() });
+            let part = Part { of: name.clone(), index: component, count };
+            self.columns.push(Column {
+                name: Name { text, span: name.span },
+                unit: unit.clone(),
+                part: (value.extent != Extent::Scalar).then_some(part),
+                docs: Vec::new(),
+            });
         }
         Ok(measured)
     }

@@ -5,7 +5,7 @@ use super::constant::in_unit;
 use super::elaborate::Elaborator;
 use super::scope::Meaning;
 use super::value::Reads;
-use super::{Model, Name, Scene};
+use super::{Model, Name, Scene, declare};
 use crate::error::{Checked, Reported, catalogue};
 use crate::syntax::{self, Path, SceneItem, print_text};
 
@@ -17,6 +17,7 @@ pub(super) fn everything(model: &Model, name: Name) -> Scene {
         fixed_fields: vec![None; model.fields.len()],
         fixed_parameters: vec![None; model.parameters.len()],
         learned: vec![false; model.parameters.len()],
+        spreads: vec![None; model.parameters.len()],
         warnings: Vec::new(),
         weights: model.groups.iter().map(|group| group.terms.iter().map(|term| term.weight).collect()).collect(),
         docs: Vec::new(),
@@ -39,7 +40,7 @@ pub(super) fn check(
         // What is wrong was reported; the other statements are checked all the same.
         let _ = match item {
             SceneItem::Fix(name, value) => fix(name, value, elaborator, model, &mut checked),
-            SceneItem::Learn(name) => learn(name, elaborator, &mut checked),
+            SceneItem::Learn(name, spread) => learn(name, spread.as_ref(), elaborator, model, &mut checked),
             SceneItem::Only(path) => select(path, elaborator, groups, |group, term| checked.uses[group][term] = true),
             SceneItem::Weight(path, weight) => {
                 select(path, elaborator, groups, |group, term| checked.weights[group][term] = *weight)
@@ -91,16 +92,25 @@ fn select(
     }
 }
 
-fn learn(name: &Name, elaborator: &mut Elaborator<'_>, scene: &mut Scene) -> Checked<()> {
+fn learn(
+    name: &Name,
+    spread: Option<&syntax::Expr>,
+    elaborator: &mut Elaborator<'_>,
+    model: &Model,
+    scene: &mut Scene,
+) -> Checked<()> {
     let (meaning, indices) = declared(name, elaborator, Meaning::Parameter)?;
     if meaning != Meaning::Parameter {
         return Err(elaborator.errors.report(name.span, catalogue::cannot_learn(&name.text, meaning.noun())));
     }
-    for index in indices {
+    let unit = &model.parameters[indices.start].unit;
+    let spreads = declare::spreads(spread, name, indices.len(), unit, elaborator);
+    for (index, spread) in indices.zip(spreads) {
         if scene.fixed_parameters[index].is_some() {
             return Err(elaborator.errors.report(name.span, catalogue::learned_and_fixed(&name.text)));
         }
         scene.learned[index] = true;
+        scene.spreads[index] = spread.or(model.parameters[index].spread);
     }
     Ok(())
 }

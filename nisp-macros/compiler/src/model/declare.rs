@@ -1,13 +1,14 @@
 //! Declarations: coordinates, fields, sources, parameters and constants get their numbers and units.
 
 use super::build;
+use super::check_group::print_definition;
 use super::constant::{Constant, in_unit};
 use super::elaborate::Elaborator;
 use super::scope::{Meaning, Symbol};
 use super::value::{Dim, Extent, Reads, Scalar, Value};
-use super::{Coordinate, Field, Model, Name, Node, Parameter, Role};
+use super::{Coordinate, Definition, Field, Model, Name, Node, Parameter, Part, Role};
 use crate::error::{Checked, catalogue};
-use crate::syntax::{Declaration, Kind, Module, Shape};
+use crate::syntax::{Declaration, Expr, Kind, Module, Shape, print_text};
 use crate::unit::{Dimension, Unit};
 
 /// Declares everything a module declares outside its groups.
@@ -18,7 +19,7 @@ pub(super) fn declare(module: &Module, elaborator: &mut Elaborator<'_>, model: &
             // A name that is taken was reported; the rest is declared all the same.
             match kind {
                 Kind::Coordinate => drop(coordinate(declaration, elaborator, model)),
-                Kind::Constant => drop(constant(declaration, elaborator)),
+                Kind::Constant => drop(constant(declaration, elaborator, model)),
                 Kind::Parameter => parameter(declaration, elaborator, model),
                 _ => field(declaration, elaborator, model),
             }
@@ -71,7 +72,7 @@ fn coordinate(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model:
     Ok(())
 }
 
-fn constant(declaration: &Declaration, elaborator: &mut Elaborator<'_>) -> Checked<()> {
+fn constant(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: &mut Model) -> Checked<()> {
     let (unit, dim) = unit_and_dim(declaration, elaborator);
     let Some(expr) = &declaration.value else {
         let message = catalogue::constant_without_value(&declaration.name.text);
@@ -79,6 +80,14 @@ fn constant(declaration: &Declaration, elaborator: &mut Elaborator<'_>) -> Check
         elaborator.scope.broken.insert(declaration.name.text.clone());
         return Err(reported);
     };
+    model.constants.push(Definition {
+        name: declaration.name.clone(),
+        text: print_text(expr),
+        latex: print_definition(&declaration.name.text, expr, elaborator),
+        unit: unit.clone(),
+        shape: String::new(),
+        docs: declaration.docs.clone(),
+    });
     let found = in_unit(expr, &unit, elaborator);
     let value = found.ok().and_then(|constants| constants.into_iter().next()).map(|Constant { value, exact }| {
         let scalar = match exact.filter(|_| unit.dimension.is_none() && unit.factor == 1.0) {
@@ -104,15 +113,26 @@ fn parameter(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: 
     let default = each(declaration.value.as_ref(), names.len(), &unit, elaborator);
     let lower = each(declaration.lower.as_ref(), names.len(), &unit, elaborator);
     let upper = each(declaration.upper.as_ref(), names.len(), &unit, elaborator);
+    let spread = spreads(declaration.spread.as_ref(), &declaration.name, names.len(), &unit, elaborator);
+    let count = names.len();
     for (k, name) in names.into_iter().enumerate() {
-        let (lower, upper, default) = (lower[k], upper[k], default[k]);
+        let (lower, upper, default, spread) = (lower[k], upper[k], default[k], spread[k]);
         check_order(declaration, lower, upper, elaborator);
         let outside = |value: f64| lower.is_some_and(|low| value < low) || upper.is_some_and(|high| value > high);
         if let (Some(expr), true) = (&declaration.value, default.is_some_and(outside)) {
             elaborator.errors.push(expr.place, catalogue::outside_bounds(&name.text));
         }
         let docs = declaration.docs.clone();
-        model.parameters.push(Parameter { name, unit: unit.clone(), default, lower, upper, docs });
+        model.parameters.push(Parameter {
+            name,
+            unit: unit.clone(),
+            default,
+            lower,
+            upper,
+            part: part(declaration, k, count),
+            spread,
+            docs,
+        });
     }
 }
 
@@ -129,11 +149,13 @@ fn field(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: &mut
     let _ = add_components(elaborator, declaration, meaning, first, &names, shaped(declaration, entries, dim));
     let lower = each(declaration.lower.as_ref(), names.len(), &unit, elaborator);
     let upper = each(declaration.upper.as_ref(), names.len(), &unit, elaborator);
+    let count = names.len();
     for (k, name) in names.into_iter().enumerate() {
         let (lower, upper) = (lower[k], upper[k]);
         check_order(declaration, lower, upper, elaborator);
         let docs = declaration.docs.clone();
-        model.fields.push(Field { name, role, unit: unit.clone(), lower, upper, hard: None, docs });
+        let part = part(declaration, k, count);
+        model.fields.push(Field { name, role, unit: unit.clone(), lower, upper, hard: None, part, docs });
     }
 }
 
@@ -145,13 +167,23 @@ fn check_order(declaration: &Declaration, lower: Option<f64>, upper: Option<f64>
     }
 }
 
-/// One value for each component: of a vector as written, of a scalar for all alike.
-fn each(
-    expr: Option<&crate::syntax::Expr>,
+/// How far each component is believed to be from its value: positive numbers.
+pub(super) fn spreads(
+    expr: Option<&Expr>,
+    name: &Name,
     count: usize,
     unit: &Unit,
     elaborator: &mut Elaborator<'_>,
 ) -> Vec<Option<f64>> {
+    let spreads = each(expr, count, unit, elaborator);
+    if let (Some(expr), true) = (expr, spreads.iter().flatten().any(|spread| *spread <= 0.0)) {
+        elaborator.errors.push(expr.place, catalogue::spread_not_positive(&name.text));
+    }
+    spreads
+}
+
+/// One value for each component: of a vector as written, of a scalar for all alike.
+fn each(expr: Option<&Expr>, count: usize, unit: &Unit, elaborator: &mut Elaborator<'_>) -> Vec<Option<f64>> {
     let Some(expr) = expr else { return vec![None; count] };
     match in_unit(expr, unit, elaborator) {
         Err(_) => vec![None; count],
@@ -175,6 +207,12 @@ pub(super) fn components(declaration: &Declaration, elaborator: &Elaborator<'_>)
             elaborator.spatial.iter().map(|&index| named(&elaborator.coordinates[index].name.text)).collect()
         }
     }
+}
+
+/// Where a component stands in its vector.
+pub(super) fn part(declaration: &Declaration, index: usize, count: usize) -> Option<Part> {
+    let of = || declaration.name.clone();
+    matches!(declaration.shape, Shape::Vector | Shape::Numbered(_)).then(|| Part { of: of(), index, count })
 }
 
 /// The value of a declared name, of the shape declared.

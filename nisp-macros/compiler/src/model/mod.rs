@@ -49,6 +49,10 @@ pub struct Model {
     pub fields: Vec<Field>,
     /// Scalars that are given or learned.
     pub parameters: Vec<Parameter>,
+    /// Constants as declared; their values stand wherever they are read.
+    pub constants: Vec<Definition>,
+    /// Definitions outside of groups, as written; what they stand for stands wherever they are read.
+    pub definitions: Vec<Definition>,
     /// Point groups, in order of appearance.
     pub groups: Vec<Group>,
     /// Scenes; a module that declares none gets one named `all` with every term.
@@ -94,6 +98,8 @@ pub struct Field {
     pub upper: Option<f64>,
     /// A hard Dirichlet condition: the field is `value + distance * network`.
     pub hard: Option<Hard>,
+    /// The vector that it is a component of.
+    pub part: Option<Part>,
     /// Doc comment.
     pub docs: Vec<String>,
 }
@@ -101,6 +107,8 @@ pub struct Field {
 /// A condition that a field keeps by construction.
 #[derive(Clone, Debug)]
 pub struct Hard {
+    /// Value and distance as plain text.
+    pub text: [String; 2],
     /// Zero on the boundary, of the order of one inside, dimensionless.
     pub distance: Expr,
     /// The boundary value, extended inwards.
@@ -120,6 +128,10 @@ pub struct Parameter {
     pub lower: Option<f64>,
     /// Largest sensible value in SI units.
     pub upper: Option<f64>,
+    /// The vector that it is a component of.
+    pub part: Option<Part>,
+    /// Standard deviation, in SI units, of what is believed of it where it is learned: its given value, give or take this.
+    pub spread: Option<f64>,
     /// Doc comment.
     pub docs: Vec<String>,
 }
@@ -131,8 +143,38 @@ pub struct Column {
     pub name: Name,
     /// Declared unit.
     pub unit: Unit,
+    /// The vector or matrix that it is an entry of.
+    pub part: Option<Part>,
     /// Doc comment.
     pub docs: Vec<String>,
+}
+
+/// A name for an expression, for people to read: `let` or a constant.
+#[derive(Clone, Debug)]
+pub struct Definition {
+    /// Its name.
+    pub name: Name,
+    /// The expression as plain text.
+    pub text: String,
+    /// The definition as LaTeX.
+    pub latex: String,
+    /// The unit of what it stands for.
+    pub unit: Unit,
+    /// Its shape in words; empty for a scalar.
+    pub shape: String,
+    /// Doc comment.
+    pub docs: Vec<String>,
+}
+
+/// Where an entry stands in what was declared.
+#[derive(Clone, Debug)]
+pub struct Part {
+    /// The declared name.
+    pub of: Name,
+    /// The entry's number.
+    pub index: usize,
+    /// How many entries there are.
+    pub count: usize,
 }
 
 /// A set of points and what must hold there.
@@ -140,6 +182,8 @@ pub struct Column {
 pub struct Group {
     /// Its name.
     pub name: Name,
+    /// Definitions in the group, as written.
+    pub definitions: Vec<Definition>,
     /// Per-point data, declared in the group or implied by observations; indices of [`Node::Column`].
     pub columns: Vec<Column>,
     /// What must hold.
@@ -148,6 +192,13 @@ pub struct Group {
     pub paired: bool,
     /// Doc comment.
     pub docs: Vec<String>,
+}
+
+impl Group {
+    /// Groups that the compiler adds have names in parentheses, which people cannot write.
+    pub fn is_internal(&self) -> bool {
+        self.name.text.starts_with('(')
+    }
 }
 
 /// One condition of a group.
@@ -240,6 +291,8 @@ pub struct Scene {
     pub fixed_parameters: Vec<Option<f64>>,
     /// For each parameter, whether it is learned.
     pub learned: Vec<bool>,
+    /// For each parameter, the standard deviation of what is believed of it, in SI units, if it is learned and something is.
+    pub spreads: Vec<Option<f64>>,
     /// Weight overrides: for each group, for each term.
     pub weights: Vec<Vec<f64>>,
     /// What its terms leave open: fields and sources that no condition pins down.

@@ -15,11 +15,6 @@ pub(super) fn skipped(model: &Model, scene: &Scene, plan: &ScenePlan, sets: &Set
     lines
 }
 
-/// Groups that the compiler adds have names in parentheses; people did not write them.
-fn is_internal(group: &Group) -> bool {
-    group.name.text.starts_with('(')
-}
-
 fn heads(model: &Model, scene: &Scene, plan: &ScenePlan) -> Vec<String> {
     let line = |(index, field): (usize, &Field)| {
         let name = &field.name.text;
@@ -48,7 +43,7 @@ fn terms(model: &Model, scene: &Scene) -> Vec<String> {
         let group_name = &group.name.text;
         match names.len() {
             0 => None,
-            _ if is_internal(group) => None,
+            _ if group.is_internal() => None,
             count if count == group.terms.len() => Some(format!("group {group_name}: not used")),
             _ => Some(format!("group {group_name}: without {}", names.join(", "))),
         }
@@ -82,7 +77,7 @@ fn parameters(model: &Model, scene: &Scene, plan: &ScenePlan) -> Vec<String> {
 fn channels(model: &Model, plan: &ScenePlan, sets: &Sets) -> Vec<String> {
     let mut lines = Vec::new();
     let largest = plan.groups.iter().map(|group| sets.plan(group.hidden).set.len()).max().unwrap_or(1);
-    for group in plan.groups.iter().filter(|group| !is_internal(&model.groups[group.group])) {
+    for group in plan.groups.iter().filter(|group| !model.groups[group.group].is_internal()) {
         let name = &model.groups[group.group].name.text;
         let carried = sets.plan(group.hidden).set.len();
         if carried == 1 && largest > 1 {

@@ -8,7 +8,7 @@
 //! ```text
 //! module      VIS? mod NAME { statement... }                    doc comments go before any declaration, group, term, scene
 //! statement   coordinates: (NAME (: time)? UNIT?), ... ;
-//!           | fields: declared, ... ;  | sources: declared, ... ;  | parameters: (declared (= EXPR)?), ... ;
+//!           | fields: declared, ... ;  | sources: declared, ... ;  | parameters: (declared (= EXPR)? (within EXPR)?), ... ;
 //!           | constants: (NAME UNIT? = EXPR), ... ;
 //!           | units: off;
 //!           | let NAME = EXPR;
@@ -26,7 +26,7 @@
 //!           | integral(EXPR) == EXPR
 //!           | 0 <= EXPR _|_ EXPR >= 0                           `complements` for `_|_` reads as well
 //! suffix      (with huber(3) | with welsch(3))? (weight 2)? (within 5 UNIT?)?
-//! choice      NAME = EXPR;  | learn NAME, ... ;  | without PATH, ... ;  | only PATH, ... ;  | weight PATH = NUMBER;
+//! choice      NAME = EXPR;  | learn NAME (within EXPR)?, ... ;  | without PATH, ... ;  | only PATH, ... ;  | weight PATH = NUMBER;
 //! PATH        GROUP | GROUP.TERM
 //! EXPR        + - * / ^, sign, parentheses; `a^b^c` is `a^(b^c)`, `-x^2` is `-(x^2)`
 //!           | NUMBER UNIT?  | NAME  | pi  | I  | [EXPR, ...]  | EXPR[INDEX, INDEX?]

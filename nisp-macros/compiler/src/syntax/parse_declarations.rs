@@ -99,7 +99,8 @@ fn entry(
         Some(unit) => unit.ok(),
     };
     let broken_name = name.text.clone();
-    let mut declaration = Declaration { kind, name, shape, unit, lower: None, upper: None, value: None, docs };
+    let mut declaration =
+        Declaration { kind, name, shape, unit, lower: None, upper: None, value: None, spread: None, docs };
     attributes(stream, context, &mut declaration)?;
     context.broken.remove(&broken_name);
     Ok(declaration)
@@ -134,7 +135,7 @@ fn shape(stream: &mut Stream<'_>, context: &mut Context<'_>, kind: Kind) -> Chec
     }
 }
 
-/// `>= a`, `<= b`, `in a .. b`, `= c`, in any order.
+/// `>= a`, `<= b`, `in a .. b`, `= c`, `within d`, in any order.
 fn attributes(stream: &mut Stream<'_>, context: &mut Context<'_>, declaration: &mut Declaration) -> Checked<()> {
     loop {
         let start = stream.place();
@@ -154,22 +155,31 @@ fn attributes(stream: &mut Stream<'_>, context: &mut Context<'_>, declaration: &
             }
             declaration.upper = Some(parse_expression::parse(stream, context)?);
             allow(context, declaration, start.to(stream.previous()), "in")?;
+        } else if stream.take_word("within") {
+            declaration.spread = Some(parse_expression::parse(stream, context)?);
+            allow(context, declaration, start.to(stream.previous()), "within")?;
         } else {
             return Ok(());
         }
     }
 }
 
-/// Only parameters and constants have values; coordinates, constants and columns have no bounds.
+/// Only parameters and constants have values, and only parameters are believed to be somewhere; coordinates, constants
+/// and columns have no bounds.
 fn allow(context: &mut Context<'_>, declaration: &Declaration, place: Place, sign: &str) -> Checked<()> {
     let valued = matches!(declaration.kind, Kind::Parameter | Kind::Constant);
     let bounded = matches!(declaration.kind, Kind::Field | Kind::Source | Kind::Parameter);
-    let allowed = if sign == "=" { valued } else { bounded };
+    let allowed = match sign {
+        "=" => valued,
+        "within" => declaration.kind == Kind::Parameter,
+        _ => bounded,
+    };
     if allowed {
         return Ok(());
     }
     let message = match sign {
         "=" => catalogue::takes_no_value(noun(declaration.kind)),
+        "within" => catalogue::takes_no_spread(noun(declaration.kind)),
         _ => catalogue::takes_no_bounds(noun(declaration.kind)),
     };
     Err(context.errors.report(place, message))

@@ -23,7 +23,9 @@ fn statement(stream: &mut Stream<'_>, context: &mut Context<'_>, items: &mut Vec
             "learn" => {
                 stream.skip();
                 listed(stream, context, |stream, context| {
-                    Ok(SceneItem::Learn(recover::name(stream, context, "a parameter to learn")?))
+                    let name = recover::name(stream, context, "a parameter to learn")?;
+                    let spread = stream.take_word("within").then(|| parse_expression::parse(stream, context));
+                    Ok(SceneItem::Learn(name, spread.transpose()?))
                 })
                 .map(|found| items.extend(found))?;
                 return end_statement(stream, context);

@@ -78,6 +78,8 @@ pub struct Declaration {
     pub upper: Option<Expr>,
     /// `= e`.
     pub value: Option<Expr>,
+    /// `within e`: how far a learned parameter is believed to be from its value.
+    pub spread: Option<Expr>,
     /// Doc comment lines.
     pub docs: Vec<String>,
 }
@@ -238,8 +240,8 @@ pub struct Scene {
 pub enum SceneItem {
     /// `NAME = EXPR;`
     Fix(Name, Expr),
-    /// `learn NAME;`
-    Learn(Name),
+    /// `learn NAME;` or `learn NAME within EXPR;`
+    Learn(Name, Option<Expr>),
     /// `without PATH;`
     Without(Path),
     /// `only PATH;`

@@ -87,6 +87,8 @@ pub(crate) fn model(coordinates: &[(&str, [i128; 3])]) -> Model {
         coordinates: coordinates.iter().map(coordinate).collect(),
         fields: Vec::new(),
         parameters: Vec::new(),
+        constants: Vec::new(),
+        definitions: Vec::new(),
         groups: Vec::new(),
         scenes: Vec::new(),
         units_checked: true,
@@ -110,19 +112,37 @@ impl Build for Model {
     fn bounded(&mut self, text: &str, exponents: [i128; 3], lower: Option<f64>, upper: Option<f64>) -> Expr {
         let unit = unit(exponents);
         let role = Role::Field;
-        self.fields.push(Field { name: name(text), role, unit, lower, upper, hard: None, docs: Vec::new() });
+        self.fields.push(Field {
+            name: name(text),
+            role,
+            unit,
+            lower,
+            upper,
+            hard: None,
+            part: None,
+            docs: Vec::new(),
+        });
         field(self.fields.len() - 1)
     }
 
     fn parameter(&mut self, text: &str, exponents: [i128; 3]) -> Expr {
         let unit = unit(exponents);
         let (default, lower, upper) = (None, None, None);
-        self.parameters.push(Parameter { name: name(text), unit, default, lower, upper, docs: Vec::new() });
+        self.parameters.push(Parameter {
+            name: name(text),
+            unit,
+            default,
+            lower,
+            upper,
+            part: None,
+            spread: None,
+            docs: Vec::new(),
+        });
         parameter(self.parameters.len() - 1)
     }
 
     fn group(&mut self, text: &str, columns: usize, terms: Vec<(&str, TermKind)>) {
-        let column = |i| Column { name: name(&format!("c{i}")), unit: unit(NONE), docs: Vec::new() };
+        let column = |i| Column { name: name(&format!("c{i}")), unit: unit(NONE), part: None, docs: Vec::new() };
         let term = |(text, kind)| Term {
             name: name(text),
             kind,
@@ -139,6 +159,7 @@ impl Build for Model {
             columns: (0..columns).map(column).collect(),
             terms: terms.into_iter().map(term).collect(),
             paired: false,
+            definitions: Vec::new(),
             docs: Vec::new(),
         });
     }
@@ -151,6 +172,7 @@ impl Build for Model {
             fixed_fields: vec![None; self.fields.len()],
             fixed_parameters: vec![None; self.parameters.len()],
             learned: vec![false; self.parameters.len()],
+            spreads: vec![None; self.parameters.len()],
             warnings: Vec::new(),
             weights: self.groups.iter().map(|group| vec![1.0; group.terms.len()]).collect(),
             docs: Vec::new(),

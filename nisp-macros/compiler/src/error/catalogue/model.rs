@@ -68,6 +68,13 @@ pub(crate) fn cannot_multiply(left: &str, right: &str, text: &str) -> String {
     help(format!("{left} cannot be multiplied by `{}`, which is {right}", shorten(text)), step)
 }
 
+pub(crate) fn spread_not_positive(name: &str) -> String {
+    help(
+        format!("`{name}` cannot be believed to be within zero or less of its value"),
+        format!("give a positive width, or fix it in a scene: `{name} = ...;`"),
+    )
+}
+
 pub(crate) fn division_by_zero() -> String {
     "this divides by zero".into()
 }
