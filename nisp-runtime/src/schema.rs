@@ -63,9 +63,10 @@ pub struct Head {
     pub lower: Option<f64>,
     /// Upper bound in SI units, kept by construction.
     pub upper: Option<f64>,
-    /// True if the network's output enters through a transformation (a bound or a hard condition), so that it is
-    /// dimensionless and neither shifted nor scaled.
+    /// True if the network's output enters through a bound, so that it is dimensionless and neither shifted nor scaled.
     pub transformed: bool,
+    /// True if a condition holds by construction: the quantity is a given value plus a distance times the network's output.
+    pub hard: bool,
     /// The user's documentation.
     pub docs: &'static str,
 }

@@ -409,7 +409,7 @@ fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(
         (inputs > MOST_COORDINATES, "more than four coordinates"),
         (schema.groups.iter().any(|group| group.paired), "paired points"),
         (
-            schema.heads.iter().any(|h| h.transformed && !one_sided(h)),
+            schema.heads.iter().any(|h| h.hard || (h.transformed && !one_sided(h))),
             "heads between two bounds or with hard conditions",
         ),
         (schema.groups.iter().flat_map(|g| g.jets).any(derived), "derivatives of bounded heads"),

@@ -184,7 +184,7 @@ impl Probe {
         for (term, cloud) in self.schema.terms.iter().zip(clouds) {
             for (i, row) in (term.first..term.first + term.rows).enumerate() {
                 let without = &rows[row * self.stride..][..self.count];
-                let measured = match term.kind {
+                let measured: Vec<f64> = match term.kind {
                     TermKind::Observation => without.iter().map(|x| -x).collect(),
                     // A coordinate of the surface that is the same everywhere but for the head.
                     TermKind::Chamfer { .. } if without.iter().all(|x| *x == without[0]) => {
@@ -199,6 +199,13 @@ impl Probe {
                 let head = self.schema.jets[jet].head;
                 let is_value = self.schema.jets[jet].degree.iter().all(|&n| n == 0);
                 if !is_value || heads[head].is_some() || scene.heads[head].transformed {
+                    continue;
+                }
+                if scene.heads[head].hard {
+                    // Where the condition holds the output does not count, and could be anything.
+                    let square = measured.iter().map(|x| x * x).sum::<f64>() / measured.len().max(1) as f64;
+                    let scale = square.sqrt() / self.rms(&slopes[jet * self.stride..]);
+                    heads[head] = (scale > 0.0 && scale.is_finite()).then_some((0.0, scale));
                     continue;
                 }
                 let slope = |at: usize| slopes[jet * self.stride + at % self.count];

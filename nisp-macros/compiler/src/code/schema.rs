@@ -71,11 +71,12 @@ fn head(field: &model::Field) -> TokenStream {
     let (name, unit, docs) = (&field.name.text, unit(&field.unit), text(&field.docs));
     let source = field.role == Role::Source;
     let (lower, upper) = (optional(field.lower), optional(field.upper));
-    let transformed = field.lower.is_some() || field.upper.is_some() || field.hard.is_some();
+    let transformed = field.lower.is_some() || field.upper.is_some();
+    let hard = field.hard.is_some();
     quote! {
         schema::Head {
             name: #name, unit: #unit, source: #source, lower: #lower, upper: #upper,
-            transformed: #transformed, docs: #docs,
+            transformed: #transformed, hard: #hard, docs: #docs,
         }
     }
 }
