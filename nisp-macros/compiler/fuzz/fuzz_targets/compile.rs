@@ -1,6 +1,7 @@
 //! Whatever the text is, the compiler answers: `cargo +nightly fuzz run compile` in `nisp-macros/compiler`.
 //!
-//! Seed it with the programs of the tests: `cargo +nightly fuzz run compile fuzz/corpus tests/fixtures/good`.
+//! Seed it with the programs of the tests: `cargo +nightly fuzz run compile fuzz/corpus tests/fixtures/good`. Stable Rust
+//! does without the sanitizers: `fuzz/run 60`.
 
 #![no_main]
 
