@@ -11,6 +11,7 @@ use std::time::Duration;
 
 use nisp::network::{Architecture, initialise};
 use nisp::simd::Isa;
+use nisp::solve::objective::Objective;
 use nisp::{Problem, SceneRef, scene_in_both_precisions as scene};
 use support::{best, group, scatter};
 
@@ -32,6 +33,17 @@ nisp::pde! {
         scene without_source { only inside, cheap; f = 0; u = 0; v = 0; }
         scene fixed { only inside, cheap, tied; }
         scene learned { only inside, cheap, tied; learn D; }
+    }
+}
+
+nisp::pde! {
+    /// A surface seen as a cloud.
+    mod sheet {
+        units: off;
+        coordinates: x, y;
+        fields: w;
+        on surface { cloud: chamfer [x, y, w]; }
+        scene fit { }
     }
 }
 
@@ -62,6 +74,31 @@ fn milliseconds(scene: SceneRef) -> [f64; 2] {
     [forward * 1e3, both * 1e3]
 }
 
+/// Milliseconds to see which surface point each point of a cloud belongs to, after a step that changes none of them, and
+/// after one that may have changed all.
+fn assignments() -> [f64; 2] {
+    let mut problem = Problem::new(scene::<sheet::fit::Scene>());
+    group(&mut problem, "surface", scatter(3000, &[2.0, 2.0]), vec![]);
+    let seen = scatter(2000, &[1.99, 1.99]).coordinates;
+    let cloud =
+        seen.as_chunks().0.iter().flat_map(|at: &[f64; 2]| [at[0], at[1], (2.0 * at[0]).sin() * at[1]]).collect();
+    problem.set_cloud("surface", "cloud", cloud).expect("a term of the scene");
+    let mut engine = problem.engine::<f64>(Isa::detect(), Architecture::modified(64, 3)).expect("a bound problem");
+    let there = initialise(engine.layout(), 1);
+    let elsewhere: Vec<f64> = there.iter().map(|x| -2.0 * x).collect();
+    engine.loss(&there).expect("finite");
+    let budget = Duration::from_secs(1);
+    let kept = best(budget, || {
+        assert!(!engine.accepted(&there));
+    });
+    let mut back = false;
+    let anew = best(budget, || {
+        assert!(engine.accepted(if back { &there } else { &elsewhere }));
+        back = !back;
+    });
+    [kept * 1e3, anew * 1e3]
+}
+
 fn main() {
     println!("| what is skipped | skipped, ms | not skipped, ms | ratio |\n|---|---|---|---|");
     let row = |what: &str, skipped: f64, whole: f64| {
@@ -78,4 +115,6 @@ fn main() {
     row("the adjoint of a parameter that is given", fixed, learned);
     let [forward, both] = milliseconds(scene::<plate::with_source::Scene>());
     row("the adjoint, where only values are wanted", forward, both);
+    let [kept, anew] = assignments();
+    row("assignments of a cloud that cannot have changed", kept, anew);
 }

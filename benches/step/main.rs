@@ -1,14 +1,16 @@
 //! Whole Adam steps of the paper's scenes at the paper's sizes and their share of the machine's peak, iterations of
 //! Levenberg-Marquardt, and cost and memory against the number of points.
 //!
-//! `cargo bench --bench step`
+//! `cargo bench --bench step`, or parts of it: `cargo bench --bench step -- table`, `... marquardt`, `... scale`
 
+mod allocated;
 mod scenes;
 #[path = "../support/mod.rs"]
 mod support;
 
 use std::time::{Duration, Instant};
 
+use allocated::{allocated, peak_since};
 use criterion::Criterion;
 use nisp::network::{Architecture, initialise};
 use nisp::peak::fma_peak;
@@ -29,10 +31,16 @@ struct Scene {
     points: &'static [usize],
 }
 
-fn scenes() -> [Scene; 4] {
+fn scenes() -> [Scene; 5] {
     [
         Scene { name: "pendulum", problem: scenes::pendulum(), layers: 3, points: &[800, 1000] },
-        Scene { name: "membrane", problem: scenes::membrane(3000), layers: 4, points: &[3000, 200] },
+        Scene { name: "membrane", problem: scenes::membrane(), layers: 4, points: &[3000, 200] },
+        Scene {
+            name: "membrane without its cloud",
+            problem: scenes::membrane_equations(3000),
+            layers: 4,
+            points: &[3000, 200],
+        },
         Scene { name: "softbody", problem: scenes::sponge(), layers: 4, points: &[5000, 1500, 1] },
         Scene { name: "plate", problem: scenes::plate(), layers: 4, points: &[10_000, 1000] },
     ]
@@ -106,9 +114,10 @@ fn table(threads: usize) {
     }
 }
 
-/// Iterations of Levenberg-Marquardt on the membrane with 1500 points, width 32, four layers.
+/// Iterations of Levenberg-Marquardt on the membrane with 1500 points, three equations and four conditions, width 32, four
+/// layers.
 fn marquardt() {
-    let problem = scenes::membrane(1300);
+    let problem = scenes::membrane_equations(1300);
     let mut engine = problem.engine::<f64>(Isa::detect(), Architecture::modified(32, 4)).expect("a bound problem");
     let theta = initialise(engine.layout(), 1);
     let parameters = theta.len();
@@ -126,49 +135,51 @@ fn marquardt() {
     println!("{wall:.2} s by the clock, {processor:.2} s of processor time on all threads together");
 }
 
-/// Resident memory in MB.
-fn resident() -> f64 {
-    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
-    let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
-    line.and_then(|line| line.split_whitespace().next()?.parse::<f64>().ok()).map_or(f64::NAN, |kb| kb / 1e3)
-}
-
 /// Cost per point and memory of a membrane step, from a thousand points to a million.
 fn scale() {
     println!(
-        "\n| points | microseconds a point (best) | of processor time | engine and optimizer, MB | points in them, MB |"
+        "\n| points | microseconds a point (best) | of processor time | at work at most, MB | while it is bound, MB | points \
+         in them, MB |"
     );
-    println!("|---|---|---|---|---|");
-    // From the top down: memory that is freed may stay resident.
-    for points in [1_000_000, 100_000, 10_000, 1_000] {
-        let problem = scenes::membrane(points);
-        let before = resident();
-        let mut step = adam::<f32>(&problem, Isa::detect(), Architecture::modified(64, 4));
-        let seconds = timed(&mut step).map(|seconds| seconds * 1e6 / points as f64);
-        let memory = resident() - before;
+    println!("|---|---|---|---|---|---|");
+    for points in [1_000, 10_000, 100_000, 1_000_000] {
+        let problem = scenes::membrane_equations(points);
+        let before = allocated();
+        let (mut step, binding) =
+            peak_since(before, || adam::<f32>(&problem, Isa::detect(), Architecture::modified(64, 4)));
+        let (seconds, working) = peak_since(before, || timed(&mut step));
+        let seconds = seconds.map(|seconds| seconds * 1e6 / points as f64);
         // Network coordinates and coordinates, both in single precision.
         let own = (points * 2 * 2 * size_of::<f32>()) as f64 / 1e6;
-        println!("| {points} | {:.2} | {:.2} | {memory:.1} | {own:.1} |", seconds[0], seconds[1]);
+        println!("| {points} | {:.2} | {:.2} | {working:.1} | {binding:.1} | {own:.1} |", seconds[0], seconds[1]);
     }
 }
 
 fn main() {
     let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("threads");
-    pool.install(|| {
-        let mut criterion = Criterion::default().sample_size(20).configure_from_args();
-        for scene in scenes() {
-            let architecture = Architecture::modified(256, scene.layers);
-            let mut group = criterion.benchmark_group(format!("step/{}", scene.name));
-            let mut step = adam::<f32>(&scene.problem, Isa::detect(), architecture);
-            group.bench_function("f32", |bencher| bencher.iter(&mut step));
-            let mut step = adam::<f64>(&scene.problem, Isa::detect(), architecture);
-            group.bench_function("f64", |bencher| bencher.iter(&mut step));
-            group.finish();
-        }
-        criterion.final_summary();
-        table(threads);
-        marquardt();
-        scale();
+    let part = std::env::args().find(|argument| ["table", "marquardt", "scale"].contains(&argument.as_str()));
+    pool.install(|| match part.as_deref() {
+        Some("table") => table(threads),
+        Some("marquardt") => marquardt(),
+        Some(_) => scale(),
+        None => everything(threads),
     });
+}
+
+fn everything(threads: usize) {
+    let mut criterion = Criterion::default().sample_size(20).configure_from_args();
+    for scene in scenes() {
+        let architecture = Architecture::modified(256, scene.layers);
+        let mut group = criterion.benchmark_group(format!("step/{}", scene.name));
+        let mut step = adam::<f32>(&scene.problem, Isa::detect(), architecture);
+        group.bench_function("f32", |bencher| bencher.iter(&mut step));
+        let mut step = adam::<f64>(&scene.problem, Isa::detect(), architecture);
+        group.bench_function("f64", |bencher| bencher.iter(&mut step));
+        group.finish();
+    }
+    criterion.final_summary();
+    table(threads);
+    marquardt();
+    scale();
 }

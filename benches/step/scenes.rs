@@ -1,6 +1,6 @@
 //! The paper's scenes at the paper's sizes, on points that fill their domains evenly.
 
-use nisp::{Points, Problem, scene_in_both_precisions as scene};
+use nisp::{Points, Problem, SceneRef, scene_in_both_precisions as scene};
 
 use crate::support::{group, scatter};
 
@@ -53,9 +53,13 @@ nisp::pde! {
                 - (N_a * d(w, alpha, 2) + 2 * N_ab * d(w, alpha, beta) + N_b * d(w, beta, 2)) == p - f;
             inplane_a: d(N_a, alpha) + d(N_ab, beta) == 0;
             inplane_b: d(N_ab, alpha) + d(N_b, beta) == 0;
+            cloud: chamfer [alpha + u, beta + v, w];
         }
         on rim { clamp: u == 0, v == 0, w == 0; no_contact: f == 0; }
+        /// As the paper trains it.
         scene contact { }
+        /// Its equations and conditions alone.
+        scene equations { without interior.cloud; }
     }
 }
 
@@ -103,9 +107,24 @@ pub(crate) fn pendulum() -> Problem {
     problem
 }
 
-/// `points` in the ellipse's box and 200 on the edge.
-pub(crate) fn membrane(points: usize) -> Problem {
-    let mut problem = Problem::new(scene::<membrane::contact::Scene>());
+/// 3000 points in the ellipse's box, 200 on the edge, and a cloud of 2000 points on a bulge over the box, none of which is
+/// where a point of the surface is.
+pub(crate) fn membrane() -> Problem {
+    let mut problem = membrane_on(scene::<membrane::contact::Scene>(), 3000);
+    let bulge = |at: &[f64; 2]| 0.02 * (at[0] * 26.0).sin() * (at[1] * 39.0).sin();
+    let seen = scatter(2000, &[0.119, 0.079]).coordinates;
+    let cloud = seen.as_chunks().0.iter().flat_map(|at: &[f64; 2]| [at[0], at[1], bulge(at)]).collect();
+    problem.set_cloud("interior", "cloud", cloud).expect("a term of the scene");
+    problem
+}
+
+/// Equations at `points` in the ellipse's box, and conditions at 200 on the edge.
+pub(crate) fn membrane_equations(points: usize) -> Problem {
+    membrane_on(scene::<membrane::equations::Scene>(), points)
+}
+
+fn membrane_on(scene: SceneRef, points: usize) -> Problem {
+    let mut problem = Problem::new(scene);
     group(&mut problem, "interior", scatter(points, &[0.12, 0.08]), vec![]);
     group(&mut problem, "rim", scatter(200, &[0.12, 0.08]), vec![]);
     problem
