@@ -1,5 +1,7 @@
 //! How noisy the data are, before anything is fitted to them.
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::problem::Bound;
 use crate::schema::TermKind;
 
@@ -19,8 +21,8 @@ pub(crate) struct ColumnNoise {
     pub(crate) relative: f64,
 }
 
-/// Noise below this share of the data's spread is taken for rounding of the data or for what differences miss.
-const EXACT: f64 = 1e-3;
+/// Noise below this share of the data's spread is taken for rounding: that of numbers with five digits and more.
+const EXACT: f64 = 1e-5;
 
 impl Noise {
     /// True if no observed column shows noise.
@@ -44,9 +46,11 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
             continue;
         }
         for (column, values) in bound.columns[at].iter().enumerate() {
-            let ordered = in_order(&bound.coordinates[at], inputs, values);
-            let spread = deviation(&ordered);
-            if let Some(deviation) = by_differences(&ordered) {
+            let spread = deviation(values);
+            let places = &bound.coordinates[at];
+            let found =
+                if inputs == 1 { by_differences(&in_order(places, values)) } else { by_fits(places, inputs, values) };
+            if let Some(deviation) = found {
                 let relative = if spread > 0.0 { deviation / spread } else { 0.0 };
                 columns.push(ColumnNoise { group: at, column, deviation, relative });
             }
@@ -55,10 +59,10 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
     Noise { columns }
 }
 
-/// Values along the first coordinate.
-fn in_order(coordinates: &[f64], inputs: usize, values: &[f64]) -> Vec<f64> {
+/// Values in the order of their only coordinate.
+fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
-    order.sort_by(|&a, &b| coordinates[a * inputs].total_cmp(&coordinates[b * inputs]));
+    order.sort_by(|&a, &b| coordinates[a].total_cmp(&coordinates[b]));
     order.into_iter().map(|at| values[at]).collect()
 }
 
@@ -68,25 +72,68 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count).sqrt()
 }
 
-/// From fourth differences, which a smooth signal hardly has: their median magnitude, so that a layer or an outlier
-/// does not count. Noise of deviation s gives differences of deviation `sqrt(70) s`.
+/// From eighth differences, of which a signal that is sampled well has none: their median magnitude, so that a layer or an
+/// outlier does not count. Noise of deviation s gives differences of deviation `sqrt(12870) s`.
 fn by_differences(values: &[f64]) -> Option<f64> {
-    let mut differences: Vec<f64> =
-        values.windows(5).map(|y| (y[0] - 4.0 * y[1] + 6.0 * y[2] - 4.0 * y[3] + y[4]).abs()).collect();
-    if differences.len() < 8 {
-        return None;
-    }
-    differences.sort_by(f64::total_cmp);
+    const EIGHTH: [f64; 9] = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0];
+    let difference = |window: &[f64]| window.iter().zip(EIGHTH).map(|(y, c)| c * y).sum::<f64>().abs();
+    let differences: Vec<f64> = values.windows(EIGHTH.len()).map(difference).collect();
     // The median magnitude of a standard normal number.
     const MEDIAN: f64 = 0.674_489_75;
-    Some(differences[differences.len() / 2] / (MEDIAN * 70.0_f64.sqrt()))
+    Some(median(differences)? / (MEDIAN * 12870.0_f64.sqrt()))
+}
+
+/// Places that are looked at where there are several coordinates.
+const PLACES: usize = 300;
+
+/// From quadratic fits to the values around some of the places: what the median fit leaves over.
+fn by_fits(coordinates: &[f64], inputs: usize, values: &[f64]) -> Option<f64> {
+    let unknowns = (inputs + 1) * (inputs + 2) / 2;
+    // As many left over as fitted.
+    let neighbours = 2 * unknowns;
+    if values.len() < neighbours {
+        return None;
+    }
+    let point = |at: usize| &coordinates[at * inputs..][..inputs];
+    let left = (0..values.len()).step_by(values.len().div_ceil(PLACES)).filter_map(|centre| {
+        let distance = |at: usize| point(at).iter().zip(point(centre)).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
+        let mut near: Vec<(f64, usize)> = (0..values.len()).map(|at| (distance(at), at)).collect();
+        near.select_nth_unstable_by(neighbours - 1, |a, b| a.0.total_cmp(&b.0));
+        near.truncate(neighbours);
+        let reach = near.iter().map(|(square, _)| square.sqrt()).fold(f64::MIN_POSITIVE, f64::max);
+        let rows = near.iter().flat_map(|&(_, at)| {
+            let away: Vec<f64> = point(at).iter().zip(point(centre)).map(|(a, b)| (a - b) / reach).collect();
+            monomials(&away)
+        });
+        let design = DMatrix::from_row_iterator(neighbours, unknowns, rows);
+        let data = DVector::from_iterator(neighbours, near.iter().map(|&(_, at)| values[at]));
+        let fit = design.clone().svd(true, true).solve(&data, 1e-10).ok()?;
+        Some((data - design * fit).norm_squared() / unknowns as f64)
+    });
+    // The median of chi^2 over its degrees of freedom (Wilson and Hilferty 1931).
+    let middle = (1.0 - 2.0 / (9.0 * unknowns as f64)).powi(3);
+    Some((median(left.collect())? / middle).sqrt())
+}
+
+/// Products of at most two of the numbers.
+fn monomials(x: &[f64]) -> Vec<f64> {
+    let linear = std::iter::once(1.0).chain(x.iter().copied());
+    let squares = (0..x.len()).flat_map(|i| (i..x.len()).map(move |j| x[i] * x[j]));
+    linear.chain(squares).collect()
+}
+
+/// Nothing where there are too few to mean anything.
+fn median(mut values: Vec<f64>) -> Option<f64> {
+    const FEW: usize = 8;
+    values.sort_by(f64::total_cmp);
+    (values.len() >= FEW).then(|| values[values.len() / 2])
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::network::normal;
-    use rand::{SeedableRng, rngs::StdRng};
+    use rand::{RngExt, SeedableRng, rngs::StdRng};
 
     #[test]
     fn differences_see_the_noise_and_not_the_signal() {
@@ -94,8 +141,20 @@ mod tests {
         let noisy: Vec<f64> = (0..2000).map(|i| (i as f64 * 0.01).sin() + 0.03 * normal(&mut random)).collect();
         let found = by_differences(&noisy).unwrap();
         assert!((found / 0.03 - 1.0).abs() < 0.1, "{found}");
-        let smooth: Vec<f64> = (0..200).map(|i| (i as f64 * 0.05).sin()).collect();
-        assert!(by_differences(&smooth).unwrap() < 1e-5);
+        let smooth: Vec<f64> = (0..200).map(|i| (i as f64 * 0.2).sin()).collect();
+        assert!(by_differences(&smooth).unwrap() < 1e-7);
+    }
+
+    #[test]
+    fn fits_see_the_noise_and_not_the_slope() {
+        let mut random = StdRng::seed_from_u64(1);
+        let mut uniform = || random.random::<f64>();
+        let coordinates: Vec<f64> = (0..4000).map(|_| uniform()).collect();
+        let smooth: Vec<f64> = coordinates.chunks_exact(2).map(|p| 3.0 * p[0] + (2.0 * p[1]).sin()).collect();
+        assert!(by_fits(&coordinates, 2, &smooth).unwrap() < 1e-4);
+        let noisy: Vec<f64> = smooth.iter().map(|y| y + 0.03 * normal(&mut random)).collect();
+        let found = by_fits(&coordinates, 2, &noisy).unwrap();
+        assert!((found / 0.03 - 1.0).abs() < 0.1, "{found}");
     }
 
     #[test]
