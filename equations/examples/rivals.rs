@@ -14,7 +14,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     for entry in catalogue() {
         let Some(series) = entry.series() else { continue };
         for noise in [0.0, 0.01, 0.03] {
-            let samples = series.copies(&entry, &Request::default(), &repository, noise, SEED, usize::MAX)?;
+            let samples = series.copies(&entry, &Request::default(), &repository, noise, SEED, series.truths.len())?;
             println!("{}, runs: {}, noise {noise}, mean |error of the source|", entry.name, samples.len());
             for yardstick in yardsticks(&samples) {
                 println!("  {:24} {:.2e}  ({:.2} s a run)", yardstick.name, yardstick.error, yardstick.seconds);

@@ -59,7 +59,8 @@ pub struct Series {
 }
 
 impl Series {
-    /// The repository's first truths as if measured anew: that of number k with noise of seed `seed + k`.
+    /// The repository's truths as if measured anew, `count` times from the first on and then from the beginning: number k
+    /// with noise of seed `seed + k`.
     ///
     /// # Errors
     /// No such files in the folder `repository`, or a scene that the entry does not have.
@@ -70,7 +71,7 @@ impl Series {
         repository: &Path,
         noise: f64,
         seed: u64,
-        most: usize,
+        count: usize,
     ) -> Result<Vec<Prepared>, PrepareError> {
         let schema = entry.scene(request.scene.as_deref())?.schema;
         let copy = |(index, path): (usize, &&str)| {
@@ -78,7 +79,7 @@ impl Series {
             let copy = noisy_copy(&truth, schema, self.every, noise, seed.wrapping_add(index as u64))?;
             self.bind(entry, request, &copy, Some(&truth))
         };
-        self.truths.iter().take(most).enumerate().map(copy).collect()
+        self.truths.iter().cycle().take(count).enumerate().map(copy).collect()
     }
 
     /// Reads the data and binds the scene.
