@@ -93,6 +93,21 @@ pub(crate) fn transpose_times(j: &[f64], u: &[f64], out: &mut [f64]) {
     });
 }
 
+/// `j -= q q^T j`, for `q` of `rows x k` and `j` of `rows x n`, both row-major.
+pub(crate) fn subtract_projection(q: &[f64], k: usize, j: &mut [f64], n: usize) {
+    let rows = j.len() / n.max(1);
+    let q = row_major(q, rows, k);
+    let mut within = vec![0.0; k * n];
+    let product = MatMut::from_row_major_slice_mut(&mut within, k, n);
+    matmul::matmul(product, Accum::Replace, q.transpose(), row_major(j, rows, n), 1.0, Par::Seq);
+    let within = row_major(&within, k, n);
+    j.par_chunks_mut(n * WIDTH).enumerate().for_each(|(task, j)| {
+        let count = j.len() / n;
+        let j = MatMut::from_row_major_slice_mut(j, count, n);
+        matmul::matmul(j, Accum::Add, q.subrows(task * WIDTH, count), within, -1.0, Par::Seq);
+    });
+}
+
 /// Copies the lower triangle of an `n x n` matrix.
 pub(crate) fn copy_lower(from: &[f64], to: &mut [f64], n: usize) {
     to.par_chunks_exact_mut(n)
@@ -149,8 +164,7 @@ impl Cholesky {
     /// Solves `L L^T x = b` in place, for one right-hand side.
     pub(crate) fn solve(&self, b: &mut [f64]) {
         self.solve_lower(b, 1);
-        let x = MatMut::from_column_major_slice_mut(b, self.n, 1);
-        triangular_solve::solve_upper_triangular_in_place(self.lower().transpose(), x, Par::Seq);
+        self.solve_upper(b, 1);
     }
 
     /// Solves `L x = b` in place for `count` right-hand sides, one after the other in memory.
@@ -160,6 +174,16 @@ impl Cholesky {
             let width = columns.len() / n;
             let x = MatMut::from_column_major_slice_mut(columns, n, width);
             triangular_solve::solve_lower_triangular_in_place(self.lower(), x, Par::Seq);
+        });
+    }
+
+    /// Solves `L^T x = b` in place for `count` right-hand sides, one after the other in memory.
+    pub(crate) fn solve_upper(&self, b: &mut [f64], count: usize) {
+        let n = self.n;
+        b[..n * count].par_chunks_mut(n * WIDTH).for_each(|columns| {
+            let width = columns.len() / n;
+            let x = MatMut::from_column_major_slice_mut(columns, n, width);
+            triangular_solve::solve_upper_triangular_in_place(self.lower().transpose(), x, Par::Seq);
         });
     }
 

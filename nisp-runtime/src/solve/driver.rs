@@ -108,6 +108,8 @@ pub enum WarningKind {
     Stagnation,
     /// The accuracy of single precision is reached.
     SinglePrecision,
+    /// Data or an equation that the network does not follow, or data that it follows into their noise.
+    Unresolved,
     /// A direction of the answer that neither equations nor data determine.
     Undetermined,
     /// A condition that the answer rests on: the data alone would leave a direction open.

@@ -155,6 +155,10 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for EmpiricalBayes {
         Ok(step)
     }
 
+    fn prior(&self) -> Option<&WeightPrior> {
+        Some(self.inner.prior())
+    }
+
     fn save(&self) -> State {
         let mut state = Method::<f64, O>::save(&self.inner);
         state.method = "lm-evidence".into();

@@ -213,6 +213,10 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for GaussNewton {
         self.attempt(objective).or_else(|fault| self.refuse(fault))
     }
 
+    fn prior(&self) -> Option<&WeightPrior> {
+        Some(&self.prior)
+    }
+
     fn save(&self) -> State {
         State::new("gauss-newton")
             .with("theta", &self.theta)

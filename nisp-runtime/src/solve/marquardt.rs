@@ -169,6 +169,10 @@ impl<O: LeastSquares + ?Sized> Method<f64, O> for Marquardt {
         }
     }
 
+    fn prior(&self) -> Option<&WeightPrior> {
+        Some(&self.prior)
+    }
+
     fn save(&self) -> State {
         let precisions: Vec<f64> = self.prior.groups().iter().map(|group| group.precision).collect();
         State::new("lm")

@@ -1,6 +1,7 @@
 //! What all methods have in common: one step at a time, refused rather than wrong.
 
 use super::fault::Fault;
+use super::prior::WeightPrior;
 use super::state::State;
 use crate::real::Real;
 
@@ -20,6 +21,11 @@ pub trait Method<E: Real, O: ?Sized> {
     /// # Errors
     /// A fault that five refused steps in a row did not get around, or one at the starting point.
     fn step(&mut self, objective: &mut O) -> Result<Step, Fault>;
+
+    /// What the method believes of the parameters, if anything, as of now.
+    fn prior(&self) -> Option<&WeightPrior> {
+        None
+    }
 
     /// The whole state, for a checkpoint.
     fn save(&self) -> State;

@@ -23,6 +23,7 @@ mod normal;
 pub mod objective;
 pub mod posterior;
 pub mod prior;
+pub mod projection;
 mod record;
 pub mod state;
 mod symmetric;

@@ -9,6 +9,9 @@ use super::vector;
 pub struct Posterior {
     /// Standard deviation of every quantity.
     pub deviations: Vec<f64>,
+    /// The part of it that the prior vouches for: the deviation of what smoothing takes away, if the truth is as the prior
+    /// believes. What is left, in squares, is the part of the noise.
+    pub by_prior: Vec<f64>,
     /// The leading directions of their covariance, largest first.
     pub directions: Vec<Direction>,
 }
@@ -44,7 +47,13 @@ pub fn posterior(curvature: &Curvature, derivatives: &[f64], most: usize) -> Pos
             shape,
         })
         .collect();
-    Posterior { deviations: variances.iter().map(|v| v.sqrt()).collect(), directions }
+    // H^-1 = H^-1 J^T J H^-1 + H^-1 A H^-1: noise and prior.
+    curvature.cholesky.solve_upper(&mut spread, count);
+    let by_prior = spread.chunks_exact(len.max(1)).map(|x| {
+        let square: f64 = x.iter().zip(&curvature.precision).map(|(x, a)| a * x * x).sum();
+        square.sqrt()
+    });
+    Posterior { by_prior: by_prior.collect(), deviations: variances.iter().map(|v| v.sqrt()).collect(), directions }
 }
 
 /// Largest eigenvalues of `X X^T` with their eigenvectors, for `X` row-major of `count x len`, from the smaller of
