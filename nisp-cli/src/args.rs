@@ -75,13 +75,13 @@ pub(crate) struct Options {
     /// Seed of the initial weights.
     #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, help_heading = METHOD)]
     pub(crate) seed: u64,
-    /// Element type of the network.
-    #[arg(long, default_value = "f64", value_parser = ["f32", "f64"], help_heading = METHOD)]
+    /// Element type of the network; auto is f32 as long as that helps, with methods that work in it, and then f64.
+    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = precisions(), help_heading = METHOD)]
     pub(crate) precision: String,
     /// A network even where local functions suit the scene better (membrane, sponge); so does --optimizer.
     #[arg(long, help_heading = METHOD)]
     pub(crate) network: bool,
-    /// Method of minimisation; auto chooses by the noise in the data.
+    /// Method of minimisation; auto chooses by noise and size, and for wide networks by a short trial.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = optimizers(), help_heading = METHOD)]
     pub(crate) optimizer: String,
     /// Hidden units of a layer.
@@ -174,6 +174,11 @@ Exit codes:
 /// Names of all methods.
 pub(crate) fn optimizers() -> clap::builder::PossibleValuesParser {
     nisp::Optimizer::ALL.map(nisp::Optimizer::name).into()
+}
+
+/// Names of all precisions.
+pub(crate) fn precisions() -> clap::builder::PossibleValuesParser {
+    nisp::Width::ALL.map(nisp::Width::name).into()
 }
 
 fn pair(text: &str) -> Result<(String, String), String> {

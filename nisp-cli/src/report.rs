@@ -66,7 +66,7 @@ pub(crate) fn json(
         "scene": options.equation,
         "status": status(solution),
         "seed": settings.seed,
-        "precision": settings.precision.name(),
+        "precision": solution.precision(),
         "optimizer": solution.method(),
         "threads": settings.threads,
         "wall_s": solution.wall_s,
@@ -84,6 +84,7 @@ pub(crate) fn json(
             "columns": options.column.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
             "parameters": options.set.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
             "optimizer": settings.optimizer.name(),
+            "precision": settings.precision.name(),
             "width": options.width,
             "layers": options.layers,
             "budget_s": options.budget,
@@ -118,7 +119,7 @@ pub(crate) fn table(
         solution.wall_s,
         solution.iterations,
         solution.method(),
-        solution.settings.precision.name(),
+        solution.precision(),
         if threads == 1 { "" } else { "s" },
         solution.loss
     ));

@@ -82,7 +82,7 @@ fn settings(options: &Options) -> Result<Settings, String> {
         return Err(format!("--threads {threads}: at most {MOST_THREADS}; leave it out for one per processor"));
     }
     Ok(Settings {
-        precision: if options.precision == "f32" { Width::F32 } else { Width::F64 },
+        precision: Width::from_name(&options.precision).unwrap_or(Width::Auto),
         optimizer: Optimizer::from_name(&options.optimizer).unwrap_or(Optimizer::Auto),
         architecture: Architecture { width: options.width, layers: options.layers, ..Settings::default().architecture },
         local: None,

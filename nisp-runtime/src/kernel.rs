@@ -119,6 +119,11 @@ pub fn scene_in_both_precisions<S: Scene>() -> SceneRef {
 }
 
 impl SceneRef {
+    /// True if it is compiled in single precision too.
+    pub(crate) fn has_single(&self) -> bool {
+        self.single.is_some()
+    }
+
     /// The kernels in double precision.
     pub(crate) fn double(&self) -> Vec<GroupKernel<f64>> {
         (self.double)()

@@ -4,7 +4,12 @@
 //! answer back in the user's units.
 
 mod checkpoint;
+mod course;
+mod network;
 mod noise;
+mod place;
+mod promotion;
+mod resolution;
 mod settings;
 mod solution;
 mod undetermined;
@@ -14,35 +19,21 @@ use std::time::Instant;
 
 use thiserror::Error;
 
-use undetermined::View;
-
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use settings::{Optimizer, Settings, Width};
 pub use solution::{Estimate, LearnedValue, Solution, TermReport};
 
-use crate::engine::Engine;
+use course::Course;
+
 use crate::local::{self, Local, LocalError};
-use crate::network::initialise;
 use crate::problem::{BindError, Bound, Problem};
-use crate::real::Real;
-use crate::solve::adam::{Adam, AdamSettings};
-use crate::solve::broyden::{Broyden, Update};
-use crate::solve::driver::{self, Flow, Limits, Outcome, Progress};
-use crate::solve::empirical_bayes::{EmpiricalBayes, EmpiricalBayesSettings};
+use crate::solve::driver::{Flow, Limits};
 use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
-use crate::solve::lbfgs::Lbfgs;
-use crate::solve::marquardt::Marquardt;
-use crate::solve::method::Method;
-use crate::solve::objective::Objective;
-use crate::solve::state::State;
 
 /// What is believed of the precision of weights before any row is seen: a network whose heads change by a few times their
 /// natural size. Worth so few parameters, it matters only where the data say next to nothing.
 const BELIEF: Belief = Belief { precision: 0.3, count: 4.0 };
-
-/// Parameters up to which the curvature is factorised for error bars: a few seconds.
-const MOST_FOR_CURVATURE: usize = 4000;
 
 /// Why there is no solution.
 #[derive(Debug, Error)]
@@ -75,6 +66,9 @@ pub enum RecoverError {
     /// A checkpoint that this run cannot go on from.
     #[error(transparent)]
     Checkpoint(#[from] CheckpointError),
+    /// Variable projection without anything to project.
+    #[error("optimizer varpro needs a head that enters all terms linearly, and there is none; choose lm")]
+    NotLinear,
     /// Local functions that cannot do it.
     #[error(transparent)]
     Local(#[from] LocalError),
@@ -144,49 +138,11 @@ fn solve(
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
     let pool = pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
-    let course = Course { fingerprint, limits: limits(settings, start), from: checkpoint.map(|c| &c.state), monitor };
-    pool.install(|| match (&settings.local, settings.precision) {
-        (Some(local), _) => solve_local(bound, local, settings, start, course),
-        (None, Width::F64) => solve_double(bound, settings, start, course),
-        (None, Width::F32) => solve_single(bound, settings, start, course),
+    let course = Course::new(fingerprint, limits(settings, start), checkpoint.map(|c| &c.state), monitor);
+    pool.install(|| match &settings.local {
+        Some(local) => solve_local(bound, local, settings, start, course),
+        None => network::solve(bound, settings, start, course),
     })
-}
-
-/// How a run begins, who watches it and when it ends.
-struct Course<'a, 'm> {
-    /// Of problem and settings.
-    fingerprint: u64,
-    limits: Limits,
-    /// Where to go on from; else from the start.
-    from: Option<&'a State>,
-    monitor: &'a mut Monitor<'m>,
-}
-
-impl Course<'_, '_> {
-    /// Runs a method.
-    fn run<E: Real, O: Objective<E>, M: Method<E, O>>(
-        self,
-        method: &mut M,
-        objective: &mut O,
-    ) -> Result<Outcome<E>, RecoverError> {
-        let Self { fingerprint, limits, from, monitor } = self;
-        let monitor = &mut |progress: &Progress<'_, E>| {
-            monitor(Report {
-                iteration: progress.iteration,
-                elapsed_s: progress.elapsed.as_secs_f64(),
-                loss: progress.best_loss,
-                checkpoint: &|| Checkpoint { fingerprint, state: (progress.checkpoint)() },
-            })
-        };
-        match from {
-            None => Ok(driver::run(method, objective, limits, monitor)),
-            Some(state) => {
-                let outcome = driver::resume(method, objective, state, limits, monitor);
-                // What carries the right fingerprint and still does not fit was not written by us.
-                outcome.map_err(|_| CheckpointError::Damaged.into())
-            }
-        }
-    }
 }
 
 fn solve_local(
@@ -196,7 +152,7 @@ fn solve_local(
     start: Instant,
     course: Course<'_, '_>,
 ) -> Result<Solution, RecoverError> {
-    let Course { fingerprint, limits, from, monitor } = course;
+    let Course { fingerprint, limits, from, monitor, .. } = course;
     let found = local::solve(&bound, local, limits, from, &mut |progress| {
         monitor(Report {
             iteration: progress.iteration,
@@ -214,92 +170,4 @@ fn limits(settings: &Settings, start: Instant) -> Limits {
         iterations: settings.iterations.unwrap_or(u64::MAX),
         ..Limits::default()
     }
-}
-
-fn solve_double(
-    bound: Bound,
-    settings: &Settings,
-    start: Instant,
-    course: Course<'_, '_>,
-) -> Result<Solution, RecoverError> {
-    let mut engine: Engine<f64> = bound.engine(settings.architecture)?;
-    let noise = noise::estimate(&bound);
-    let (parameters, rows) = (engine.parameters(), engine.row_count());
-    let optimizer = settings.optimizer.choose(&noise, parameters, rows);
-    if !optimizer.fits(parameters, rows) {
-        return Err(RecoverError::Size { optimizer: optimizer.name(), parameters, rows });
-    }
-    let theta = initialise(engine.layout(), settings.seed);
-    let mut prior = engine.layout().prior(BELIEF.precision);
-    let mut outcome = match optimizer {
-        Optimizer::Evidence | Optimizer::Marquardt => {
-            weigh::by_noise(&mut engine, &bound, &noise);
-            if optimizer == Optimizer::Evidence {
-                let settings = EmpiricalBayesSettings { belief: BELIEF, ..EmpiricalBayesSettings::default() };
-                let mut method = EmpiricalBayes::new(theta, prior, settings);
-                let outcome = course.run(&mut method, &mut engine)?;
-                prior = method.prior().clone();
-                outcome
-            } else {
-                course.run(&mut Marquardt::new(theta, prior.clone()), &mut engine)?
-            }
-        }
-        Optimizer::Broyden => {
-            weigh::by_size(&mut engine);
-            course.run(&mut Broyden::new(theta, Update::SelfScaledBroyden), &mut engine)?
-        }
-        Optimizer::Lbfgs => {
-            weigh::by_size(&mut engine);
-            course.run(&mut Lbfgs::new(theta, 20), &mut engine)?
-        }
-        Optimizer::Auto | Optimizer::Adam => {
-            weigh::by_size(&mut engine);
-            weigh::regress_first(&mut engine, &theta)?;
-            course.run(&mut Adam::new(theta, AdamSettings::default()), &mut engine)?
-        }
-    };
-    let prior = (parameters <= MOST_FOR_CURVATURE && Optimizer::Evidence.fits(parameters, rows)).then_some(prior);
-    if let Some(prior) = &prior {
-        if !matches!(optimizer, Optimizer::Evidence | Optimizer::Marquardt) {
-            weigh::by_noise(&mut engine, &bound, &noise);
-        }
-        let architecture = settings.architecture;
-        let theta = &outcome.theta;
-        let mut view = View { bound: &bound, engine: &mut engine, theta, prior, architecture };
-        outcome.warnings.extend(view.warnings());
-    }
-    Ok(Solution::new(bound, engine, outcome, settings, optimizer, start, prior))
-}
-
-fn solve_single(
-    bound: Bound,
-    settings: &Settings,
-    start: Instant,
-    course: Course<'_, '_>,
-) -> Result<Solution, RecoverError> {
-    let mut engine: Engine<f32> = bound.engine(settings.architecture)?;
-    let theta: Vec<f32> = initialise(engine.layout(), settings.seed).into_iter().map(|x| x as f32).collect();
-    weigh::by_size(&mut engine);
-    let (optimizer, outcome) = match settings.optimizer {
-        Optimizer::Lbfgs => (Optimizer::Lbfgs, course.run(&mut Lbfgs::new(theta, 20), &mut engine)?),
-        Optimizer::Auto | Optimizer::Adam => {
-            weigh::regress_first(&mut engine, &theta)?;
-            let mut method = Adam::new(theta, AdamSettings::default());
-            (Optimizer::Adam, course.run(&mut method, &mut engine)?)
-        }
-        other => return Err(RecoverError::Precision { optimizer: other.name() }),
-    };
-    let outcome = Outcome {
-        theta: outcome.theta.iter().map(|&x| f64::from(x)).collect(),
-        status: outcome.status,
-        loss: outcome.loss,
-        iterations: outcome.iterations,
-        evaluations: outcome.evaluations,
-        wall_s: outcome.wall_s,
-        warnings: outcome.warnings,
-        state: outcome.state,
-    };
-    let mut double: Engine<f64> = bound.engine(settings.architecture)?;
-    weigh::by_size(&mut double);
-    Ok(Solution::new(bound, double, outcome, settings, optimizer, start, None))
 }

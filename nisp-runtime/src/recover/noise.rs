@@ -8,8 +8,7 @@ use crate::schema::TermKind;
 /// Noise of observed columns.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Noise {
-    /// For every observed column: group, column, standard deviation in the engine's units, and that over the data's
-    /// own spread. The deviation is absent where it cannot be judged.
+    /// Of every observed column where it can be judged.
     pub(crate) columns: Vec<ColumnNoise>,
 }
 
@@ -17,8 +16,9 @@ pub(crate) struct Noise {
 pub(crate) struct ColumnNoise {
     pub(crate) group: usize,
     pub(crate) column: usize,
+    /// Standard deviation in the engine's units, and that of the data themselves.
     pub(crate) deviation: f64,
-    pub(crate) relative: f64,
+    pub(crate) spread: f64,
 }
 
 /// Noise below this share of the data's spread is taken for rounding: that of numbers with five digits and more.
@@ -27,13 +27,18 @@ const EXACT: f64 = 1e-5;
 impl Noise {
     /// True if no observed column shows noise.
     pub(crate) fn is_exact(&self) -> bool {
-        self.columns.iter().all(|c| c.relative < EXACT)
+        self.columns.iter().all(|c| is_exact(c.deviation, c.spread))
     }
 
-    /// Standard deviation of a column of a group.
-    pub(crate) fn of(&self, group: usize, column: usize) -> Option<f64> {
-        self.columns.iter().find(|c| (c.group, c.column) == (group, column)).map(|c| c.deviation)
+    /// Noise of a column of a group.
+    pub(crate) fn of(&self, group: usize, column: usize) -> Option<ColumnNoise> {
+        self.columns.iter().find(|c| (c.group, c.column) == (group, column)).copied()
     }
+}
+
+/// True where noise of some deviation is no more than rounding, for data of some spread.
+pub(super) fn is_exact(deviation: f64, spread: f64) -> bool {
+    deviation <= EXACT * spread
 }
 
 /// Estimates the noise of every column of groups with observations.
@@ -51,8 +56,7 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
             let found =
                 if inputs == 1 { by_differences(&in_order(places, values)) } else { by_fits(places, inputs, values) };
             if let Some(deviation) = found {
-                let relative = if spread > 0.0 { deviation / spread } else { 0.0 };
-                columns.push(ColumnNoise { group: at, column, deviation, relative });
+                columns.push(ColumnNoise { group: at, column, deviation, spread });
             }
         }
     }

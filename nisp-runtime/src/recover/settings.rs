@@ -30,7 +30,7 @@ pub struct Settings {
 impl Default for Settings {
     fn default() -> Self {
         Self {
-            precision: Width::F64,
+            precision: Width::Auto,
             optimizer: Optimizer::Auto,
             architecture: Architecture { inputs: Inputs::Automatic, ..Architecture::modified(16, 2) },
             local: None,
@@ -45,6 +45,9 @@ impl Default for Settings {
 /// Width of the element type.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Width {
+    /// Single as long as its gradient is good, and then double, with methods that work in both and scenes that are compiled
+    /// in both; else double.
+    Auto,
     /// Single precision.
     F32,
     /// Double precision.
@@ -52,19 +55,29 @@ pub enum Width {
 }
 
 impl Width {
-    /// `f32` or `f64`.
+    /// Every choice.
+    pub const ALL: [Self; 3] = [Self::Auto, Self::F32, Self::F64];
+
+    /// Name as users write it.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::F32 => "f32",
             Self::F64 => "f64",
         }
+    }
+
+    /// The choice of this name.
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|width| width.name() == name)
     }
 }
 
 /// Methods of minimisation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Optimizer {
-    /// Self-scaled Broyden for exact data, Levenberg-Marquardt with evidence for noisy data.
+    /// For small networks self-scaled Broyden where data are exact and evidence where they are noisy; for wide ones whichever
+    /// of L-BFGS and Gauss-Newton gets further in a short trial.
     Auto,
     /// First order, with the paper's schedule and loss weights.
     Adam,
@@ -74,13 +87,26 @@ pub enum Optimizer {
     Broyden,
     /// Levenberg-Marquardt with a fixed weak prior.
     Marquardt,
+    /// The same, with the weights of heads that enter linearly solved for at every step: variable projection.
+    Projection,
+    /// Gauss-Newton by conjugate gradients, without matrices, with a fixed weak prior.
+    GaussNewton,
     /// Levenberg-Marquardt with prior and noise chosen by the evidence.
     Evidence,
 }
 
 impl Optimizer {
     /// Every method, by name.
-    pub const ALL: [Self; 6] = [Self::Auto, Self::Adam, Self::Lbfgs, Self::Broyden, Self::Marquardt, Self::Evidence];
+    pub const ALL: [Self; 8] = [
+        Self::Auto,
+        Self::Adam,
+        Self::Lbfgs,
+        Self::Broyden,
+        Self::Marquardt,
+        Self::Projection,
+        Self::GaussNewton,
+        Self::Evidence,
+    ];
 
     /// Name as users write it.
     pub fn name(self) -> &'static str {
@@ -90,6 +116,8 @@ impl Optimizer {
             Self::Lbfgs => "lbfgs",
             Self::Broyden => "broyden",
             Self::Marquardt => "lm",
+            Self::Projection => "varpro",
+            Self::GaussNewton => "gauss-newton",
             Self::Evidence => "evidence",
         }
     }
@@ -99,23 +127,42 @@ impl Optimizer {
         Self::ALL.into_iter().find(|optimizer| optimizer.name() == name)
     }
 
-    /// What `Auto` stands for, given the data and the number of parameters.
-    pub(super) fn choose(self, noise: &Noise, parameters: usize, rows: usize) -> Self {
+    /// True if it can be tried in single precision.
+    pub fn works_in_single(self) -> bool {
+        matches!(self, Self::Auto | Self::Adam | Self::Lbfgs)
+    }
+
+    /// True if its rows are divided by their standard deviations, and not just by their sizes.
+    pub(super) fn counts_noise(self) -> bool {
+        matches!(self, Self::Marquardt | Self::Projection | Self::GaussNewton | Self::Evidence)
+    }
+
+    /// What `Auto` may stand for, given the data and the number of parameters.
+    pub(super) fn candidates(self, noise: &Noise, parameters: usize, rows: usize, single: bool) -> Vec<Self> {
         let fast = |optimizer: Self| 3 * parameters <= MOST_DENSE && optimizer.fits(parameters, rows);
         match self {
-            Self::Auto if noise.is_exact() && fast(Self::Broyden) => Self::Broyden,
-            Self::Auto if !noise.is_exact() && fast(Self::Evidence) => Self::Evidence,
-            Self::Auto => Self::Lbfgs,
-            chosen => chosen,
+            Self::Auto if single => vec![Self::Lbfgs],
+            Self::Auto if noise.is_exact() && fast(Self::Broyden) => vec![Self::Broyden],
+            Self::Auto if !noise.is_exact() && fast(Self::Evidence) => vec![Self::Evidence],
+            Self::Auto => vec![Self::Lbfgs, Self::GaussNewton],
+            chosen => vec![chosen],
+        }
+    }
+
+    /// Steps that say whether a method gets anywhere; about as costly for each.
+    pub(super) fn steps_of_a_trial(self) -> usize {
+        match self {
+            Self::GaussNewton => 2,
+            _ => 100,
         }
     }
 
     /// Whether the method's matrices can be worked with.
     pub(super) fn fits(self, parameters: usize, rows: usize) -> bool {
         match self {
-            Self::Adam | Self::Lbfgs => true,
+            Self::Adam | Self::Lbfgs | Self::GaussNewton => true,
             Self::Auto | Self::Broyden => parameters <= MOST_DENSE,
-            Self::Marquardt | Self::Evidence => {
+            Self::Marquardt | Self::Projection | Self::Evidence => {
                 parameters <= MOST_DENSE && parameters.saturating_mul(rows) <= MOST_DERIVATIVES
             }
         }

@@ -4,6 +4,8 @@
 //! it is large beside the head itself, the direction is open: multiples of it may be added to the answer, and only the
 //! prior says how much. A condition that closes a direction which is open without it is named too.
 
+use super::place::place;
+use super::weigh::FEW_ROWS;
 use crate::engine::Engine;
 use crate::network::Architecture;
 use crate::problem::Bound;
@@ -22,9 +24,6 @@ const SHARE: f64 = 0.99;
 
 /// Standard deviation along an open direction at least, beside the head itself.
 const DEVIATION: f64 = 0.05;
-
-/// Rows of a condition that may be tried without: initial and boundary values, not equations.
-const FEW_ROWS: usize = 8;
 
 /// A place to look from: the solution, with rows over their standard deviations.
 pub(super) struct View<'a> {
@@ -116,9 +115,8 @@ impl View<'_> {
             .enumerate()
             .fold((0, 0.0), |peak: (usize, f64), (at, x)| if x.abs() > peak.1.abs() { (at, x) } else { peak });
         let size = open.direction.deviation * peak.1 * self.bound.system.outward(&head.unit);
-        let at = scene.coordinates.iter().zip(&points[peak.0 * scene.coordinates.len()..]);
-        let at: Vec<String> = at.map(|(c, x)| format!("{} = {x:.3} {}", c.name, c.unit.text)).collect();
-        let (name, at) = (head.name, at.join(", "));
+        let at = place(scene.coordinates, &points[peak.0 * scene.coordinates.len()..]);
+        let name = head.name;
         let message = format!(
             "the data do not determine `{name}`: {} may be added to it, by about {size:.2e} {} at {at}, and only the prior \
              decides how much; a condition on `{name}` there would settle it",

@@ -3,7 +3,7 @@
 use crate::engine::Engine;
 use crate::problem::Bound;
 use crate::real::Real;
-use crate::recover::noise::Noise;
+use crate::recover::noise::{ColumnNoise, Noise};
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
 use crate::solve::objective::LeastSquares;
@@ -11,6 +11,12 @@ use crate::solve::objective::LeastSquares;
 /// Tolerance of equations where data are noisy, as a share of the equation's natural size: so small that the equation
 /// adds nothing to the error, so large that the problem stays well conditioned.
 const EQUATION_TOLERANCE: f64 = 1e-2;
+
+/// The same for conditions of a few rows, which cost no conditioning: an answer that rests on one inherits its error.
+const CONDITION_TOLERANCE: f64 = 1e-4;
+
+/// Rows of a condition at most: initial and boundary values, not equations.
+pub(super) const FEW_ROWS: usize = 8;
 
 /// Smallest noise that data are credited with, as a share of their natural size.
 const LEAST_NOISE: f64 = 1e-6;
@@ -46,7 +52,10 @@ pub(super) fn by_noise(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
             let size = bound.sizes[at][term];
             let sigma = match schema.kind {
                 _ if schema.within.is_some() => size / schema.weight.sqrt(),
-                TermKind::Observation => observed(bound, noise, at, term).unwrap_or(size).max(LEAST_NOISE * size),
+                TermKind::Observation => {
+                    observed(noise, bound, at, term).map_or(size, |c| c.deviation).max(LEAST_NOISE * size)
+                }
+                _ if engine.blocks()[block].rows.len() <= FEW_ROWS => CONDITION_TOLERANCE * size / schema.weight.sqrt(),
                 _ => EQUATION_TOLERANCE * size / schema.weight.sqrt(),
             };
             engine.set_sigma(block, sigma);
@@ -56,7 +65,7 @@ pub(super) fn by_noise(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
 }
 
 /// Noise of the column that an observation compares with: the one of its name, or the group's only one.
-fn observed(bound: &Bound, noise: &Noise, group: usize, term: usize) -> Option<f64> {
+pub(super) fn observed(noise: &Noise, bound: &Bound, group: usize, term: usize) -> Option<ColumnNoise> {
     let schema = &bound.problem.scene().schema.groups[group];
     let name = schema.terms[term].name;
     let column = schema.columns.iter().position(|c| c.name == name).or((schema.columns.len() == 1).then_some(0))?;
@@ -82,6 +91,14 @@ pub(super) fn regress_first<E: Real>(engine: &mut Engine<E>, theta: &[E]) -> Res
         });
     }
     Ok(())
+}
+
+/// Weights the rows of an engine as those of another of the same problem.
+pub(super) fn alike<E: Real, F: Real>(engine: &mut Engine<E>, other: &Engine<F>) {
+    let terms = engine.groups.iter_mut().flat_map(|group| &mut group.terms);
+    for (term, other) in terms.zip(other.groups.iter().flat_map(|group| &group.terms)) {
+        (term.size, term.factor) = (other.size, other.factor);
+    }
 }
 
 fn regresses(kind: TermKind) -> bool {

@@ -1,0 +1,87 @@
+//! Every method takes every equation, in every precision that it works in.
+
+use std::time::Duration;
+
+use nisp::network::Architecture;
+use nisp::solve::driver::{Flow, Status};
+use nisp::{Optimizer, RecoverError, Settings, Solution, Width, recover};
+use nisp_equations::{Prepared, Request, catalogue};
+
+fn prepared(name: &str) -> Prepared {
+    let entry = catalogue().into_iter().find(|entry| entry.name == name).unwrap();
+    entry.prepare(&Request { network: true, ..Request::default() }).unwrap()
+}
+
+fn run(prepared: &Prepared, settings: &Settings) -> Result<Solution, RecoverError> {
+    recover(&prepared.problem, settings, &mut |_| Flow::Continue)
+}
+
+fn narrow(width: usize) -> Architecture {
+    Architecture { width, ..Settings::default().architecture }
+}
+
+#[test]
+fn each_method_takes_each_equation() {
+    for entry in catalogue() {
+        let prepared = prepared(entry.name);
+        for optimizer in Optimizer::ALL {
+            let settings = Settings {
+                optimizer,
+                architecture: narrow(4),
+                iterations: Some(2),
+                budget: None,
+                ..Settings::default()
+            };
+            match run(&prepared, &settings) {
+                Ok(solution) => assert!(solution.loss.is_finite(), "{} {}", entry.name, optimizer.name()),
+                // Not every equation has a head in which all of its terms are linear.
+                Err(RecoverError::NotLinear) => assert_eq!(optimizer, Optimizer::Projection, "{}", entry.name),
+                Err(error) => panic!("{} {}: {error}", entry.name, optimizer.name()),
+            }
+        }
+    }
+}
+
+#[test]
+fn double_precision_goes_on_where_single_stops() {
+    let prepared = prepared("rlc");
+    let settings = |precision| Settings {
+        precision,
+        optimizer: Optimizer::Lbfgs,
+        architecture: narrow(12),
+        iterations: Some(3000),
+        budget: None,
+        ..Settings::default()
+    };
+    let [single, both] = [Width::F32, Width::Auto].map(|width| run(&prepared, &settings(width)).unwrap());
+    assert_eq!((single.precision(), both.precision()), ("f32", "f32, then f64"));
+    assert!(both.loss < 0.3 * single.loss, "{} {}", both.loss, single.loss);
+    assert!(both.iterations > single.iterations);
+}
+
+#[test]
+fn wide_networks_get_the_method_that_wins_a_trial() {
+    let prepared = prepared("rlc");
+    let settings = Settings { architecture: narrow(64), iterations: Some(3), budget: None, ..Settings::default() };
+    let solution = run(&prepared, &settings).unwrap();
+    let tried = [Optimizer::Lbfgs, Optimizer::GaussNewton];
+    assert!(tried.contains(&solution.optimizer), "{}", solution.optimizer.name());
+    // The trial counts steps, not seconds.
+    assert_eq!(run(&prepared, &settings).unwrap().optimizer, solution.optimizer);
+}
+
+#[test]
+fn an_unresolved_answer_says_so() {
+    let prepared = prepared("pendulum");
+    let settings = Settings {
+        optimizer: Optimizer::Lbfgs,
+        architecture: narrow(2),
+        iterations: Some(5),
+        budget: Some(Duration::from_secs(60)),
+        ..Settings::default()
+    };
+    let solution = run(&prepared, &settings).unwrap();
+    assert_eq!(solution.status, Status::Budget);
+    let said = |words: &str| solution.warnings.iter().any(|warning| warning.message.contains(words));
+    assert!(said("`psi` is not resolved"), "{:?}", solution.warnings);
+}

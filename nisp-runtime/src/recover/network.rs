@@ -1,0 +1,261 @@
+//! A network fitted to a problem: rows weighted, a method chosen and run, in one precision or in two.
+
+use std::time::Instant;
+
+use super::course::Course;
+use super::noise::{self, Noise};
+use super::promotion::Promotion;
+use super::settings::{Optimizer, Settings, Width};
+use super::solution::Run;
+use super::undetermined::View;
+use super::{BELIEF, RecoverError, Solution, resolution, weigh};
+use crate::engine::Engine;
+use crate::network::initialise;
+use crate::problem::Bound;
+use crate::solve::adam::{Adam, AdamSettings};
+use crate::solve::broyden::{Broyden, Update};
+use crate::solve::driver::{Outcome, Status, WarningKind};
+use crate::solve::empirical_bayes::{EmpiricalBayes, EmpiricalBayesSettings};
+use crate::solve::fault::Fault;
+use crate::solve::gauss_newton::GaussNewton;
+use crate::solve::lbfgs::Lbfgs;
+use crate::solve::marquardt::Marquardt;
+use crate::solve::method::Method;
+use crate::solve::prior::WeightPrior;
+use crate::solve::projection::{Projection, linear_parameters};
+use crate::solve::state::State;
+
+/// Parameters up to which the curvature is factorised for error bars: a few seconds.
+const MOST_FOR_CURVATURE: usize = 4000;
+
+/// Steps that L-BFGS remembers.
+const MEMORY: usize = 20;
+
+/// Inner iterations of a Gauss-Newton step at most.
+const INNER: usize = 100;
+
+/// Fits a network.
+pub(super) fn solve(
+    bound: Bound,
+    settings: &Settings,
+    start: Instant,
+    mut course: Course<'_, '_>,
+) -> Result<Solution, RecoverError> {
+    let mut fit = Fit::new(&bound, settings)?;
+    let optimizer = fit.choose(&course)?;
+    let precision = match settings.precision {
+        Width::Auto if !(optimizer.works_in_single() && bound.problem.scene().has_single()) => Width::F64,
+        chosen => chosen,
+    };
+    let (mut outcome, prior) = match precision {
+        Width::F32 => (fit.in_single(optimizer, &mut course, None)?, fit.prior.clone()),
+        Width::Auto => (fit.in_both(optimizer, &mut course)?, fit.prior.clone()),
+        Width::F64 => fit.in_double(optimizer, &mut course, None)?,
+    };
+    let Fit { mut engine, noise, .. } = fit;
+    let (parameters, rows) = (engine.parameters(), engine.row_count());
+    outcome.warnings.extend(resolution::warnings(&bound, &mut engine, &outcome.theta, &noise));
+    let has_bars = settings.precision != Width::F32
+        && parameters <= MOST_FOR_CURVATURE
+        && Optimizer::Evidence.fits(parameters, rows);
+    let prior = has_bars.then_some(prior);
+    if let Some(prior) = &prior {
+        if !optimizer.counts_noise() {
+            weigh::by_noise(&mut engine, &bound, &noise);
+        }
+        let architecture = settings.architecture;
+        let theta = &outcome.theta;
+        let mut view = View { bound: &bound, engine: &mut engine, theta, prior, architecture };
+        outcome.warnings.extend(view.warnings());
+    }
+    let precision = match precision {
+        // It may have ended before double precision was called for.
+        Width::Auto if !course.is_promoted() => Width::F32,
+        chosen => chosen,
+    };
+    let run = Run { optimizer, precision, start, prior };
+    Ok(Solution::new(bound, engine, outcome, settings, run))
+}
+
+/// A problem and the network that is fitted to it.
+struct Fit<'a> {
+    bound: &'a Bound,
+    settings: &'a Settings,
+    engine: Engine<f64>,
+    noise: Noise,
+    /// Initial weights.
+    theta: Vec<f64>,
+    prior: WeightPrior,
+}
+
+impl<'a> Fit<'a> {
+    fn new(bound: &'a Bound, settings: &'a Settings) -> Result<Self, RecoverError> {
+        let engine: Engine<f64> = bound.engine(settings.architecture)?;
+        let theta = initialise(engine.layout(), settings.seed);
+        let prior = engine.layout().prior(BELIEF.precision);
+        Ok(Self { bound, settings, engine, noise: noise::estimate(bound), theta, prior })
+    }
+
+    /// The method: as asked for, or by sizes and noise, or by trial where these leave more than one.
+    fn choose(&mut self, course: &Course<'_, '_>) -> Result<Optimizer, RecoverError> {
+        let (parameters, rows) = (self.engine.parameters(), self.engine.row_count());
+        let single = self.settings.precision == Width::F32;
+        let candidates = self.settings.optimizer.candidates(&self.noise, parameters, rows, single);
+        // Whoever goes on has tried before.
+        let known = course.method().and_then(Optimizer::from_name).filter(|known| candidates.contains(known));
+        let optimizer = match (&candidates[..], known) {
+            ([only], _) => *only,
+            (_, Some(known)) => known,
+            _ => self.by_trial(&candidates)?,
+        };
+        if single && !optimizer.works_in_single() {
+            return Err(RecoverError::Precision { optimizer: optimizer.name() });
+        }
+        if !optimizer.fits(parameters, rows) {
+            return Err(RecoverError::Size { optimizer: optimizer.name(), parameters, rows });
+        }
+        Ok(optimizer)
+    }
+
+    /// The method with the least loss after a few steps of each, which cost about the same.
+    fn by_trial(&mut self, candidates: &[Optimizer]) -> Result<Optimizer, RecoverError> {
+        let mut best = (f64::INFINITY, candidates[0]);
+        for &candidate in candidates {
+            self.weigh(candidate)?;
+            let mut method = self.method(candidate);
+            for _ in 0..candidate.steps_of_a_trial() {
+                method.step(&mut self.engine)?;
+            }
+            weigh::by_size(&mut self.engine);
+            let loss = self.engine.loss(method.theta())?;
+            if loss < best.0 {
+                best = (loss, candidate);
+            }
+        }
+        Ok(best.1)
+    }
+
+    /// Weights the rows as a method needs it.
+    fn weigh(&mut self, optimizer: Optimizer) -> Result<(), Fault> {
+        if optimizer.counts_noise() {
+            weigh::by_noise(&mut self.engine, self.bound, &self.noise);
+            return Ok(());
+        }
+        weigh::by_size(&mut self.engine);
+        if optimizer == Optimizer::Adam {
+            weigh::regress_first(&mut self.engine, &self.theta)?;
+        }
+        Ok(())
+    }
+
+    /// A method at the initial weights.
+    fn method(&self, optimizer: Optimizer) -> Box<dyn Method<f64, Engine<f64>>> {
+        let (theta, prior) = (self.theta.clone(), self.prior.clone());
+        match optimizer {
+            Optimizer::Evidence => {
+                let settings = EmpiricalBayesSettings { belief: BELIEF, ..EmpiricalBayesSettings::default() };
+                Box::new(EmpiricalBayes::new(theta, prior, settings))
+            }
+            Optimizer::Marquardt | Optimizer::Projection => Box::new(Marquardt::new(theta, prior)),
+            Optimizer::GaussNewton => Box::new(GaussNewton::new(theta, prior, INNER)),
+            Optimizer::Broyden => Box::new(Broyden::new(theta, Update::SelfScaledBroyden)),
+            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, MEMORY)),
+            Optimizer::Auto | Optimizer::Adam => Box::new(Adam::new(theta, AdamSettings::default())),
+        }
+    }
+
+    /// Runs in double precision, from a method's state in single precision if there is one; gives the belief about
+    /// parameters that the method ended with, too.
+    fn in_double(
+        &mut self,
+        optimizer: Optimizer,
+        course: &mut Course<'_, '_>,
+        from: Option<&State>,
+    ) -> Result<(Outcome<f64>, WeightPrior), RecoverError> {
+        self.weigh(optimizer)?;
+        if optimizer == Optimizer::Projection {
+            return Ok((self.by_projection(course)?, self.prior.clone()));
+        }
+        let mut method = self.method(optimizer);
+        if let Some(state) = from {
+            // A state that is not finite leaves the method where it starts.
+            let _ = method.restore(state);
+        }
+        let outcome = course.run(&mut *method, &mut self.engine)?;
+        let prior = method.prior().unwrap_or(&self.prior).clone();
+        Ok((outcome, prior))
+    }
+
+    /// Solves for the weights of linear heads and searches the others.
+    fn by_projection(&mut self, course: &mut Course<'_, '_>) -> Result<Outcome<f64>, RecoverError> {
+        let layout = self.engine.layout();
+        let heads: Vec<Vec<usize>> = (0..layout.heads).map(|head| layout.head_parameters(head).collect()).collect();
+        let linear = linear_parameters(&mut self.engine, &self.theta, &heads)?;
+        if linear.is_empty() {
+            return Err(RecoverError::NotLinear);
+        }
+        let mut projection = Projection::new(&mut self.engine, &linear, BELIEF.precision);
+        let phi = projection.searched(&self.theta);
+        let prior = WeightPrior::uniform(BELIEF.precision, phi.len());
+        let outcome = course.run(&mut Marquardt::new(phi, prior), &mut projection)?;
+        let theta = projection.all(&outcome.theta)?;
+        Ok(Outcome { theta, ..outcome })
+    }
+
+    /// Runs in single precision, until `promotion` says that it helps no more.
+    fn in_single(
+        &mut self,
+        optimizer: Optimizer,
+        course: &mut Course<'_, '_>,
+        promotion: Option<&mut Promotion>,
+    ) -> Result<Outcome<f64>, RecoverError> {
+        let mut engine: Engine<f32> = self.bound.engine(self.settings.architecture)?;
+        self.weigh(optimizer)?;
+        weigh::alike(&mut engine, &self.engine);
+        let theta: Vec<f32> = self.theta.iter().map(|&x| x as f32).collect();
+        let mut method: Box<dyn Method<f32, Engine<f32>>> = match optimizer {
+            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, MEMORY)),
+            _ => Box::new(Adam::new(theta, AdamSettings::default())),
+        };
+        let outcome = match promotion {
+            None => course.run(&mut *method, &mut engine)?,
+            Some(promotion) => {
+                course.run_until(&mut *method, &mut engine, &mut |progress| promotion.is_due(progress))?
+            }
+        };
+        Ok(widened(outcome))
+    }
+
+    /// Runs in single precision as long as it helps, and then in double.
+    fn in_both(&mut self, optimizer: Optimizer, course: &mut Course<'_, '_>) -> Result<Outcome<f64>, RecoverError> {
+        if course.is_promoted() {
+            return Ok(self.in_double(optimizer, course, None)?.0);
+        }
+        self.weigh(optimizer)?;
+        let mut promotion = Promotion::new(self.bound, self.settings.architecture, &self.engine)?;
+        let single = self.in_single(optimizer, course, Some(&mut promotion))?;
+        let gave_up = single.status == Status::NotConverged;
+        if !(promotion.due || gave_up) {
+            return Ok(single);
+        }
+        course.promote(&single);
+        let (double, _) = self.in_double(optimizer, course, Some(&single.state))?;
+        let mut warnings = single.warnings;
+        warnings.retain(|warning| warning.kind != WarningKind::SinglePrecision);
+        warnings.extend(double.warnings);
+        Ok(Outcome { evaluations: single.evaluations + double.evaluations, warnings, ..double })
+    }
+}
+
+fn widened(outcome: Outcome<f32>) -> Outcome<f64> {
+    Outcome {
+        theta: outcome.theta.iter().map(|&x| f64::from(x)).collect(),
+        status: outcome.status,
+        loss: outcome.loss,
+        iterations: outcome.iterations,
+        evaluations: outcome.evaluations,
+        wall_s: outcome.wall_s,
+        warnings: outcome.warnings,
+        state: outcome.state,
+    }
+}

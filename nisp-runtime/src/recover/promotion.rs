@@ -1,0 +1,58 @@
+//! When single precision helps no more.
+//!
+//! Far from a minimum the gradient in single precision is as good as that in double. Close to it the residuals are small
+//! differences of large numbers, and the gradient drowns in their rounding, long before the loss stops falling for good.
+//! So now and then both are computed and compared.
+
+use crate::engine::Engine;
+use crate::network::Architecture;
+use crate::problem::{BindError, Bound};
+use crate::recover::weigh;
+use crate::solve::driver::Progress;
+use crate::solve::objective::Objective;
+
+/// Steps between two looks, which cost as much as three or four of them.
+const EVERY: u64 = 100;
+
+/// Error of the gradient in single precision, beside its length, that still lets a step descend well.
+const SPENT: f64 = 0.1;
+
+/// Watches a run in single precision.
+pub(super) struct Promotion {
+    single: Engine<f32>,
+    double: Engine<f64>,
+    narrow: Vec<f32>,
+    wide: Vec<f64>,
+    theta: Vec<f64>,
+    /// It is time for double precision.
+    pub(super) due: bool,
+}
+
+impl Promotion {
+    /// For a run whose rows are weighted as those of `engine`.
+    pub(super) fn new(bound: &Bound, architecture: Architecture, engine: &Engine<f64>) -> Result<Self, BindError> {
+        let (mut single, mut double): (Engine<f32>, Engine<f64>) =
+            (bound.engine(architecture)?, bound.engine(architecture)?);
+        weigh::alike(&mut single, engine);
+        weigh::alike(&mut double, engine);
+        let len = engine.parameters();
+        Ok(Self { single, double, narrow: vec![0.0; len], wide: vec![0.0; len], theta: vec![0.0; len], due: false })
+    }
+
+    /// Looks, if it is time to; true from when on single precision helps no more.
+    pub(super) fn is_due(&mut self, progress: &Progress<'_, f32>) -> bool {
+        if progress.iteration % EVERY == 0 {
+            self.theta.iter_mut().zip(progress.theta).for_each(|(wide, narrow)| *wide = f64::from(*narrow));
+            // Clouds are assigned anew, as they were for the step.
+            self.single.accepted(progress.theta);
+            self.double.accepted(&self.theta);
+            let known = self.single.loss_and_gradient(progress.theta, &mut self.narrow).is_ok()
+                && self.double.loss_and_gradient(&self.theta, &mut self.wide).is_ok();
+            let square = |x: f64| x * x;
+            let length: f64 = self.wide.iter().copied().map(square).sum();
+            let error: f64 = self.wide.iter().zip(&self.narrow).map(|(a, b)| square(a - f64::from(*b))).sum();
+            self.due = known && error > square(SPENT) * length;
+        }
+        self.due
+    }
+}
