@@ -1,5 +1,7 @@
 //! What every result is compared with: the answer zero and the classical rivals, over several samples.
 
+use std::time::Instant;
+
 use crate::catalogue::Prepared;
 use crate::rivals::{mean_abs_error, zero_error};
 
@@ -29,6 +31,12 @@ pub fn yardsticks(samples: &[Prepared]) -> Vec<Yardstick> {
             add(format!("{} = 0", head.name), zero_error(truth), 0.0);
             for answer in sample.contest(at, truth) {
                 add(answer.name.into(), mean_abs_error(&answer.source, truth), answer.wall_s);
+            }
+            let contact = sample.contact.as_ref().filter(|contact| contact.pressure == Some(head.name));
+            if let Some(way) = contact.and_then(|contact| contact.rival.as_ref()) {
+                let start = Instant::now();
+                let pressure = (way.pressure)(at);
+                add(way.name.into(), mean_abs_error(&pressure, truth), start.elapsed().as_secs_f64());
             }
         }
     }

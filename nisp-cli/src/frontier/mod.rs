@@ -1,7 +1,7 @@
 //! `nisp frontier`: error of the source against time, by method, width and precision, beside the classical rivals.
 //!
-//! Every figure is a mean over fresh noisy copies of the repository's truths, so that settings chosen on the copies in
-//! the repository are not judged on them.
+//! Every figure of a scene over time is a mean over fresh noisy copies of the repository's truths, so that settings chosen
+//! on the copies in the repository are not judged on them. Other scenes are solved from their example's data.
 
 mod report;
 mod trial;
@@ -14,7 +14,7 @@ use nisp::{Optimizer, Width};
 use nisp_data::OutDir;
 use nisp_equations::{Entry, PrepareError, Prepared, Request, yardsticks};
 
-use crate::args::{count, number, optimizers, seconds, size};
+use crate::args::{count, number, optimizers, precisions, seconds, size};
 use crate::interrupt;
 use report::{Figures, Point};
 use trial::Trial;
@@ -28,18 +28,21 @@ pub(crate) struct Options {
     /// One of the equation's scenes [default: its first].
     #[arg(long, value_name = "NAME")]
     scene: Option<String>,
-    /// Standard deviation of the noise on every measured quantity, in its declared unit.
-    #[arg(long, value_name = "SIGMA", default_value_t = 0.0, value_parser = number, allow_negative_numbers = true)]
-    noise: f64,
+    /// Standard deviation of the noise on every measured quantity of a scene over time, in its declared unit [default: 0].
+    #[arg(long, value_name = "SIGMA", value_parser = number, allow_negative_numbers = true)]
+    noise: Option<f64>,
+    /// Which of the example's clouds, counted from 0.
+    #[arg(long, value_name = "K", allow_negative_numbers = true)]
+    cloud: Option<usize>,
     /// Methods, separated by commas.
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = optimizers(),
-          default_value = "adam,lbfgs,broyden,lm,evidence")]
+          default_value = "adam,lbfgs,broyden,gauss-newton,lm,varpro,evidence")]
     optimizers: Vec<String>,
     /// Widths of the network, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "8,16,32", value_parser = size)]
     widths: Vec<usize>,
     /// Element types, separated by commas; a method that needs f64 is tried in it only.
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "f32,f64", value_parser = ["f32", "f64"])]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "f32,auto,f64", value_parser = precisions())]
     precisions: Vec<String>,
     /// Budgets in seconds, separated by commas; each is a run of its own.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "0.3,1,3", value_parser = seconds)]
@@ -64,8 +67,9 @@ pub(crate) struct Options {
 /// Tries everything, prints a table, writes it and a plot.
 pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
     let entry = crate::entry(&options.equation)?;
-    let samples = samples(&entry, options)?;
-    let trials = trials(options);
+    let samples = samples(&entry, options, true)?;
+    let local = samples_for_local_functions(&entry, options)?;
+    let trials = trials(options, !local.is_empty());
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::listen()?;
     let total: f64 = options.budgets.iter().sum::<f64>() * (trials.len() * samples.len()) as f64;
@@ -78,15 +82,22 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
             if interrupt::asked() {
                 return Err("interrupted; nothing was written".into());
             }
-            let (error, seconds) = trial.over(&samples, budget)?;
+            let (error, seconds) = trial.over(if trial.local { &local } else { &samples }, budget)?;
             points.push(Point { trial: trial.clone(), budget, error, seconds });
         }
     }
-    let figures = Figures { points, rivals: yardsticks(&samples), samples: samples.len(), noise: options.noise };
+    let figures = Figures {
+        points,
+        rivals: yardsticks(&samples),
+        samples: samples.len(),
+        noise: entry.series().map(|_| options.noise.unwrap_or(0.0)),
+    };
     let title = format!("{}: error of the source against wall time", entry.name);
     let subtitle = figures.about(options.seed);
-    let head = samples[0].problem.scene().schema.heads.iter().find(|head| head.source);
-    let (name, unit) = head.map_or(("source", ""), |head| (head.name, head.unit.text));
+    let heads = samples[0].problem.scene().schema.heads;
+    // A forward problem has no source: what it is judged by is its field.
+    let head = heads.iter().find(|head| head.source).unwrap_or(&heads[0]);
+    let (name, unit) = (head.name, head.unit.text);
     let plot = report::plot(&figures, title, subtitle.clone(), name, unit).map_err(|error| error.to_string())?;
     let files = [("frontier.csv", report::csv(&figures, unit).into()), ("frontier.svg", plot.svg().into())];
     out.write(&files).map_err(|error| error.to_string())?;
@@ -95,33 +106,48 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
 }
 
 /// Everything to be tried, in the order of the table.
-fn trials(options: &Options) -> Vec<Trial> {
+fn trials(options: &Options, local: bool) -> Vec<Trial> {
+    let threads = options.threads.unwrap_or_else(crate::solve::processors);
+    let network =
+        |optimizer, precision, width| Trial { local: false, optimizer, precision, width, threads, seed: options.seed };
     let mut trials = Vec::new();
+    if local {
+        trials.push(Trial { local: true, ..network(Optimizer::Auto, Width::F64, 0) });
+    }
     for optimizer in options.optimizers.iter().filter_map(|name| Optimizer::from_name(name)) {
-        for precision in &options.precisions {
-            let precision = if precision == "f32" { Width::F32 } else { Width::F64 };
-            for &width in &options.widths {
-                let threads = options.threads.unwrap_or_else(crate::solve::processors);
-                trials.push(Trial { optimizer, precision, width, threads, seed: options.seed });
-            }
+        for precision in options.precisions.iter().filter_map(|name| Width::from_name(name)) {
+            trials.extend(options.widths.iter().map(|&width| network(optimizer, precision, width)));
         }
     }
-    let single = |trial: &Trial| matches!(trial.optimizer, Optimizer::Auto | Optimizer::Adam | Optimizer::Lbfgs);
-    trials.retain(|trial| trial.precision == Width::F64 || single(trial));
+    trials.retain(|trial| trial.precision == Width::F64 || trial.optimizer.works_in_single());
     trials
 }
 
-/// Fresh copies of the truths, bound to the scene.
-fn samples(entry: &Entry, options: &Options) -> Result<Vec<Prepared>, String> {
-    let request = Request { scene: options.scene.clone(), ..Request::default() };
-    let series = entry
-        .series()
-        .ok_or_else(|| format!("`{}` has no measurements over time to make noisy copies of", entry.name))?;
-    let copies = series.copies(entry, &request, &options.repository, options.noise, options.seed, options.runs);
-    copies.map_err(|error| match error {
-        PrepareError::Data(error) => {
-            format!("{error}; the frontier needs the repository's data: name its folder with --repository")
+/// Fresh copies of the truths of a scene over time, or the example of another, bound to the scene.
+fn samples(entry: &Entry, options: &Options, network: bool) -> Result<Vec<Prepared>, String> {
+    let request = Request { scene: options.scene.clone(), cloud: options.cloud, network, ..Request::default() };
+    let Some(series) = entry.series() else {
+        if options.noise.is_some() {
+            return Err(format!("`{}` has no measurements over time to add noise to; leave --noise out", entry.name));
         }
-        error => error.to_string(),
-    })
+        return Ok(vec![entry.prepare(&request).map_err(|error| error.to_string())?]);
+    };
+    if options.cloud.is_some() {
+        return Err(format!("`{}` has no clouds; leave --cloud out", entry.name));
+    }
+    let noise = options.noise.unwrap_or(0.0);
+    series.copies(entry, &request, &options.repository, noise, options.seed, options.runs).map_err(
+        |error| match error {
+            PrepareError::Data(error) => {
+                format!("{error}; the frontier needs the repository's data: name its folder with --repository")
+            }
+            error => error.to_string(),
+        },
+    )
+}
+
+/// The same, where local functions suit the scene.
+fn samples_for_local_functions(entry: &Entry, options: &Options) -> Result<Vec<Prepared>, String> {
+    let samples = if entry.series().is_some() { Vec::new() } else { samples(entry, options, false)? };
+    Ok(samples.into_iter().filter(|sample| sample.local.is_some()).collect())
 }

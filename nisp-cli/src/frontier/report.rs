@@ -2,7 +2,6 @@
 
 use std::fmt::Write;
 
-use nisp::Width;
 use nisp_data::DataError;
 use nisp_data::picture::{LogLog, Mark, Picture, Quantity, Series, log_log};
 use nisp_equations::Yardstick;
@@ -22,7 +21,8 @@ pub(crate) struct Figures {
     pub(super) points: Vec<Point>,
     pub(super) rivals: Vec<Yardstick>,
     pub(super) samples: usize,
-    pub(super) noise: f64,
+    /// What was added to truths; nothing for a scene that brings its own data.
+    pub(super) noise: Option<f64>,
 }
 
 impl Figures {
@@ -30,8 +30,9 @@ impl Figures {
     pub(super) fn about(&self, seed: u64) -> String {
         let runs = if self.samples == 1 { "1 run".into() } else { format!("{} runs", self.samples) };
         match self.noise {
-            0.0 => format!("{runs}, exact measurements"),
-            noise => format!("{runs}, noise {noise}, seeds from {seed}"),
+            None => format!("{runs}, the data as they are"),
+            Some(0.0) => format!("{runs}, exact measurements"),
+            Some(noise) => format!("{runs}, noise {noise}, seeds from {seed}"),
         }
     }
 
@@ -39,10 +40,7 @@ impl Figures {
     fn methods(&self) -> Vec<(String, Vec<&Point>)> {
         let mut methods: Vec<(String, Vec<&Point>)> = Vec::new();
         for point in &self.points {
-            let name = match point.trial.precision {
-                Width::F64 => point.trial.optimizer.name().to_string(),
-                Width::F32 => format!("{} f32", point.trial.optimizer.name()),
-            };
+            let name = point.trial.name();
             match methods.iter_mut().find(|(own, _)| *own == name) {
                 Some((_, points)) => points.push(point),
                 None => methods.push((name, vec![point])),
@@ -62,7 +60,7 @@ pub(crate) fn table(figures: &Figures, about: &str, name: &str, unit: &str, budg
     let _ = writeln!(text, "\n|---|---|{}", "---|".repeat(budgets.len()));
     for (method, points) in figures.methods() {
         for row in points.chunk_by(|a, b| a.trial.width == b.trial.width) {
-            let _ = write!(text, "| {method} | {} |", row[0].trial.width);
+            let _ = write!(text, "| {method} | {} |", row[0].trial.width());
             for point in row {
                 // A method that has converged says when.
                 let early = point.seconds < 0.9 * point.budget;
@@ -83,8 +81,9 @@ pub(crate) fn table(figures: &Figures, about: &str, name: &str, unit: &str, budg
 pub(crate) fn csv(figures: &Figures, unit: &str) -> String {
     let mut text = format!("method,width,precision,budget_s,wall_s,mean_abs_error [{unit}]\n");
     for Point { trial, budget, error, seconds } in &figures.points {
-        let (method, precision) = (trial.optimizer.name(), trial.precision.name());
-        let _ = writeln!(text, "{method},{},{precision},{budget},{seconds},{error:e}", trial.width);
+        let (method, precision) =
+            if trial.local { ("local", "f64") } else { (trial.optimizer.name(), trial.precision.name()) };
+        let _ = writeln!(text, "{method},{},{precision},{budget},{seconds},{error:e}", trial.width());
     }
     for Yardstick { name: rival, error, seconds } in &figures.rivals {
         let _ = writeln!(text, "{rival},,f64,,{seconds},{error:e}");
