@@ -19,6 +19,8 @@ pub(super) struct Integral {
     pub(super) group: usize,
     pub(super) row: usize,
     pub(super) term: usize,
+    /// The integral less its target, weighted.
+    pub(super) misfit: f64,
     /// Adjoint of the integral.
     pub(super) seed: f64,
     /// Derivatives of the target by the learned scalars.
@@ -46,6 +48,7 @@ impl Integrals {
                     group,
                     row,
                     term,
+                    misfit: 0.0,
                     seed: 0.0,
                     target_slopes: target_slopes.clone(),
                 }));
@@ -88,7 +91,7 @@ impl<E: Real> Engine<E> {
             if !misfit.is_finite() {
                 return Err(Fault::residual(term.schema.name, None));
             }
-            integral.seed = misfit * scale;
+            (integral.misfit, integral.seed) = (misfit, misfit * scale);
         }
         Ok(())
     }

@@ -125,7 +125,7 @@ impl Engine<f64> {
         for integral in &self.integrals.rows {
             // SAFETY: the parallel section is over; this thread is alone.
             unsafe {
-                self.integral_row(integral, rows.row(starts[integral.group][integral.row]));
+                rows.row(starts[integral.group][integral.row])[0] = integral.misfit;
                 if let Some(jacobian) = jacobian {
                     self.integral_jacobian(integral, theta, jacobian.row(starts[integral.group][integral.row]));
                 }
@@ -153,11 +153,6 @@ impl Engine<f64> {
     fn learned_slopes(&self, theta: &[f64]) -> Vec<f64> {
         let learned = &theta[self.layout.learned.clone()];
         self.learned.iter().zip(learned).map(|(learned, &theta)| learned.map.at(theta).1).collect()
-    }
-
-    fn integral_row(&self, integral: &Integral, out: &mut [f64]) {
-        let term = &self.groups[integral.group].terms[integral.term];
-        out[0] = integral.seed * term.size / term.factor;
     }
 
     /// The derivative of an integral term's row, by one summed adjoint over its group and, for what the target depends

@@ -265,8 +265,7 @@ impl<E: Real> Engine<E> {
             whole += scatter;
         }
         for integral in &self.integrals.rows {
-            let term = &self.groups[integral.group].terms[integral.term];
-            let misfit = integral.seed * term.size / term.factor;
+            let misfit = integral.misfit;
             self.shares[self.first_terms[integral.group] + integral.term] += misfit * misfit / 2.0;
             whole += misfit * misfit / 2.0;
         }
