@@ -23,7 +23,6 @@ use crate::solve::marquardt::Marquardt;
 use crate::solve::method::Method;
 use crate::solve::prior::WeightPrior;
 use crate::solve::projection::{Projection, linear_parameters};
-use crate::solve::state::State;
 
 /// Parameters up to which the curvature is factorised for error bars: a few seconds.
 const MOST_FOR_CURVATURE: usize = 4000;
@@ -164,23 +163,38 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// Runs in double precision, from a method's state in single precision if there is one; gives the belief about
-    /// parameters that the method ended with, too.
+    /// A method that goes on from a run in single precision.
+    fn method_after(
+        &mut self,
+        optimizer: Optimizer,
+        single: &Outcome<f64>,
+    ) -> Result<Box<dyn Method<f64, Engine<f64>>>, Fault> {
+        if optimizer == Optimizer::Adam {
+            let mut method = self.method(optimizer);
+            method.restore(&single.state)?;
+            return Ok(method);
+        }
+        // What was learnt of the curvature is rounding by now.
+        self.theta.clone_from(&single.theta);
+        Ok(self.method(optimizer))
+    }
+
+    /// Runs in double precision, from the end of a run in single if there was one; gives the belief about parameters that
+    /// the method ended with, too.
     fn in_double(
         &mut self,
         optimizer: Optimizer,
         course: &mut Course<'_, '_>,
-        from: Option<&State>,
+        single: Option<&Outcome<f64>>,
     ) -> Result<(Outcome<f64>, WeightPrior), RecoverError> {
         self.weigh(optimizer)?;
         if optimizer == Optimizer::Projection {
             return Ok((self.by_projection(course)?, self.prior.clone()));
         }
-        let mut method = self.method(optimizer);
-        if let Some(state) = from {
-            // A state that is not finite leaves the method where it starts.
-            let _ = method.restore(state);
-        }
+        let mut method = match single {
+            None => self.method(optimizer),
+            Some(single) => self.method_after(optimizer, single)?,
+        };
         let outcome = course.run(&mut *method, &mut self.engine)?;
         let prior = method.prior().unwrap_or(&self.prior).clone();
         Ok((outcome, prior))
@@ -239,7 +253,7 @@ impl<'a> Fit<'a> {
             return Ok(single);
         }
         course.promote(&single);
-        let (double, _) = self.in_double(optimizer, course, Some(&single.state))?;
+        let (double, _) = self.in_double(optimizer, course, Some(&single))?;
         let mut warnings = single.warnings;
         warnings.retain(|warning| warning.kind != WarningKind::SinglePrecision);
         warnings.extend(double.warnings);
