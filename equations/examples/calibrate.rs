@@ -131,7 +131,7 @@ fn pendulum(random: &mut StdRng) -> Vec<Vec<f64>> {
         [0.0816496580928, 2.48160443754, -3.5552099403, 0.164279087644, 0.0625859883633, -0.603640337824];
     let start: Vec<f64> = [0.0, 0.03, 0.03, 0.0, 0.03, 0.03].iter().map(|size| between(random, -size, *size)).collect();
     let amplitude = if random.random::<bool>() { between(random, 0.0, 3e-3) } else { 0.0 };
-    let (frequency, phase) = (between(random, 0.3, 2.0), between(random, 0.0, 6.28));
+    let (frequency, phase) = (between(random, 0.3, 2.0), between(random, 0.0, std::f64::consts::TAU));
     let force = |t: f64, x: &[f64]| {
         let regulator: f64 = GAIN.iter().zip(x).map(|(gain, x)| gain * x).sum();
         amplitude * (std::f64::consts::TAU * frequency * t + phase).sin() - regulator
@@ -163,7 +163,7 @@ fn pendulum(random: &mut StdRng) -> Vec<Vec<f64>> {
 fn rlc(random: &mut StdRng) -> Vec<Vec<f64>> {
     let (size, decay) = (between(random, -6.0, 6.0), between(random, 1.0, 5.0));
     let (amplitude, pace) = (between(random, 0.0, 2.0), between(random, 2.0, 9.0));
-    let phase = between(random, 0.0, 6.28);
+    let phase = between(random, 0.0, std::f64::consts::TAU);
     let drive = |t: f64| size * (-decay * t).exp() + amplitude * (pace * t + phase).sin();
     let slope = |t: f64| amplitude * pace * (pace * t + phase).cos() - decay * size * (-decay * t).exp();
     let start = vec![between(random, -5.0, 5.0), between(random, -5.0, 5.0)];

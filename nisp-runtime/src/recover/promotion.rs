@@ -41,7 +41,7 @@ impl Promotion {
 
     /// Looks, if it is time to; true from when on single precision helps no more.
     pub(super) fn is_due(&mut self, progress: &Progress<'_, f32>) -> bool {
-        if progress.iteration % EVERY == 0 {
+        if progress.iteration.is_multiple_of(EVERY) {
             self.theta.iter_mut().zip(progress.theta).for_each(|(wide, narrow)| *wide = f64::from(*narrow));
             // Clouds are assigned anew, as they were for the step.
             self.single.accepted(progress.theta);
