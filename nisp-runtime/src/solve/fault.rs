@@ -55,7 +55,9 @@ impl Kind {
                 "; check the equation there for a division by zero, a logarithm or a root of a negative number"
             }
             Self::Gradient => "; check the equation there for a root or a power at zero",
-            Self::Factorisation => "; give every trained parameter a prior or a term that depends on it",
+            Self::Factorisation => {
+                "; give every learned parameter a width (`learn k within 0.1;`) or a term that depends on it"
+            }
             Self::State => "; start afresh, or give the settings that the state was saved with",
         }
     }
