@@ -65,7 +65,8 @@ fn disc(count: usize) -> Vec<f64> {
     (0..count).flat_map(point).collect()
 }
 
-fn bind(problem: &mut Problem, f: f64, a: f64) {
+/// Binds a drumhead that is seen with noise of a standard deviation in millimetres.
+fn bind(problem: &mut Problem, f: f64, a: f64, noise: f64) {
     let (interior, rim) = (
         disc(4000),
         (0..240).flat_map(|i| {
@@ -81,14 +82,23 @@ fn bind(problem: &mut Problem, f: f64, a: f64) {
     // Clouds are given in the unit of their term.
     let unit = 1e-3 / problem.scene().schema.groups[1].terms[0].unit.factor;
     let seen = disc(1500);
-    let cloud = seen.chunks(2).flat_map(|c| [c[0], c[1], height(c[0].hypot(c[1]), f, a)]);
+    let mut random = 1u64;
+    // Twelve numbers between 0 and 1 have a sum of variance 1.
+    let mut normal = || -> f64 {
+        let mut uniform = || {
+            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (random >> 11) as f64 / (1u64 << 53) as f64
+        };
+        (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+    };
+    let cloud = seen.chunks(2).flat_map(|c| [c[0], c[1], height(c[0].hypot(c[1]), f, a) + noise * normal()]);
     let cloud = cloud.map(|x| unit * x).collect();
     problem.set_cloud("surface", "cloud", cloud).unwrap();
     problem.set_view("surface", "cloud", [0.0, 0.0, 1.0]).unwrap();
 }
 
 fn solve(problem: &Problem, patches: Option<Patches>, threads: usize) -> Solution {
-    let local = Local { cells: 24, degree: 3, finer: 2, source_dimensions: 2, patches };
+    let local = Local { cells: 24, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 2, patches };
     // Steps end the run, not time.
     let budget = Some(Duration::from_secs(3600));
     let settings = Settings { local: Some(local), iterations: Some(40), budget, threads, ..Settings::default() };
@@ -102,7 +112,7 @@ fn values<'a>(estimates: &'a [nisp::Estimate], name: &str) -> &'a [f64] {
 #[test]
 fn the_tension_of_an_inflated_drumhead_is_found() {
     let mut problem = Problem::new(scene::<drum::free::Scene>());
-    bind(&mut problem, 0.0, 1.0);
+    bind(&mut problem, 0.0, 1.0, 0.0);
     let mut solution = solve(&problem, None, 2);
     let tension = &solution.learned()[0];
     assert_eq!(solution.status, Status::Converged);
@@ -116,7 +126,7 @@ fn a_pressed_patch_is_found_with_its_force_and_its_edge() {
     let (f, a) = (12_000.0, 12.0);
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
-    bind(&mut problem, f, a);
+    bind(&mut problem, f, a, 0.0);
     let patches = Patches { level: P, edges: 0.15, area: 0.75 };
     let solution = solve(&problem, Some(patches), 2);
     let points = disc(6000);
@@ -139,10 +149,35 @@ fn a_pressed_patch_is_found_with_its_force_and_its_edge() {
 }
 
 #[test]
+fn error_bars_cover_the_truth_and_no_more() {
+    let (f, a, noise) = (12_000.0, 12.0, 0.3);
+    let mut problem = Problem::new(scene::<drum::pressed::Scene>());
+    problem.set_parameter("T", T).unwrap();
+    bind(&mut problem, f, a, noise);
+    let mut solution = solve(&problem, Some(Patches { level: P, edges: 0.15, area: 0.75 }), 2);
+    let points = disc(2000);
+    let found = solution.evaluate_with_errors(&points);
+    let of = |name: &str| {
+        let estimate = found.iter().find(|estimate| estimate.name == name).unwrap();
+        estimate.values.iter().zip(estimate.deviations.as_ref().unwrap()).zip(points.chunks(2))
+    };
+    let share = |within: Vec<bool>| within.iter().filter(|is| **is).count() as f64 / within.len() as f64;
+    let height = |c: &[f64]| height(c[0].hypot(c[1]), f, a);
+    let covered = share(of("w").map(|((w, sd), c)| (w - height(c)).abs() < 2.0 * sd).collect());
+    assert!(covered > 0.8, "{covered} of the heights");
+    // Fifteen hundred points know far more than one.
+    assert!(of("w").all(|((_, sd), _)| *sd > 0.0 && *sd < noise));
+    // Conditional on the patch: well inside it.
+    let inside = of("f").filter(|(_, c)| c[0].hypot(c[1]) < 0.8 * a);
+    let covered = share(inside.map(|((p, sd), _)| (p - f).abs() < 2.0 * sd && *sd < f).collect());
+    assert!(covered > 0.8, "{covered} of the pressures");
+}
+
+#[test]
 fn the_answer_does_not_depend_on_the_threads() {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
-    bind(&mut problem, 12_000.0, 12.0);
+    bind(&mut problem, 12_000.0, 12.0, 0.0);
     let patches = Patches { level: P, edges: 0.15, area: 0.75 };
     let of = |threads| values(&solve(&problem, Some(patches), threads).evaluate(&disc(50)), "f").to_vec();
     assert_eq!(of(1), of(3));
@@ -173,10 +208,10 @@ fn a_lattice_without_cells_is_refused() {
     let mut problem = Problem::new(scene::<load::even_load::Scene>());
     problem.set_parameter("F", 3.0).unwrap();
     problem.set_group("beam", vec![0.0, 1.0, 2.0].into(), Vec::new()).unwrap();
-    let local = Local { cells: 0, degree: 3, finer: 2, source_dimensions: 1, patches: None };
+    let local = Local { cells: 0, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 1, patches: None };
     let settings = Settings { local: Some(local), ..Settings::default() };
     let refused = recover(&problem, &settings, &mut |_| Flow::Continue).err().unwrap().to_string();
-    assert!(refused.contains("fewer than two cells"), "{refused}");
+    assert!(refused.contains("fewer cells than a test"), "{refused}");
 }
 
 /// 3 N over 20 mm are 150 N/m, whatever the unit of the weights.

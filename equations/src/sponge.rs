@@ -58,6 +58,8 @@ nisp::pde! {
         let eps = sym(grad(u));
         let sigma = 2 * mu * eps - q * I;
         let sigma_of_u = 2 * mu * eps + tr(eps) / compliance * I;
+        // A pressure along one direction has no torque about it.
+        let axis = force / sqrt(dot(force, force));
 
         on volume {
             balance: div(sigma) + rho * g == 0;
@@ -78,7 +80,7 @@ nisp::pde! {
             traction_of_u: sigma_of_u * n == f * m;
             contact: 0 <= f _|_ clearance + dot(m, u) >= 0;
             force_balance: integral(f * m) == force;
-            torque_balance: integral(cross([x, y, z], f * m)) == torque;
+            torque_balance: integral(cross(axis, cross([x, y, z], f * m))) == cross(axis, torque);
         }
         /// nothing touches them
         on sides {

@@ -37,6 +37,8 @@ pub(crate) enum Command {
     Solve(Box<Options>),
     /// Measure error against time over methods, widths and precisions, beside classical rivals.
     Frontier(Box<crate::frontier::Options>),
+    /// Measure what each part of the method is worth, beside what the paper says of its own.
+    Ablate(Box<crate::ablate::Options>),
 }
 
 /// How and from what to solve.
@@ -92,6 +94,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = size, allow_negative_numbers = true,
           help_heading = METHOD)]
     pub(crate) layers: usize,
+    /// Train a network on a third of the equations' points, those where they are most off, drawn anew every N steps.
+    #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
+    pub(crate) resample: Option<usize>,
     /// Threads [default: one per processor]. The answer does not depend on them.
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
     pub(crate) threads: Option<usize>,

@@ -1,5 +1,6 @@
 //! The `nisp` command: list, explain and solve the equations that NISP ships, and measure how well.
 
+mod ablate;
 mod args;
 mod checkpoint;
 mod config;
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         }
         Parsed::Asked(Args { command: Command::Solve(options) }) => solve::solve(&options),
         Parsed::Asked(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),
+        Parsed::Asked(Args { command: Command::Ablate(options) }) => ablate::ablate(&options),
     });
     result.unwrap_or_else(|message| {
         eprintln!("nisp: {message}");

@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Checkpoint, Optimizer, Report, Settings, Solution, Width, recover, resume};
+use nisp::{Checkpoint, Optimizer, Report, Resampling, Settings, Solution, Width, recover, resume};
 use nisp_data::OutDir;
 use nisp_equations::{Prepared, Request, Truth};
 
@@ -85,11 +85,12 @@ fn settings(options: &Options) -> Result<Settings, String> {
         precision: Width::from_name(&options.precision).unwrap_or(Width::Auto),
         optimizer: Optimizer::from_name(&options.optimizer).unwrap_or(Optimizer::Auto),
         architecture: Architecture { width: options.width, layers: options.layers, ..Settings::default().architecture },
-        local: None,
+        resampling: options.resample.map(|every| Resampling { every: every as u64, ..Resampling::default() }),
         seed: options.seed,
         budget: Some(Duration::from_secs_f64(options.budget)),
         iterations: options.iterations.map(|count| count as u64),
         threads,
+        ..Settings::default()
     })
 }
 

@@ -49,14 +49,15 @@ const POINTS: (usize, usize, usize) = (1500, 2000, 200);
 const LOCAL_POINTS: (usize, usize, usize) = (17_000, 8000, 400);
 /// Local functions: cells of two millimetres on the paper's membrane for a pressure with edges, of four where nothing
 /// touches it.
-const LOCAL: Local = Local { cells: 30, degree: 3, finer: 2, source_dimensions: 2, patches: None };
+const LOCAL: Local =
+    Local { cells: 30, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 2, patches: None };
 const CELLS_FOR_PATCHES: usize = 60;
 /// What touches the membrane presses it out of its bulge, which takes the gauge pressure at least.
 const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.15, area: 0.75 };
 /// Points of the net force's quadrature, and of the surface in pictures.
 const FINE: (usize, usize) = (20_000, 4000);
-/// Spacing of the points where the answer is wanted.
-const SPACING: f64 = 1e-3;
+/// Points in a metre where the answer is wanted.
+const PER_METRE: f64 = 1000.0;
 
 /// The paper's rule.
 const RULE: Rule = Rule { least: 2500.0, of_mean: 2.0 };
@@ -179,8 +180,8 @@ fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
 /// Points on a regular grid around the origin.
 fn grid(domain: &Domain) -> Vec<f64> {
     let (_, high) = domain.bounds();
-    let half = |axis: usize| (high[axis] / SPACING).floor() as i32;
-    let line = |axis: usize| (-half(axis)..=half(axis)).map(|i| SPACING * f64::from(i));
+    let half = |axis: usize| (high[axis] * PER_METRE).floor() as i32;
+    let line = |axis: usize| (-half(axis)..=half(axis)).map(|i| f64::from(i) / PER_METRE);
     let points = line(1).flat_map(|y| line(0).map(move |x| [x, y]));
     points.filter(|point| domain.contains(point)).flatten().collect()
 }

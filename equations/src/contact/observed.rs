@@ -129,6 +129,11 @@ impl Observed {
     pub(super) fn require_of(&self, body: &'static str, low: [f64; 3], high: [f64; 3]) -> Result<(), PrepareError> {
         let fault =
             |error: nisp_data::DataError| PrepareError::File { path: self.source.clone(), reason: error.to_string() };
+        let count = self.cloud.points.len();
+        if count < FEWEST {
+            let reason = format!("{count} points do not show a {body}; record {FEWEST} at least");
+            return Err(PrepareError::File { path: self.source.clone(), reason });
+        }
         self.cloud.require_near(&low, &high).map_err(fault)?;
         let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
         let (from, to) = (low.map(|x| x - MARGIN * size), high.map(|x| x + MARGIN * size));
@@ -144,6 +149,8 @@ impl Observed {
 
 /// How far beyond its box, in parts of its size, a body may bulge and noise may throw a point.
 const MARGIN: f64 = 0.25;
+/// Points without which a surface is anyone's guess.
+const FEWEST: usize = 50;
 /// Share of a cloud that must be where its body can be; the rest may be outliers.
 const LEAST_INSIDE: f64 = 0.8;
 

@@ -67,7 +67,8 @@ const POINTS: (usize, usize, usize) = (1500, 2400, 4800);
 /// The same for local functions: some three points along every cell.
 const LOCAL_POINTS: (usize, usize, usize) = (13_824, 6144, 12_696);
 /// Local functions: cells of nearly six millimetres on the paper's sponge.
-const LOCAL: Local = Local { cells: 8, degree: 2, finer: 2, source_dimensions: 2, patches: Some(PATCHES) };
+const LOCAL: Local =
+    Local { cells: 8, coarser: 3, degree: 2, tests: 2, finer: 2, source_dimensions: 2, patches: Some(PATCHES) };
 /// A patch carries some hundreds of pascals.
 const PATCHES: Patches = Patches { level: 500.0, edges: 0.15, area: 0.75 };
 /// Nodes along an edge where the answer is wanted: a millimetre apart on the paper's sponge.

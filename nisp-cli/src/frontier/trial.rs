@@ -52,8 +52,8 @@ impl Trial {
                 architecture: Architecture { inputs, ..Architecture::modified(self.width, 2) },
                 seed: self.seed,
                 budget: Some(Duration::from_secs_f64(budget)),
-                iterations: None,
                 threads: self.threads,
+                ..Settings::default()
             };
             let go_on = &mut |_: nisp::Report<'_>| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
             let solution = recover(&sample.problem, &settings, go_on).map_err(|error| error.to_string())?;

@@ -90,10 +90,13 @@ fn maps(
             let error: Vec<f64> =
                 again.iter().flat_map(|found| &found.values).zip(real).map(|(found, real)| found - real).collect();
             let scale = ColourScale::from_zero(real);
+            // One wild point must not leave the rest of the error without a colour.
+            let most = real.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+            let shown: Vec<f64> = error.iter().map(|error| error.clamp(-most, most)).collect();
             add("estimate", quantity(), grid, scale, both());
             add("truth", quantity(), Grid::from_points(&at, real)?, scale, own.clone());
             let difference = Quantity::new(&format!("error of {}", head.name), head.unit.text);
-            add("error", difference, Grid::from_points(&at, &error)?, ColourScale::diverging(&error), both());
+            add("error", difference, Grid::from_points(&at, &error)?, ColourScale::diverging(&shown), both());
         }
     }
     let axis = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);

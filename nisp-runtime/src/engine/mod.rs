@@ -12,6 +12,7 @@ mod jacobian;
 mod lift;
 mod objective;
 mod predict;
+mod resample;
 mod tile;
 
 use std::sync::Mutex;
@@ -22,6 +23,8 @@ pub(crate) use chamfer::Chamfer;
 pub(crate) use group::BoundTerm;
 pub use group::{BoundGroup, Scaling};
 use integral::{Integral, Integrals, covers, seed_integrals};
+use resample::Resampler;
+pub(crate) use resample::is_exchangeable;
 use tile::{Buffers, Extent, Network, Tile};
 
 use crate::aligned::AlignedVec;
@@ -61,6 +64,7 @@ pub struct Engine<E: Real> {
     /// Weighted sums of integral terms and their misfits.
     integrals: Integrals,
     blocks: Vec<Block>,
+    resampler: Option<Box<Resampler<E>>>,
 }
 
 /// A learned scalar: its slot, and the map from its parameter to its value in the engine's units.
@@ -149,6 +153,7 @@ impl<E: Real> Engine<E> {
             shares: vec![0.0; terms],
             integrals,
             blocks: Vec::new(),
+            resampler: None,
         };
         engine.blocks = engine.make_blocks();
         engine

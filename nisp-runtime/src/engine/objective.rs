@@ -20,11 +20,12 @@ impl<E: Real> Objective<E> for Engine<E> {
     }
 
     fn accepted(&mut self, theta: &[E]) -> bool {
+        let resampled = self.resample(theta);
         if self.chamfers().next().is_none() {
-            return false;
+            return resampled;
         }
         self.set(theta);
-        self.assign()
+        self.assign() || resampled
     }
 }
 

@@ -71,6 +71,30 @@ impl Block {
         }
     }
 
+    /// Adds a share of a block of one of the cells that this one is spread over.
+    pub(super) fn add_share(&mut self, of: &Block, share: f64, dimensions: usize) {
+        let (width, own) = (self.dofs.len(), of.dofs.len());
+        for (&(_, cell, from), &(_, span, first)) in of.heads.iter().zip(&self.heads) {
+            let shift: usize =
+                (0..dimensions).map(|axis| (cell.first[axis] - span.first[axis]) * span.count.pow(axis as u32)).sum();
+            for line in 0..cell.count.pow(dimensions as u32 - 1) {
+                let (mut at, mut start, mut stride) = (line, first + shift, span.count);
+                for _ in 1..dimensions {
+                    start += at % cell.count * stride;
+                    at /= cell.count;
+                    stride *= span.count;
+                }
+                for row in 0..self.misfits.len() {
+                    let to = &mut self.slopes[row * width + start..][..cell.count];
+                    let from = &of.slopes[row * own + from + line * cell.count..][..cell.count];
+                    to.iter_mut().zip(from).for_each(|(to, from)| *to += share * from);
+                }
+            }
+        }
+        self.misfits.iter_mut().zip(&of.misfits).for_each(|(to, from)| *to += share * from);
+        self.by_learned.iter_mut().zip(&of.by_learned).for_each(|(to, from)| *to += share * from);
+    }
+
     /// Adds the derivatives of the rows by the learned scalars.
     pub(super) fn add_learned(&mut self, slope: impl Fn(usize, usize) -> f64) {
         let count = self.learned.len();

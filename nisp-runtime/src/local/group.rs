@@ -1,8 +1,8 @@
 //! The rows of a group: misfits of its terms, and their derivatives by the coefficients around each point.
 //!
 //! Where points come with weights, they stand for a piece of space, and equations are tested: a row is the weighted mean
-//! of the residual around a node of the lattice, with the node's hat function as weight (Petrov-Galerkin). A kink of the
-//! solution inside a cell then costs nothing, while a residual asked to vanish at every point would smooth it away.
+//! of the residual, with a spline of low degree on the lattice as weight (Petrov-Galerkin). A kink of the solution inside
+//! a cell then costs nothing, while a residual asked to vanish at every point would smooth it away.
 //! Points without weights give a row each.
 
 use rayon::prelude::*;
@@ -32,6 +32,8 @@ pub(super) struct Group {
     /// Weights of the points; empty if each has rows of its own.
     pub(super) weights: Vec<f64>,
     nodes: Vec<Node>,
+    /// Degree of the tests.
+    tests: usize,
     /// Heads that the group reads.
     heads: Vec<usize>,
 }
@@ -87,7 +89,7 @@ impl Group {
         kernel: GroupKernel<f64>,
         sites: Sites,
         weights: Vec<f64>,
-        base: &Lattice,
+        (base, tests): (&Lattice, usize),
         flat: &[f64],
     ) -> Self {
         let operator = |jet: &schema::Jet| {
@@ -101,7 +103,7 @@ impl Group {
         let mut heads: Vec<usize> = schema.jets.iter().map(|jet| jet.head).collect();
         heads.sort_unstable();
         heads.dedup();
-        let nodes = if weights.is_empty() { Vec::new() } else { nodes(base, flat, &weights) };
+        let nodes = if weights.is_empty() { Vec::new() } else { nodes(base, tests, flat, &weights) };
         Self {
             schema,
             kernel,
@@ -110,6 +112,7 @@ impl Group {
             sites,
             weights,
             nodes,
+            tests,
             heads,
         }
     }
@@ -209,38 +212,70 @@ impl Group {
             return Vec::new();
         }
         let evaluated = self.evaluate(heads, theta, scalars, true);
+        let at_point = |p: usize| {
+            let mut block = self.empty(heads, rows.len(), learned, |lattice| {
+                heads.lattices[lattice].cell_span(&self.sites.places[lattice][p])
+            });
+            self.add(&mut block, heads, &evaluated, &rows, p, 1.0);
+            block
+        };
+        let mut points: Vec<Block> = (0..self.sites.count).into_par_iter().map(at_point).collect();
         if self.weights.is_empty() {
-            return (0..self.sites.count)
-                .into_par_iter()
-                .map(|p| {
-                    let mut block = self.empty(heads, rows.len(), learned, |lattice| {
-                        let place = &self.sites.places[lattice][p];
-                        heads.lattices[lattice].cell_span(place)
-                    });
-                    self.add(&mut block, heads, &evaluated, &rows, p, 1.0);
-                    block.divide(rows.iter().map(|&row| self.sigma[row]));
-                    block
-                })
-                .collect();
+            points.par_iter_mut().for_each(|block| block.divide(rows.iter().map(|&row| self.sigma[row])));
+            return points;
         }
+        let dimensions = heads.lattices[0].dimensions();
         self.nodes
             .par_iter()
             .map(|node| {
                 let mut block = self.empty(heads, rows.len(), learned, |head| self.span(heads, node, head));
-                for &(p, share) in &node.points {
-                    self.add(&mut block, heads, &evaluated, &rows, p as usize, share);
-                }
+                node.points.iter().for_each(|&(p, share)| block.add_share(&points[p as usize], share, dimensions));
                 block.divide(rows.iter().map(|&row| self.sigma[row] / node.weight));
                 block
             })
             .collect()
     }
 
+    /// Half the sum of squares of the rows over their tolerances, integrals among them.
+    pub(super) fn loss(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> f64 {
+        let evaluated = self.evaluate(heads, theta, scalars, false);
+        let square = |row: usize, value: f64| 0.5 * (value / self.sigma[row]).powi(2);
+        let mut own = 0.0;
+        for row in self.own_rows() {
+            own += match self.weights.is_empty() {
+                true => (0..self.sites.count).map(|p| square(row, evaluated.row(row, p))).sum::<f64>(),
+                false => self.nodes.iter().map(|node| square(row, node.weight * node.mean(&evaluated, row))).sum(),
+            };
+        }
+        let integrals = self.targets(scalars).into_iter().map(|(row, target)| {
+            let sum: f64 = (0..self.sites.count).map(|p| self.weight(p) * evaluated.row(row, p)).sum();
+            square(row, sum - target)
+        });
+        own + integrals.sum::<f64>()
+    }
+
+    /// Weight of a point in integrals.
+    fn weight(&self, p: usize) -> f64 {
+        self.weights.get(p).copied().unwrap_or(1.0)
+    }
+
+    /// Rows of integral terms, and what they are to be.
+    fn targets(&self, scalars: &[f64]) -> Vec<(usize, f64)> {
+        let terms = self.schema.terms.iter().filter(|term| term.kind == TermKind::Integral);
+        let rows: Vec<usize> = terms.flat_map(|term| term.first..term.first + term.rows).collect();
+        if rows.is_empty() {
+            return Vec::new();
+        }
+        let mut targets = vec![0.0; self.schema.rows];
+        self.kernel.programs.target(scalars, &mut targets);
+        rows.into_iter().map(|row| (row, targets[row])).collect()
+    }
+
     /// Functions of a head around a test.
     fn span(&self, heads: &Heads, node: &Node, head: usize) -> Span {
         let lattice = &heads.lattices[head];
         let times = lattice.cells[0] / heads.lattices.iter().map(|l| l.cells[0]).min().unwrap_or(1);
-        Span { first: node.cell.map(|cell| cell * times), count: 2 * times + lattice.degree }
+        Span { first: node.cell.map(|cell| cell * times), count: (self.tests + 1) * times + lattice.degree }
     }
 
     /// One row at a point, of nothing yet.
@@ -292,29 +327,19 @@ impl Group {
 
     /// The weighted sums of integral terms over the points, and their derivatives by every coefficient.
     pub(super) fn integrals(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Integral> {
-        let rows: Vec<usize> = self
-            .schema
-            .terms
-            .iter()
-            .filter(|term| term.kind == TermKind::Integral)
-            .flat_map(|term| term.first..term.first + term.rows)
-            .collect();
+        let rows = self.targets(scalars);
         if rows.is_empty() {
             return Vec::new();
         }
-        let mut targets = vec![0.0; self.schema.rows];
-        self.kernel.programs.target(scalars, &mut targets);
         let evaluated = self.evaluate(heads, theta, scalars, true);
-        let weight = |p: usize| self.weights.get(p).copied().unwrap_or(1.0);
-        rows.iter()
-            .map(|&row| {
-                let mut sum =
-                    Integral { misfit: -targets[row], slopes: vec![0.0; heads.len()], sigma: self.sigma[row] };
+        rows.into_iter()
+            .map(|(row, target)| {
+                let mut sum = Integral { misfit: -target, slopes: vec![0.0; heads.len()], sigma: self.sigma[row] };
                 for p in 0..self.sites.count {
-                    sum.misfit += weight(p) * evaluated.rows[row * evaluated.stride + p];
+                    sum.misfit += self.weight(p) * evaluated.rows[row * evaluated.stride + p];
                     let mut block =
                         self.empty(heads, 1, &[], |head| heads.lattices[head].cell_span(&self.sites.places[head][p]));
-                    self.add(&mut block, heads, &evaluated, &[row], p, weight(p));
+                    self.add(&mut block, heads, &evaluated, &[row], p, self.weight(p));
                     for (&dof, slope) in block.dofs.iter().zip(&block.slopes) {
                         if dof != NONE {
                             sum.slopes[dof as usize] += slope;
@@ -334,6 +359,13 @@ pub(super) struct Integral {
     pub(super) sigma: f64,
 }
 
+impl Node {
+    /// Weighted mean of a row.
+    fn mean(&self, evaluated: &Evaluated, row: usize) -> f64 {
+        self.points.iter().map(|&(p, share)| share * evaluated.row(row, p as usize)).sum()
+    }
+}
+
 impl Evaluated {
     /// Value of a row at a point.
     pub(super) fn row(&self, row: usize, p: usize) -> f64 {
@@ -346,16 +378,16 @@ impl Evaluated {
     }
 }
 
-/// The tests of a group: the nodes of the base lattice, each with the points of the cells around it.
-fn nodes(base: &Lattice, flat: &[f64], weights: &[f64]) -> Vec<Node> {
-    let hats = base.refined(1, 1);
+/// The tests of a group: splines of a degree on the base lattice, each with the points that it sees.
+fn nodes(base: &Lattice, degree: usize, flat: &[f64], weights: &[f64]) -> Vec<Node> {
+    let tests = base.refined(degree, 1);
     let mut found: std::collections::BTreeMap<usize, Node> = std::collections::BTreeMap::new();
-    let mut values = vec![0.0; hats.per_cell()];
-    for (p, point) in flat.chunks_exact(hats.dimensions()).enumerate() {
-        let place = hats.place(point);
-        hats.values(&place, &Exponents::default(), &mut values);
-        let span = hats.cell_span(&place);
-        for ((number, value), cell) in hats.numbers(span).zip(&values).zip(base.around(&place)) {
+    let mut values = vec![0.0; tests.per_cell()];
+    for (p, point) in flat.chunks_exact(tests.dimensions()).enumerate() {
+        let place = tests.place(point);
+        tests.values(&place, &Exponents::default(), &mut values);
+        let span = tests.cell_span(&place);
+        for ((number, value), cell) in tests.numbers(span).zip(&values).zip(base.around(&place, degree)) {
             let node = found.entry(number).or_insert_with(|| Node { points: Vec::new(), cell, weight: 0.0 });
             node.points.push((p as u32, weights[p] * value));
             node.weight += weights[p] * value;

@@ -107,6 +107,24 @@ impl Heads {
         }
     }
 
+    /// Sums of a head's functions at a point, with each of several vectors of coefficients, times the scale.
+    pub(super) fn values<'a>(
+        &self,
+        head: usize,
+        point: &[f64],
+        vectors: &'a [Vec<f64>],
+    ) -> impl Iterator<Item = f64> + use<'a> {
+        let (lattice, scale) = (&self.lattices[head], self.scale[head]);
+        let place = lattice.place(point);
+        let mut splines = vec![0.0; lattice.per_cell()];
+        lattice.values(&place, &Exponents::default(), &mut splines);
+        let first = self.first[head];
+        let numbers = lattice.kept(lattice.cell_span(&place)).zip(splines);
+        let parts: Vec<(usize, f64)> =
+            numbers.filter(|(n, _)| *n != NONE).map(|(n, value)| (first + n as usize, scale * value)).collect();
+        vectors.iter().map(move |vector| parts.iter().map(|&(at, value)| vector[at] * value).sum())
+    }
+
     /// What a program reads of a bounded head that is `away` from its bound, its derivative by `away`, and what is left
     /// over because the transformation has no inverse there.
     pub(super) fn raw(&self, head: usize, away: f64) -> (f64, f64, f64) {

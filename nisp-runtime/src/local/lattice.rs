@@ -104,14 +104,16 @@ impl Lattice {
         place
     }
 
-    /// For each corner of a place's cell, in the order of hat functions: the first of the cells around it.
-    pub(super) fn around(&self, place: &Place) -> impl Iterator<Item = [usize; MOST_COORDINATES]> + '_ {
+    /// For each spline of a degree on this lattice that does not vanish at a place: the first of the cells that it is spread
+    /// over.
+    pub(super) fn around(&self, place: &Place, degree: usize) -> impl Iterator<Item = [usize; MOST_COORDINATES]> + '_ {
         let place = *place;
-        (0..1usize << self.dimensions()).map(move |corner| {
+        (0..(degree + 1).pow(self.dimensions() as u32)).map(move |mut at| {
             let mut cell = [0; MOST_COORDINATES];
             for (axis, cell) in cell.iter_mut().enumerate().take(self.dimensions()) {
-                let node = place.cell[axis] + (corner >> axis & 1);
-                *cell = node.saturating_sub(1).min(self.cells[axis].saturating_sub(2));
+                let last = place.cell[axis] + at % (degree + 1);
+                at /= degree + 1;
+                *cell = last.saturating_sub(degree).min(self.cells[axis].saturating_sub(degree + 1));
             }
             cell
         })

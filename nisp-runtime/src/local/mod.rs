@@ -10,6 +10,7 @@
 
 mod block;
 mod bspline;
+mod draws;
 mod group;
 mod heads;
 mod lattice;
@@ -39,8 +40,14 @@ use solver::{End, Solver};
 pub struct Local {
     /// Cells along the longest coordinate.
     pub cells: usize,
+    /// How much coarser the lattice is on which a solution is sought first, with sixteen cells at least; one for none.
+    /// Coarse splines find the way to it in fewer and cheaper steps, and noise creases them less.
+    pub coarser: usize,
     /// Degree of the state's splines; at least the order of its highest derivative.
     pub degree: usize,
+    /// Degree of the functions that equations are tested with: 1, hats, where sources have edges; that of the state where it
+    /// is smooth, so that no pattern of coefficients escapes all tests.
+    pub tests: usize,
     /// Cells of a source along one of the state's.
     pub finer: usize,
     /// Coordinates along which sources are spread: fewer than there are, if they live on a face.
@@ -66,10 +73,7 @@ pub enum LocalError {
     Fault(Fault),
 }
 
-/// How much coarser the lattice is on which a solution is sought first: coarse splines find the way to it in fewer and
-/// cheaper steps, and noise creases them less.
-const COARSER: usize = 3;
-/// Cells that it has at least.
+/// Cells of the coarser lattice at least.
 const FEWEST: usize = 16;
 
 /// A solved problem on its lattices.
@@ -84,6 +88,8 @@ pub(crate) struct LocalSolution {
     factor: Option<Factor>,
     /// Where the solver stopped.
     pub(crate) checkpoint: State,
+    /// Deviations of the coefficients, drawn from their posterior.
+    deviations: Vec<Vec<f64>>,
 }
 
 /// What the caller sees after every step.
@@ -110,7 +116,7 @@ pub(crate) fn solve(
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
 ) -> Result<LocalSolution, LocalError> {
     let start = Instant::now();
-    let coarse = settings.cells.div_ceil(COARSER).max(FEWEST).min(settings.cells);
+    let coarse = settings.cells.div_ceil(settings.coarser.max(1)).max(FEWEST).min(settings.cells);
     let (lattice, before) = match from {
         None => (0, 0),
         Some(state) => saved_place(state).map_err(LocalError::Fault)?,
@@ -130,6 +136,9 @@ pub(crate) fn solve(
         end = fine.run(place, false, &mut stage)?;
         solver = fine;
     }
+    // Of what is no solution, the spread about it says nothing.
+    let solved = matches!(end.status, Status::Converged | Status::Budget);
+    let deviations = if solved { solver.deviations(&end.state).unwrap_or_default() } else { Vec::new() };
     let End { state, status, iterations, loss, warnings, factor, checkpoint } = end;
     Ok(LocalSolution {
         heads: solver.heads,
@@ -141,6 +150,7 @@ pub(crate) fn solve(
         warnings,
         factor,
         checkpoint,
+        deviations,
     })
 }
 
@@ -173,6 +183,19 @@ impl LocalSolution {
         let mut scratch = Vec::new();
         let inputs = self.heads.lattices[head].dimensions();
         points.chunks_exact(inputs).map(|point| self.heads.value(head, point, &self.theta, &mut scratch)).collect()
+    }
+
+    /// Standard deviations of a head at points in the engine's units, flat: root mean squares of draws from the posterior.
+    pub(crate) fn spread(&self, head: usize, points: &[f64]) -> Option<Vec<f64>> {
+        if self.deviations.is_empty() {
+            return None;
+        }
+        let inputs = self.heads.lattices[head].dimensions();
+        let spread = |point: &[f64]| {
+            let squares = self.heads.values(head, point, &self.deviations).map(|x| x * x);
+            (squares.sum::<f64>() / self.deviations.len() as f64).sqrt()
+        };
+        Some(points.chunks_exact(inputs).map(spread).collect())
     }
 
     /// Standard deviation of a learned scalar's parameter.

@@ -60,27 +60,22 @@ impl Sparse<'_> {
         (finer.powi(-(self.dimensions as i32)), finer.powi(1 - self.dimensions as i32))
     }
 
-    /// Adds the majorant about the present source; `concave` ends the penalty of small sources at the level, otherwise it
-    /// goes on.
+    /// Adds the majorant about the present source. Only if `concave` are heights compressed, and the penalty of small sources
+    /// ends at the level: before, the prior is convex, so that no single node can draw a whole patch's force.
     pub(super) fn add(&self, normal: &mut Normal, theta: &[f64], concave: bool) {
         let first = self.heads.first[self.head];
         let (area, length) = self.measures();
         let f: Vec<f64> = theta[first..first + self.lattice().len()].iter().map(|c| c / self.level).collect();
         let steepness = self.steepness(&f);
-        let per_length = self.noise.max(FINEST).powf(FALL);
-        let (edges, patch) = (self.prior.edges * per_length, self.prior.area * per_length * per_length);
-        let number = |at: u32| first as u32 + at;
+        let (edges, patch) = self.penalties();
         let square = 1.0 / (self.level * self.level);
         for axis in 0..self.lattice().dimensions() {
             for (a, b) in self.lattice().neighbours(axis) {
                 let (i, j) = (a as usize, b as usize);
-                let weight = edges * length * compression(0.5 * (f[i] + f[j])) / steepness[i].max(SMOOTH);
-                let slope = weight * (f[j] - f[i]) / self.level;
-                normal.gradient[first + i] -= slope;
-                normal.gradient[first + j] += slope;
-                normal.add_entry(number(a), number(a), weight * square);
-                normal.add_entry(number(b), number(b), weight * square);
-                normal.add_entry(number(a), number(b), -weight * square);
+                let slope = if concave { compression(0.5 * (f[i] + f[j])) } else { 1.0 };
+                let weight = edges * length * slope / steepness[i].max(SMOOTH);
+                let difference = (f[j] - f[i]) * self.level;
+                normal.add_difference([first + i, first + j], weight * square, difference);
             }
         }
         for (at, &f) in f.iter().enumerate() {
@@ -88,9 +83,26 @@ impl Sparse<'_> {
             normal.gradient[first + at] += slope / self.level;
             if f < 0.0 {
                 normal.gradient[first + at] += WALL * area * f / self.level;
-                normal.add_entry(number(at as u32), number(at as u32), WALL * area * square);
+                normal.add_stiffness(first + at, WALL * area * square);
             }
         }
+    }
+
+    /// What the prior adds to the loss, but for a constant.
+    pub(super) fn value(&self, theta: &[f64], concave: bool) -> f64 {
+        let first = self.heads.first[self.head];
+        let f: Vec<f64> = theta[first..first + self.lattice().len()].iter().map(|c| c / self.level).collect();
+        let (area, length) = self.measures();
+        let (edges, patch) = self.penalties();
+        let heights: Vec<f64> = f.iter().map(|&f| if concave { compressed(f) } else { f }).collect();
+        let areas = f.iter().map(|&f| patch * if concave { charge(f) } else { f } + 0.5 * WALL * f.min(0.0).powi(2));
+        edges * length * self.steepness(&heights).iter().sum::<f64>() + area * areas.sum::<f64>()
+    }
+
+    /// Penalties of an edge and of a patch at this noise.
+    fn penalties(&self) -> (f64, f64) {
+        let per_length = self.noise.max(FINEST).powf(FALL);
+        (self.prior.edges * per_length, self.prior.area * per_length * per_length)
     }
 
     /// Steepness of the source at every node: the root of the sum of squares of the differences to the next nodes.
@@ -103,6 +115,20 @@ impl Sparse<'_> {
         }
         squares.iter().map(|s| s.sqrt()).collect()
     }
+}
+
+/// A height as it counts, both in levels.
+fn compressed(height: f64) -> f64 {
+    if height > 0.0 { CAP * (height / CAP).ln_1p() } else { height }
+}
+
+/// Integral of [`small`] from zero to a height.
+fn charge(height: f64) -> f64 {
+    if height < 0.0 {
+        return small(height) * height;
+    }
+    let soft = |height: f64| crate::functions::softplus((height - END.0) / END.1) * END.1;
+    height - soft(height) + soft(0.0)
 }
 
 /// How much a difference counts at a height, both in levels.

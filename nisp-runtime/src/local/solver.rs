@@ -4,13 +4,14 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
 use super::block::Block;
+use super::draws::Draws;
 use super::group::{Group, Sites};
 use super::heads::Heads;
 use super::lattice::{Lattice, MOST_COORDINATES, NONE, Span};
 use super::normal::{Factor, Normal};
 use super::place::{Place, State};
 use super::prior::Sparse;
-use super::surface::{self, Feet, Surface};
+use super::surface::{Feet, Surface};
 use super::{Local, LocalError, Progress, Stage};
 use crate::engine::Learned;
 use crate::problem::Bound;
@@ -38,6 +39,8 @@ const CONVEX_STEPS: u64 = 6;
 const WARM_STEPS: u64 = 3;
 /// Largest change of a field in one step, in its natural sizes.
 const FARTHEST: f64 = 5.0;
+/// What error bars take, in steps.
+const BARS: f64 = 2.0;
 /// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
 const MOST_OFF: f64 = 5.0;
 /// Random vectors for the trace of the influence matrix (Hutchinson).
@@ -46,7 +49,12 @@ const PROBES: usize = 2;
 const HELD: f64 = 1e30;
 /// Relative change of the coefficients at which the answer counts as converged.
 const CONVERGED: f64 = 2e-2;
-/// The same on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
+/// Change of the logarithm of the probability, by rows, at which the answer counts as converged too if learned scalars rest:
+/// a pressure that the data hardly determine may wander for long.
+const SETTLED: f64 = 1e-3;
+/// Change of the parameters of learned scalars that rest.
+const RESTING: f64 = 1e-3;
+/// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
 const ROUGHLY: f64 = 0.1;
 const COARSE_STEPS: u64 = 4;
 /// Share of a step that is tried where the whole led to numbers that are not finite.
@@ -63,6 +71,28 @@ pub(super) struct Solver<'a> {
     scalars: Vec<f64>,
     /// Size of the base lattice's cells, the largest.
     cell: f64,
+}
+
+/// What the rows of a step are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Phase {
+    /// Data and pointwise conditions.
+    Regress,
+    /// Everything, with a penalty of small sources that does not end at their level; learned scalars may be held.
+    Convex { held: bool },
+    /// Everything.
+    Concave,
+}
+
+impl Phase {
+    fn of(iteration: u64, coarse: bool) -> Self {
+        match iteration {
+            0 => Self::Regress,
+            1..CONVEX_STEPS => Self::Convex { held: true },
+            _ if coarse || iteration == CONVEX_STEPS => Self::Convex { held: false },
+            _ => Self::Concave,
+        }
+    }
 }
 
 /// How a run ended.
@@ -83,7 +113,7 @@ impl<'a> Solver<'a> {
         let schema = bound.problem.scene().schema;
         let inputs = schema.coordinates.len();
         refuse_what_networks_do(schema, settings)?;
-        let base = base(bound, cells);
+        let base = base(bound, cells, settings.tests);
         let mut lattices: Vec<Lattice> =
             (0..schema.heads.len()).map(|head| lattice(bound, settings, &base, head)).collect();
         for (head, lattice) in lattices.iter_mut().enumerate() {
@@ -102,7 +132,7 @@ impl<'a> Solver<'a> {
             let sites = Sites::new(&heads, flat, &bound.columns[at]);
             let measure = schema.terms.iter().find_map(|term| term.measure.as_ref());
             let weights = bound.weights(at, measure);
-            let mut group = Group::new(schema, kernel, sites, weights, &base, flat);
+            let mut group = Group::new(schema, kernel, sites, weights, (&base, settings.tests), flat);
             for (term, size) in schema.terms.iter().zip(&bound.sizes[at]) {
                 let tolerance = if term.within.is_some() { 1.0 } else { TOLERANCE };
                 group.sigma[term.first..term.first + term.rows].fill(tolerance * size / term.weight.sqrt());
@@ -116,7 +146,7 @@ impl<'a> Solver<'a> {
             }
             groups.push(group);
         }
-        let together = together(&heads, &base, bound);
+        let together = together(&heads, &base, settings.tests, bound);
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         Ok(Self { bound, settings, heads, groups, surfaces, normal, scalars: bound.scalars.clone(), cell })
     }
@@ -154,8 +184,8 @@ impl<'a> Solver<'a> {
                 }
             }
         }
-        for at in 0..self.heads.len() as u32 {
-            self.normal.add_entry(at, at, NEGLIGIBLE);
+        for at in 0..self.heads.len() {
+            self.normal.add_stiffness(at, NEGLIGIBLE);
         }
         (0..unmoved.len()).for_each(|at| self.normal.add_learned(at, 1.0, 0.0));
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
@@ -178,7 +208,8 @@ impl<'a> Solver<'a> {
         while factor.is_none() || stage.before + iteration < stage.limits.iterations {
             let began = stage.start.elapsed().as_secs_f64();
             let budget = stage.limits.budget.map_or(f64::INFINITY, |budget| budget.as_secs_f64());
-            if began + longest > budget && factor.is_some() {
+            let wanted = if coarse { longest } else { (1.0 + BARS) * longest };
+            if began + wanted > budget && factor.is_some() {
                 break;
             }
             let place = self.place(&state, iteration);
@@ -199,21 +230,25 @@ impl<'a> Solver<'a> {
             };
             good = place;
             faults.clear();
-            let change = self.change(&state, &next);
-            state = next;
+            let (change, gain) = (self.change(&state, &next), found.gain);
+            let before = std::mem::replace(&mut state, next);
             (loss, rows) = (found.loss, found.rows);
             factor = Some(found.factor);
             iteration += 1;
             let elapsed_s = stage.start.elapsed().as_secs_f64();
             longest = longest.max(elapsed_s - began);
-            let (before, lattice) = (stage.before, stage.lattice);
-            let checkpoint = &|| good.save(before, lattice);
-            if (stage.monitor)(Progress { iteration: before + iteration, elapsed_s, loss, checkpoint }) == Flow::Stop {
+            let (steps_before, lattice) = (stage.before, stage.lattice);
+            let checkpoint = &|| good.save(steps_before, lattice);
+            if (stage.monitor)(Progress { iteration: steps_before + iteration, elapsed_s, loss, checkpoint })
+                == Flow::Stop
+            {
                 status = Status::Interrupted;
                 break;
             }
             let (steps, small) = if coarse { (COARSE_STEPS, ROUGHLY) } else { (CONVEX_STEPS + 1, CONVERGED) };
-            if iteration + skipped > steps && change < small {
+            let resting = learned_change(&before, &state) < RESTING;
+            let settled = !coarse && resting && gain.abs() < SETTLED * rows as f64;
+            if iteration + skipped > steps && (change < small || settled) {
                 status = Status::Converged;
                 break;
             }
@@ -268,13 +303,60 @@ impl<'a> Solver<'a> {
 
     /// One step; also what it found on its way.
     fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, Found), LocalError> {
-        let slopes = self.set_learned(&state.learned);
-        let theta = &state.theta;
         let regress = iteration == 0;
+        self.find_feet(&state.theta, &state.learned);
+        let noise = if regress { state.noise } else { self.noise(state.used) };
+        let (loss, rows, probes) = self.assemble(state, noise, Phase::of(iteration, coarse))?;
+        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
+        let used: f64 = probes.iter().map(|probe| factor.inner(probe)).sum::<f64>() / probes.len() as f64;
+        let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
+        // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
+        let fields = self.fields().flat_map(|range| &step[range]);
+        let largest = fields.map(|x| x.abs()).fold(0.0, f64::max);
+        let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
+        let mut next = State { noise, used, ..state.clone() };
+        next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
+        next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
+        let concave = Phase::of(iteration, coarse) == Phase::Concave;
+        let before = loss + self.penalty(state, noise, concave);
+        let after = self.loss(&next, noise) + self.penalty(&next, noise, concave);
+        Ok((next, Found { loss, gain: before - after, rows, factor }))
+    }
+
+    /// Finds the feet of all clouds on the present surface.
+    fn find_feet(&mut self, theta: &[f64], learned: &[f64]) {
+        self.set_learned(learned);
         for surface in &mut self.surfaces {
             surface.find(&self.groups[surface.group], &self.heads, theta, &self.scalars);
         }
-        let noise = if regress { state.noise } else { self.noise(state.used) };
+    }
+
+    /// What priors add to the loss, but for a constant.
+    fn penalty(&self, state: &State, noise: f64, concave: bool) -> f64 {
+        let schema = self.bound.problem.scene().schema;
+        let sources = schema.heads.iter().enumerate().filter(|(_, head)| head.source);
+        let of_sources: f64 = sources
+            .filter_map(|(head, _)| {
+                let sparse = sparse(self.bound, self.settings, &self.heads, head, noise / self.cell)?;
+                Some(sparse.value(&state.theta, concave))
+            })
+            .sum();
+        of_sources + state.learned.iter().map(|x| 0.5e-2 * x * x).sum::<f64>()
+    }
+
+    /// Half the sum of squares of all rows.
+    fn loss(&mut self, state: &State, noise: f64) -> f64 {
+        self.find_feet(&state.theta, &state.learned);
+        let groups = self.groups.iter().map(|group| group.loss(&self.heads, &state.theta, &self.scalars));
+        groups.sum::<f64>() + self.surfaces.iter().map(|surface| surface.loss(noise)).sum::<f64>()
+    }
+
+    /// The normal equations about a state whose feet are found; also the loss, how many rows there are, and random
+    /// combinations of the clouds' rows.
+    fn assemble(&mut self, state: &State, noise: f64, phase: Phase) -> Result<(f64, usize, Vec<Vec<f64>>), LocalError> {
+        let slopes = self.set_learned(&state.learned);
+        let theta = &state.theta;
+        let regress = phase == Phase::Regress;
         let mut probes = vec![vec![0.0; theta.len()]; PROBES];
         let mut random = StdRng::seed_from_u64(0);
         self.normal.clear();
@@ -284,11 +366,12 @@ impl<'a> Solver<'a> {
             if regress && !group.weights.is_empty() {
                 continue;
             }
-            for block in group.blocks(&self.heads, theta, &self.scalars, &slopes) {
-                loss += half_square(&block, |row| group.name(row))?;
+            let blocks = group.blocks(&self.heads, theta, &self.scalars, &slopes);
+            for block in &blocks {
+                loss += half_square(block, |row| group.name(row))?;
                 rows += block.misfits.len();
-                self.normal.add(&block);
             }
+            self.normal.add_all(&blocks);
             if regress {
                 continue;
             }
@@ -308,28 +391,29 @@ impl<'a> Solver<'a> {
                 }
             }
             rows += surface.misfits().count();
-            loss += surface.misfits().map(|misfit| 0.5 * surface::loss(misfit / noise)).sum::<f64>();
+            loss += surface.loss(noise);
         }
-        for at in 0..theta.len() as u32 {
-            self.normal.add_entry(at, at, RIDGE);
+        for at in 0..theta.len() {
+            self.normal.add_stiffness(at, RIDGE);
         }
         for (at, parameter) in state.learned.iter().enumerate() {
             // Parameters wait until the state is one of the equations' solutions. Their own scale is of the order of one.
-            let stiffness = if iteration < CONVEX_STEPS { HELD } else { 1e-2 };
+            let stiffness = if matches!(phase, Phase::Regress | Phase::Convex { held: true }) { HELD } else { 1e-2 };
             self.normal.add_learned(at, stiffness, 1e-2 * parameter);
         }
-        self.add_priors(theta, noise, regress, !coarse && iteration > CONVEX_STEPS);
-        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
-        let used: f64 = probes.iter().map(|probe| factor.inner(probe)).sum::<f64>() / probes.len() as f64;
-        let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
-        let mut next = State { noise, used, ..state.clone() };
-        // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
-        let fields = self.fields().flat_map(|range| &step[range]);
-        let largest = fields.map(|x| x.abs()).fold(0.0, f64::max);
-        let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
-        next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
-        next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
-        Ok((next, Found { loss, rows, factor }))
+        self.add_priors(theta, noise, regress, phase == Phase::Concave);
+        Ok((loss, rows, probes))
+    }
+
+    /// Deviations of the coefficients, drawn from the posterior about a state. The patch is taken as it is: what the prior
+    /// holds at zero stays there.
+    pub(super) fn deviations(&mut self, state: &State) -> Option<Vec<Vec<f64>>> {
+        self.find_feet(&state.theta, &state.learned);
+        self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
+        let assembled = self.assemble(state, state.noise, Phase::Concave);
+        let draws = self.normal.draws.take()?;
+        assembled.ok()?;
+        self.normal.factor()?.deviations(&draws)
     }
 
     /// Priors of sources, or of all heads' roughness while only data are regressed.
@@ -341,27 +425,14 @@ impl<'a> Solver<'a> {
             for axis in (0..schema.coordinates.len()).filter(|_| regress || !declared.source) {
                 for (a, b) in self.heads.lattices[head].neighbours(axis) {
                     let (i, j) = (first + a as usize, first + b as usize);
-                    self.normal.gradient[i] += stiffness * (theta[i] - theta[j]);
-                    self.normal.gradient[j] += stiffness * (theta[j] - theta[i]);
-                    self.normal.add_entry(i as u32, i as u32, stiffness);
-                    self.normal.add_entry(j as u32, j as u32, stiffness);
-                    self.normal.add_entry(i as u32, j as u32, -stiffness);
+                    self.normal.add_difference([i, j], stiffness, theta[j] - theta[i]);
                 }
             }
             if regress {
                 continue;
             }
-            let Some(prior) = self.settings.patches.filter(|_| declared.source) else { continue };
-            let (scale, sign) = (self.heads.scale[head], self.heads.bound[head].map_or(1.0, |(sign, _)| sign));
-            let level = prior.level * self.bound.system.inward(&declared.unit) / scale * sign;
-            let sparse = Sparse {
-                heads: &self.heads,
-                head,
-                prior,
-                level,
-                finer: self.settings.finer,
-                dimensions: self.settings.source_dimensions,
-                noise: noise / self.cell,
+            let Some(sparse) = sparse(self.bound, self.settings, &self.heads, head, noise / self.cell) else {
+                continue;
             };
             sparse.add(&mut self.normal, theta, concave);
         }
@@ -376,8 +447,7 @@ impl<'a> Solver<'a> {
     /// Largest change of a field's coefficient or a learned parameter; sources may flicker at their edges for long.
     fn change(&self, before: &State, after: &State) -> f64 {
         let fields = self.fields().flat_map(|range| range.map(|at| (before.theta[at], after.theta[at])));
-        let learned = before.learned.iter().copied().zip(after.learned.iter().copied());
-        fields.chain(learned).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        fields.map(|(a, b)| (a - b).abs()).fold(learned_change(before, after), f64::max)
     }
 
     /// Standard deviation of the clouds about the surface, outliers counted for little.
@@ -393,6 +463,15 @@ impl<'a> Solver<'a> {
         }
         (sum / (count - used).max(0.2 * count).max(1.0)).sqrt().max(LEAST_NOISE * self.cell)
     }
+}
+
+/// The prior of a head where the clouds are off by `noise` cells; none of a field, or where nothing is known.
+fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, noise: f64) -> Option<Sparse<'a>> {
+    let declared = &bound.problem.scene().schema.heads[head];
+    let prior = settings.patches.filter(|_| declared.source)?;
+    let sign = heads.bound[head].map_or(1.0, |(sign, _)| sign);
+    let level = prior.level * bound.system.inward(&declared.unit) / heads.scale[head] * sign;
+    Some(Sparse { heads, head, prior, level, finer: settings.finer, dimensions: settings.source_dimensions, noise })
 }
 
 /// Splines of a higher degree than this are a slip.
@@ -417,7 +496,7 @@ fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(
         (terms().any(|t| t.kind == TermKind::Chamfer { symmetric: true, plane: false }), "symmetric Chamfer distances"),
         (terms().any(|t| !cloud(t) && t.loss != schema::Loss::Square), "robust losses of equations"),
         (terms().any(|t| cloud(t) && (t.rows != 3 || !(2..=3).contains(&inputs))), "clouds that are not in space"),
-        (settings.cells < 2 || settings.finer == 0, "lattices of fewer than two cells"),
+        (settings.cells <= settings.tests || settings.finer == 0, "lattices of fewer cells than a test is spread over"),
         (settings.degree > HIGHEST_DEGREE, "splines of such a degree"),
     ];
     match refused.into_iter().find(|(is_so, _)| *is_so) {
@@ -426,9 +505,15 @@ fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(
     }
 }
 
-/// The loss before a step, from so many rows, and the factorised matrix.
+/// Largest change of a learned scalar's parameter.
+fn learned_change(before: &State, after: &State) -> f64 {
+    before.learned.iter().zip(&after.learned).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
+
+/// The loss before a step, from so many rows, what the step gained, and the factorised matrix.
 struct Found {
     loss: f64,
+    gain: f64,
     rows: usize,
     factor: Factor,
 }
@@ -442,7 +527,7 @@ fn half_square(block: &Block, name: impl Fn(usize) -> String) -> Result<f64, Loc
 }
 
 /// The lattice of the state: `cells` of them along the longest of the coordinates that share a scale.
-fn base(bound: &Bound, cells: usize) -> Lattice {
+fn base(bound: &Bound, cells: usize, tests: usize) -> Lattice {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
     let (mut low, mut spacing, mut count) = (Vec::new(), Vec::new(), Vec::new());
@@ -459,7 +544,7 @@ fn base(bound: &Bound, cells: usize) -> Lattice {
         let h = if longest > 0.0 { longest / cells as f64 } else { 1.0 };
         let (from, to) = ranges[axis];
         // Rounding must not add a cell.
-        let own = ((to - from) / h - 1e-9).ceil().max(2.0);
+        let own = ((to - from) / h - 1e-9).ceil().max((tests + 1) as f64);
         low.push((from + to - own * h) / 2.0);
         spacing.push(h);
         count.push(own as usize);
@@ -478,20 +563,20 @@ fn lattice(bound: &Bound, settings: &Local, base: &Lattice, head: usize) -> Latt
     base.refined(settings.degree.max(order), 1)
 }
 
-/// Coefficients that may occur in the same row: those around each node of the base lattice that points are near.
-fn together(heads: &Heads, base: &Lattice, bound: &Bound) -> Vec<Vec<u32>> {
+/// Coefficients that may occur in the same row: those around each test that sees points.
+fn together(heads: &Heads, base: &Lattice, tests: usize, bound: &Bound) -> Vec<Vec<u32>> {
     let inputs = base.dimensions();
     let mut nodes = std::collections::BTreeSet::new();
     for points in &bound.coordinates {
         for point in points.chunks_exact(inputs) {
-            nodes.extend(base.around(&base.place(point)));
+            nodes.extend(base.around(&base.place(point), tests));
         }
     }
     let around = |cell: [usize; MOST_COORDINATES]| {
         let mut dofs = Vec::new();
         for (head, lattice) in heads.lattices.iter().enumerate() {
             let times = lattice.cells[0] / base.cells[0];
-            let span = Span { first: cell.map(|c| c * times), count: 2 * times + lattice.degree };
+            let span = Span { first: cell.map(|c| c * times), count: (tests + 1) * times + lattice.degree };
             let kept = lattice.kept(span).filter(|&n| n != NONE);
             dofs.extend(kept.map(|n| heads.first[head] as u32 + n));
         }

@@ -104,6 +104,11 @@ impl Surface {
         self.misfits.iter().zip(&self.found).filter(|(_, found)| **found).map(|(misfit, _)| *misfit)
     }
 
+    /// Half the sum of the points' losses.
+    pub(super) fn loss(&self, sigma: f64) -> f64 {
+        self.misfits().map(|misfit| 0.5 * loss(misfit / sigma)).sum()
+    }
+
     /// Positions of places, given flat.
     fn positions(
         &self,
@@ -234,12 +239,12 @@ impl Surface {
 const OUTLIER: f64 = 3.0;
 
 /// Huber's weight of a misfit in standard deviations.
-pub(super) fn weight(deviations: f64) -> f64 {
+fn weight(deviations: f64) -> f64 {
     (OUTLIER / deviations.abs()).min(1.0)
 }
 
 /// Twice Huber's loss of a misfit in standard deviations.
-pub(super) fn loss(deviations: f64) -> f64 {
+fn loss(deviations: f64) -> f64 {
     let u = deviations.abs();
     if u <= OUTLIER { u * u } else { OUTLIER * (2.0 * u - OUTLIER) }
 }

@@ -10,7 +10,6 @@ pub use cost::Cost;
 pub use init::initialise;
 pub use inputs::{Fourier, Function, Inputs, Stretched};
 
-#[cfg(test)]
 pub(crate) use init::normal;
 pub use layout::{Layout, Matrix};
 pub use weights::Weights;

@@ -4,7 +4,7 @@ use thiserror::Error;
 
 use super::scale::{Data, Scales, scales};
 use super::{Binding, Problem, UnitSystem};
-use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling};
+use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling, is_exchangeable};
 use crate::kernel::Precision;
 use crate::network::{Architecture, Inputs, Layout};
 use crate::schema::{self, Origin};
@@ -337,6 +337,24 @@ impl Bound {
         }
         let scalars = self.scalars.iter().map(|&x| E::from_f64(x)).collect();
         Ok(Engine::new(isa, layout, groups, scalars, self.learned.clone()))
+    }
+
+    /// The same with a share of the points of groups that may exchange theirs, evenly picked.
+    pub(crate) fn thinned(&self, share: f64) -> Self {
+        let mut thinned = self.clone();
+        let schema = self.problem.scene.schema;
+        let inputs = schema.coordinates.len();
+        for at in (0..schema.groups.len()).filter(|&at| is_exchangeable(&schema.groups[at])) {
+            let all = self.coordinates[at].len() / inputs;
+            let count = ((share * all as f64).round() as usize).clamp(1, all);
+            let chosen: Vec<usize> = (0..count).map(|i| i * all / count).collect();
+            let points = chosen.iter().flat_map(|&p| &self.coordinates[at][p * inputs..(p + 1) * inputs]);
+            thinned.coordinates[at] = points.copied().collect();
+            for (own, all) in thinned.columns[at].iter_mut().zip(&self.columns[at]) {
+                *own = chosen.iter().map(|&p| all[p]).collect();
+            }
+        }
+        thinned
     }
 
     fn raw_weights(&self, group: usize) -> &[f64] {

@@ -26,6 +26,9 @@ pub struct Checkpoint {
 /// Why there is nothing to go on from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 pub enum CheckpointError {
+    /// Points that are drawn anew are not part of a checkpoint.
+    #[error("points that are drawn anew are not part of a checkpoint; go on without resampling, from the start")]
+    Resampling,
     /// Bytes of something else, or of a version that is read no more.
     #[error("not a checkpoint of this version of nisp; start afresh")]
     Foreign,
@@ -130,10 +133,10 @@ impl Reader<'_> {
 /// threads, is not among the settings, since no iterate depends on it.
 pub(super) fn fingerprint(problem: &Problem, settings: &Settings) -> u64 {
     let mut hash = Fnv::new();
-    let Settings { precision, optimizer, architecture, local, seed, budget: _, iterations: _, threads: _ } = settings;
+    let Settings { precision, optimizer, architecture, local, resampling, data_first, seed, .. } = settings;
     // The text of a float has all of its bits. Hashing cannot fail.
     let _ = write!(hash, "{:?}{problem:?}", problem.scene().schema);
-    let _ = write!(hash, "{precision:?}{optimizer:?}{architecture:?}{local:?}{seed}");
+    let _ = write!(hash, "{precision:?}{optimizer:?}{architecture:?}{local:?}{resampling:?}{data_first:?}{seed}");
     hash.0
 }
 

@@ -20,7 +20,7 @@ use std::time::Instant;
 use thiserror::Error;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
-pub use settings::{Optimizer, Settings, Width};
+pub use settings::{Optimizer, Resampling, Settings, Width};
 pub use solution::{Estimate, LearnedValue, Solution, TermReport};
 
 use course::Course;
@@ -135,6 +135,9 @@ fn solve(
     let fingerprint = checkpoint::fingerprint(problem, settings);
     if checkpoint.is_some_and(|checkpoint| checkpoint.fingerprint != fingerprint) {
         return Err(CheckpointError::Other.into());
+    }
+    if checkpoint.is_some() && settings.resampling.is_some() {
+        return Err(CheckpointError::Resampling.into());
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
     let pool = pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;

@@ -5,13 +5,14 @@ use std::time::Instant;
 use super::course::Course;
 use super::noise::{self, Noise};
 use super::promotion::Promotion;
-use super::settings::{Optimizer, Settings, Width};
+use super::settings::{Optimizer, Resampling, Settings, Width};
 use super::solution::Run;
 use super::undetermined::View;
 use super::{BELIEF, RecoverError, Solution, resolution, weigh};
 use crate::engine::Engine;
+use crate::kernel::Precision;
 use crate::network::initialise;
-use crate::problem::Bound;
+use crate::problem::{BindError, Bound};
 use crate::solve::adam::{Adam, AdamSettings};
 use crate::solve::broyden::{Broyden, Update};
 use crate::solve::driver::{Outcome, Status, WarningKind};
@@ -89,7 +90,7 @@ struct Fit<'a> {
 
 impl<'a> Fit<'a> {
     fn new(bound: &'a Bound, settings: &'a Settings) -> Result<Self, RecoverError> {
-        let engine: Engine<f64> = bound.engine(settings.architecture)?;
+        let engine: Engine<f64> = engine(bound, settings)?;
         let theta = initialise(engine.layout(), settings.seed);
         let prior = engine.layout().prior(BELIEF.precision);
         Ok(Self { bound, settings, engine, noise: noise::estimate(bound), theta, prior })
@@ -142,7 +143,7 @@ impl<'a> Fit<'a> {
         }
         weigh::by_size(&mut self.engine);
         if optimizer == Optimizer::Adam {
-            weigh::regress_first(&mut self.engine, &self.theta)?;
+            weigh::regress_first(&mut self.engine, &self.theta, self.settings.data_first)?;
         }
         Ok(())
     }
@@ -223,7 +224,7 @@ impl<'a> Fit<'a> {
         course: &mut Course<'_, '_>,
         promotion: Option<&mut Promotion>,
     ) -> Result<Outcome<f64>, RecoverError> {
-        let mut engine: Engine<f32> = self.bound.engine(self.settings.architecture)?;
+        let mut engine: Engine<f32> = engine(self.bound, self.settings)?;
         self.weigh(optimizer)?;
         weigh::alike(&mut engine, &self.engine);
         let theta: Vec<f32> = self.theta.iter().map(|&x| x as f32).collect();
@@ -259,6 +260,15 @@ impl<'a> Fit<'a> {
         warnings.extend(double.warnings);
         Ok(Outcome { evaluations: single.evaluations + double.evaluations, warnings, ..double })
     }
+}
+
+/// The engine that a network is trained with.
+fn engine<E: Precision>(bound: &Bound, settings: &Settings) -> Result<Engine<E>, BindError> {
+    let whole = bound.engine(settings.architecture)?;
+    let Some(resampling) = settings.resampling else { return Ok(whole) };
+    let mut part = bound.thinned(resampling.share).engine(settings.architecture)?;
+    part.resample_from(whole, Resampling { every: resampling.every.max(1), ..resampling }, settings.seed);
+    Ok(part)
 }
 
 fn widened(outcome: Outcome<f32>) -> Outcome<f64> {

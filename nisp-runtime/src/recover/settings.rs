@@ -17,6 +17,11 @@ pub struct Settings {
     pub architecture: Architecture,
     /// Local functions instead of a network.
     pub local: Option<Local>,
+    /// Points of equations drawn anew where the equations are most off, of a network; otherwise all are used always.
+    pub resampling: Option<Resampling>,
+    /// How many times longer than that of the equations the gradient of the data is at first, at least, for Adam: data are
+    /// regressed first, and the source is solved for then (paper, section 3.2).
+    pub data_first: f64,
     /// Seed of the initial weights.
     pub seed: u64,
     /// Wall time, from the call to the answer.
@@ -34,11 +39,33 @@ impl Default for Settings {
             optimizer: Optimizer::Auto,
             architecture: Architecture { inputs: Inputs::Automatic, ..Architecture::modified(16, 2) },
             local: None,
+            resampling: None,
+            data_first: 50.0,
             seed: 0,
             budget: Some(Duration::from_secs(10)),
             iterations: None,
             threads: 0,
         }
+    }
+}
+
+/// How points of equations are drawn from all that were bound: with a chance of `r^power / mean(r^power) + floor`, `r` being
+/// the residual at a point over its natural size (Wu et al. 2023). Only groups that hold equations and no data take part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resampling {
+    /// Share of the points that a step sees.
+    pub share: f64,
+    /// Accepted steps between draws.
+    pub every: u64,
+    /// How strongly large residuals are preferred.
+    pub power: f64,
+    /// What keeps the other points in the draw.
+    pub floor: f64,
+}
+
+impl Default for Resampling {
+    fn default() -> Self {
+        Self { share: 1.0 / 3.0, every: 100, power: 1.0, floor: 1.0 }
     }
 }
 

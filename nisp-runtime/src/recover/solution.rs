@@ -184,8 +184,13 @@ impl Solution {
     }
 
     /// As [`Solution::evaluate`], with standard deviations from the Laplace approximation of the posterior. Methods
-    /// without a prior and a noise model have none.
+    /// without a prior and a noise model have none. Those of local functions take a source's patches as they were found:
+    /// they say how well the source is known within them, not whether a patch may be elsewhere.
     pub fn evaluate_with_errors(&mut self, points: &[f64]) -> Vec<Estimate> {
+        if let Carrier::Local(local) = &self.carrier {
+            let points = self.bound.inward(points);
+            return self.estimates(|head| (local.evaluate(head, &points), local.spread(head, &points)));
+        }
         let Some((rows, posterior)) = self.posterior(points) else { return self.evaluate(points) };
         let count = rows.len() / self.scene().heads.len().max(1);
         self.estimates(|head| {

@@ -72,10 +72,9 @@ pub(super) fn observed(noise: &Noise, bound: &Bound, group: usize, term: usize) 
     noise.of(group, column)
 }
 
-/// The paper's rule: residuals are weighted so that at the start 50 times their gradient is no longer than the
+/// The paper's rule: residuals are weighted so that at the start `ratio` times their gradient is no longer than the
 /// gradient of the regression terms. First the data are regressed, then the source is solved for (paper, section 3.2).
-pub(super) fn regress_first<E: Real>(engine: &mut Engine<E>, theta: &[E]) -> Result<(), Fault> {
-    const RATIO: f64 = 50.0;
+pub(super) fn regress_first<E: Real>(engine: &mut Engine<E>, theta: &[E], ratio: f64) -> Result<(), Fault> {
     let mut regression = 0.0;
     let mut residual = 0.0;
     for is_regression in [true, false] {
@@ -83,7 +82,7 @@ pub(super) fn regress_first<E: Real>(engine: &mut Engine<E>, theta: &[E]) -> Res
         *(if is_regression { &mut regression } else { &mut residual }) = length;
     }
     if regression > 0.0 && residual > 0.0 {
-        let weight = (regression / (RATIO * residual)).min(1.0);
+        let weight = (regression / (ratio * residual)).min(1.0);
         each_term(engine, |kind, factor| {
             if !regresses(kind) {
                 *factor *= weight.sqrt();

@@ -1,0 +1,186 @@
+//! `nisp ablate`: what each part of the method is worth, beside what the paper says of its own.
+//!
+//! A study compares variations of one setting on the same samples; everything else stays as it is. Figures are means over
+//! the samples, which are the repository's.
+
+mod study;
+
+use std::fmt::Write;
+use std::io::IsTerminal;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::time::Duration;
+
+use nisp::network::Architecture;
+use nisp::solve::driver::Flow;
+use nisp::{Optimizer, Settings, Width, recover};
+use nisp_equations::{Prepared, Request};
+
+use crate::args::{count, seconds, size};
+use crate::interrupt;
+use crate::score::Found;
+use study::{Data, Measure, Study, Variation, studies};
+
+/// What to compare, and how long.
+#[derive(clap::Args)]
+pub(crate) struct Options {
+    /// Studies, separated by commas [default: all].
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = study::names())]
+    studies: Vec<String>,
+    /// Samples of each study at most.
+    #[arg(long, value_name = "N", default_value_t = 3, value_parser = count)]
+    samples: usize,
+    /// Wall time of a run with local functions, or with a network over time.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds)]
+    budget: f64,
+    /// Wall time of a run that trains a network on a cloud, by Adam.
+    #[arg(long, value_name = "SECONDS", default_value_t = 60.0, value_parser = seconds)]
+    network_budget: f64,
+    /// Hidden units of a layer of such a network.
+    #[arg(long, value_name = "N", default_value_t = 64, value_parser = size)]
+    width: usize,
+    /// Threads [default: one per processor].
+    #[arg(long, value_name = "N", value_parser = count)]
+    threads: Option<usize>,
+    /// The repository, whose samples are read.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    repository: PathBuf,
+}
+
+/// Runs the studies and prints a Markdown table of each as soon as it is done.
+pub(crate) fn ablate(options: &Options) -> Result<ExitCode, String> {
+    interrupt::listen()?;
+    for study in studies() {
+        if options.studies.is_empty() || options.studies.iter().any(|name| name == study.name) {
+            crate::print(&table(&study, options)?)?;
+        }
+    }
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A study's table: a row for each variation, a column for each measure, and what the paper has.
+fn table(study: &Study, options: &Options) -> Result<String, String> {
+    let mut text = format!("### {}\n\n", study.title);
+    // Writing into a string cannot fail.
+    let _ = write!(text, "{}", study.about(options.budget, options.network_budget, options.width));
+    let _ = write!(text, "\n\n| |");
+    for measure in study.measures {
+        let _ = write!(text, " {} |", measure.title());
+    }
+    let _ = writeln!(text, " seconds | paper |\n|---|---|---|{}", "---|".repeat(study.measures.len()));
+    for variation in &study.variations {
+        let (means, seconds) = means(study, variation, options)?;
+        let _ = write!(text, "| {} |", variation.name);
+        for (measure, mean) in study.measures.iter().zip(means) {
+            let _ = write!(text, " {} |", mean.map_or_else(|| "-".into(), |mean| measure.shown(mean)));
+        }
+        let _ = writeln!(text, " {seconds:.1} | {} |", variation.paper);
+    }
+    text.push('\n');
+    Ok(text)
+}
+
+/// Means of the measures over those samples that have them, and of the wall times.
+fn means(study: &Study, variation: &Variation, options: &Options) -> Result<(Vec<Option<f64>>, f64), String> {
+    let samples = samples(study, variation, options)?;
+    let mut found = vec![Vec::new(); study.measures.len()];
+    let mut seconds = 0.0;
+    for (at, prepared) in samples.iter().enumerate() {
+        if interrupt::asked() {
+            return Err("interrupted".into());
+        }
+        if std::io::stderr().is_terminal() {
+            eprint!("\r{}: {}, sample {} of {}\x1b[K", study.name, variation.name, at + 1, samples.len());
+        }
+        let settings = settings(study, variation, prepared, options);
+        let go_on = &mut |_: nisp::Report<'_>| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
+        let mut solution = recover(&prepared.problem, &settings, go_on).map_err(|error| error.to_string())?;
+        seconds += solution.wall_s / samples.len() as f64;
+        let answer = Found::of(&mut solution, prepared);
+        for (values, measure) in found.iter_mut().zip(study.measures) {
+            values.extend(measure.of(&answer));
+        }
+    }
+    let mean = |values: &Vec<f64>| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
+    Ok((found.iter().map(mean).collect(), seconds))
+}
+
+/// Settings of a variation for a sample.
+fn settings(study: &Study, variation: &Variation, prepared: &Prepared, options: &Options) -> Settings {
+    let mut settings =
+        Settings { threads: options.threads.unwrap_or_else(crate::solve::processors), ..Settings::default() };
+    settings.budget = Some(Duration::from_secs_f64(options.budget));
+    settings.local = prepared.local;
+    if study.network {
+        settings.budget = Some(Duration::from_secs_f64(options.network_budget));
+        settings.optimizer = Optimizer::Adam;
+        settings.precision = Width::F32;
+        settings.architecture = Architecture::modified(options.width, 4);
+    }
+    (variation.change)(&mut settings);
+    settings
+}
+
+/// The samples of a study, bound as a variation wants them.
+fn samples(study: &Study, variation: &Variation, options: &Options) -> Result<Vec<Prepared>, String> {
+    let entry = crate::entry(study.equation)?;
+    let request = Request {
+        scene: variation.scene.map(Into::into),
+        cloud: variation.cloud,
+        network: study.network,
+        parameters: study.parameters.iter().map(|&(name, value)| (name.into(), value)).collect(),
+        ..Request::default()
+    };
+    let prepared = match &study.data {
+        Data::Example => entry.prepare(&request).map(|prepared| vec![prepared]),
+        Data::Copies { noise, seed } => {
+            let Some(series) = entry.series() else { return Err(format!("`{}` has no tables over time", entry.name)) };
+            series.copies(&entry, &request, &options.repository, *noise, *seed, options.samples)
+        }
+        Data::Samples { folder, names, truth } => {
+            let prepare = |name: &&str| {
+                let file = |ending: &str| options.repository.join(Path::new(folder)).join(format!("{name}{ending}"));
+                let own = Request { sample: Some(file(".toml")), truth: Some(file(truth)), ..request.clone() };
+                entry.prepare(&own)
+            };
+            names.iter().take(options.samples).map(prepare).collect()
+        }
+    };
+    prepared.map_err(|error| format!("{error}; the samples are the repository's: name its folder with --repository"))
+}
+
+impl Measure {
+    /// Head of its column.
+    fn title(self) -> String {
+        match self {
+            Self::Error(name, unit) => format!("mean error of {name} [{unit}]"),
+            Self::Overlap => "IoU".into(),
+            Self::Distance => "patch Chamfer [mm^2]".into(),
+            Self::Force => "error of the force [N]".into(),
+            Self::Learned(name, truth) => format!("error of {name} [%], true {truth}"),
+        }
+    }
+
+    fn shown(self, value: f64) -> String {
+        match self {
+            Self::Error(..) => format!("{value:.2e}"),
+            Self::Overlap | Self::Force => format!("{value:.3}"),
+            Self::Distance | Self::Learned(..) => format!("{value:.2}"),
+        }
+    }
+
+    /// Its value in an answer, if it has one.
+    fn of(self, found: &Found) -> Option<f64> {
+        let against = || found.contact.as_ref()?.against.as_ref();
+        match self {
+            Self::Error(name, _) => found.scores.iter().find(|score| score.name == name).map(|score| score.mean_abs),
+            Self::Overlap => against().map(|against| against.iou),
+            Self::Distance => against()?.patch_chamfer_mm2,
+            Self::Force => against().map(|against| against.force_error),
+            Self::Learned(name, truth) => {
+                let learned = found.learned.iter().find(|learned| learned.name == name);
+                learned.map(|learned| 100.0 * (learned.value / truth - 1.0).abs())
+            }
+        }
+    }
+}

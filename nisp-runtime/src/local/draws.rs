@@ -1,0 +1,123 @@
+//! Draws from the posterior of the coefficients.
+//!
+//! Where rows `r + J x` of unit variance have the normal matrix `H = J^T J`, a vector `J^T z` of standard normal `z` has
+//! covariance `H`, so that `H^-1 J^T z` has covariance `H^-1`: one right-hand side a draw, and no inverse.
+
+use faer::Mat;
+use rand::SeedableRng;
+use rand::rngs::StdRng;
+
+use super::block::Block;
+use crate::network::normal;
+
+/// Draws: a standard deviation is known to within `1 / sqrt(2 * 64)`, 9 %.
+const COUNT: usize = 64;
+
+/// Right-hand sides, summed up row by row beside the normal matrix.
+pub(super) struct Draws {
+    /// `[coefficient][draw]`
+    right: Vec<f64>,
+    /// `[learned scalar][draw]`
+    below: Vec<f64>,
+    random: StdRng,
+}
+
+impl Draws {
+    /// Of so many coefficients and learned scalars. The same every time.
+    pub(super) fn new(len: usize, learned: usize) -> Self {
+        Self { right: vec![0.0; len * COUNT], below: vec![0.0; learned * COUNT], random: StdRng::seed_from_u64(0) }
+    }
+
+    fn numbers(&mut self) -> [f64; COUNT] {
+        std::array::from_fn(|_| normal(&mut self.random))
+    }
+
+    /// Adds a row with these slopes.
+    pub(super) fn add(&mut self, slopes: &[(usize, f64)]) {
+        let z = self.numbers();
+        slopes.iter().for_each(|&(at, slope)| add(&mut self.right, at, slope, &z));
+    }
+
+    /// Adds a row of a block.
+    pub(super) fn add_row(&mut self, block: &Block, row: usize) {
+        let z = self.numbers();
+        let width = block.dofs.len();
+        for (at, dof) in block.kept() {
+            add(&mut self.right, dof as usize, block.slopes[row * width + at], &z);
+        }
+        let learned = self.below.len() / COUNT;
+        for at in 0..learned {
+            add(&mut self.below, at, block.by_learned[row * learned + at], &z);
+        }
+    }
+
+    /// Adds a row that sees a learned scalar only.
+    pub(super) fn add_learned(&mut self, at: usize, slope: f64) {
+        let z = self.numbers();
+        add(&mut self.below, at, slope, &z);
+    }
+
+    pub(super) fn matrix(&self) -> Mat<f64> {
+        Mat::from_fn(self.right.len() / COUNT, COUNT, |at, draw| self.right[at * COUNT + draw])
+    }
+
+    /// Right-hand side of the learned scalars.
+    pub(super) fn below(&self, draw: usize) -> Vec<f64> {
+        self.below.iter().skip(draw).step_by(COUNT).copied().collect()
+    }
+}
+
+fn add(sums: &mut [f64], at: usize, slope: f64, z: &[f64; COUNT]) {
+    if slope != 0.0 {
+        sums[at * COUNT..][..COUNT].iter_mut().zip(z).for_each(|(sum, z)| *sum += slope * z);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::local::normal::Normal;
+
+    /// Two coefficients with precisions 4 and 9, tied to each other by 2: the inverse of [[6, -2], [-2, 11]] is
+    /// [[11, 2], [2, 6]] / 62.
+    #[test]
+    fn draws_spread_as_the_inverse_says() {
+        let mut normal = Normal::new(2, 0, &[vec![0, 1]]).unwrap();
+        let mut products = [[0.0; 2]; 2];
+        let rounds = 40;
+        let mut draws = Draws::new(2, 0);
+        for _ in 0..rounds {
+            normal.clear();
+            draws.right.fill(0.0);
+            normal.draws = Some(draws);
+            normal.add_stiffness(0, 4.0);
+            normal.add_stiffness(1, 9.0);
+            normal.add_difference([0, 1], 2.0, 0.0);
+            draws = normal.draws.take().unwrap();
+            for x in normal.factor().unwrap().deviations(&draws).unwrap() {
+                (0..4).for_each(|i| products[i / 2][i % 2] += x[i / 2] * x[i % 2] / f64::from(rounds * COUNT as i32));
+            }
+        }
+        // Variances of 2560 draws are known to within three per cent.
+        for (found, exact) in products.as_flattened().iter().zip([11.0, 2.0, 2.0, 6.0].map(|x: f64| x / 62.0)) {
+            assert!((found - exact).abs() < 0.1 * 11.0 / 62.0, "{products:?}");
+        }
+    }
+
+    /// A row that all coefficients share goes by way of the border: precision 1 each and 3 of their sum's square gives the
+    /// inverse of [[4, 3], [3, 4]], [[4, -3], [-3, 4]] / 7.
+    #[test]
+    fn rows_of_all_coefficients_count() {
+        let mut normal = Normal::new(2, 0, &[vec![0], vec![1]]).unwrap();
+        normal.draws = Some(Draws::new(2, 0));
+        normal.add_stiffness(0, 1.0);
+        normal.add_stiffness(1, 1.0);
+        normal.add_dense(&[1.0, 1.0], 0.0, 1.0 / 3f64.sqrt());
+        let draws = normal.draws.take().unwrap();
+        let spread = normal.factor().unwrap().deviations(&draws).unwrap();
+        let mean = |of: &dyn Fn(&[f64]) -> f64| spread.iter().map(|x| of(x)).sum::<f64>() / COUNT as f64;
+        // The sum has variance 2 / 7, the difference 2; 64 draws know them to within a sixth.
+        let (sum, difference) = (mean(&|x| (x[0] + x[1]).powi(2)), mean(&|x| (x[0] - x[1]).powi(2)));
+        assert!((sum * 3.5 - 1.0).abs() < 0.5 && (difference / 2.0 - 1.0).abs() < 0.5, "{sum} {difference}");
+    }
+}
