@@ -3,7 +3,7 @@
 //! A network is one smooth function of all its parameters: at its best for a state that is smooth, and slow to learn an
 //! edge. A contact patch is nothing but edges. Here every head is a sum of B-splines on a lattice, so that a row depends on
 //! a few coefficients, the normal equations are sparse and a Gauss-Newton step costs a sparse factorisation. Equations,
-//! units and derivatives are those of the same compiled programs; they are tested with the lattice's hat functions (see
+//! units and derivatives are those of the same compiled programs; they are tested with splines on the lattice (see
 //! `group`). Sources may have a prior that knows patches (see [`Patches`]).
 //!
 //! Meant for two or three coordinates and a few fields; scenes over time are in better hands with a network.
@@ -14,6 +14,7 @@ mod draws;
 mod group;
 mod heads;
 mod lattice;
+mod meshes;
 mod normal;
 mod place;
 mod prior;

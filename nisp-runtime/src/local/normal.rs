@@ -88,7 +88,7 @@ impl Normal {
     /// Adds the rows of blocks, in their order.
     pub(super) fn add_all(&mut self, blocks: &[Block]) {
         // So many at a time that their products stay in cache.
-        for blocks in blocks.chunks(64) {
+        for blocks in blocks.chunks(8) {
             let products: Vec<Products> = blocks.par_iter().map(Products::of).collect();
             blocks.iter().zip(&products).for_each(|(block, products)| self.add_products(block, products));
         }
