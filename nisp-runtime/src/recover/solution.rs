@@ -188,8 +188,14 @@ impl Solution {
     /// they say how well the source is known within them, not whether a patch may be elsewhere.
     pub fn evaluate_with_errors(&mut self, points: &[f64]) -> Vec<Estimate> {
         if let Carrier::Local(local) = &self.carrier {
-            let points = self.bound.inward(points);
-            return self.estimates(|head| (local.evaluate(head, &points), local.spread(head, &points)));
+            let inward = self.bound.inward(points);
+            let mut estimates = self.evaluate(points);
+            for (head, estimate) in estimates.iter_mut().enumerate() {
+                let outward = self.bound.system.outward(&estimate.unit);
+                let spread = local.spread(head, &inward);
+                estimate.deviations = spread.map(|spread| spread.into_iter().map(|x| x * outward).collect());
+            }
+            return estimates;
         }
         let Some((rows, posterior)) = self.posterior(points) else { return self.evaluate(points) };
         let count = rows.len() / self.scene().heads.len().max(1);
