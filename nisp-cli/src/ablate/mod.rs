@@ -62,7 +62,7 @@ pub(crate) fn ablate(options: &Options) -> Result<ExitCode, String> {
 fn table(study: &Study, options: &Options) -> Result<String, String> {
     let mut text = format!("### {}\n\n", study.title);
     // Writing into a string cannot fail.
-    let _ = write!(text, "{}", study.about(options.budget, options.network_budget, options.width));
+    let _ = write!(text, "{}", study.about(options.samples, options.budget, options.network_budget, options.width));
     let _ = write!(text, "\n\n| |");
     for measure in study.measures {
         let _ = write!(text, " {} |", measure.title());

@@ -52,13 +52,13 @@ pub(super) struct Variation {
 
 impl Study {
     /// Sizes and budgets, for below the title.
-    pub(super) fn about(&self, budget: f64, network_budget: f64, width: usize) -> String {
+    pub(super) fn about(&self, samples: usize, budget: f64, network_budget: f64, width: usize) -> String {
         let runs = match &self.data {
             Data::Example => "the program's example".into(),
             Data::Copies { noise, seed } => {
-                format!("runs of `data/{}`, noise {noise}, seeds from {seed}", self.equation)
+                format!("{samples} runs of `data/{}`, noise {noise}, seeds from {seed}", self.equation)
             }
-            Data::Samples { names, .. } => format!("`{}`", names.join("`, `")),
+            Data::Samples { names, .. } => format!("`{}`", names[..samples.min(names.len())].join("`, `")),
         };
         match self.network {
             true => format!("{runs}; network of 4 x {width}, Adam in f32, {network_budget} s a run."),
