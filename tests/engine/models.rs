@@ -424,6 +424,17 @@ impl Model for Held {
 }
 
 macro_rules! each_model {
+    ($check:ident!) => {
+        $check!(&crate::models::Cart);
+        $check!(&crate::models::Poisson);
+        $check!(&crate::models::Karman);
+        $check!(&crate::models::Sponge);
+        $check!(&crate::models::Triharmonic);
+        $check!(&crate::models::Heat);
+        $check!(&crate::models::Shape);
+        $check!(&crate::models::Ring);
+        $check!(&crate::models::Held);
+    };
     ($check:ident) => {
         $check(&crate::models::Cart);
         $check(&crate::models::Poisson);

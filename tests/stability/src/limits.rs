@@ -1,0 +1,236 @@
+//! Where problems become singular: bodies that hardly change their volume, plates without thickness, long times. Each error is
+//! divided by that of the benign case.
+
+use std::f64::consts::PI;
+
+use nisp::local::Local;
+use nisp::network::Architecture;
+use nisp::solve::driver::Flow;
+use nisp::{Optimizer, Points, Problem, Settings, Solution, recover, scene};
+use nisp_equations::{Request, catalogue};
+
+use crate::row::{Extent, Row};
+
+nisp::pde! {
+    /// Plane strain in displacements alone.
+    mod compact {
+        coordinates: x [m], y [m];
+        fields: u: vector [m];
+        parameters: E [Pa], nu;
+        let mu = E / (2 * (1 + nu));
+        let lambda = E * nu / ((1 + nu) * (1 - 2 * nu));
+        let eps = sym(grad(u));
+        let sigma = lambda * tr(eps) * I + 2 * mu * eps;
+        on inside { columns: b: vector [N/m^3]; balance: div(sigma) + b == 0; }
+        on rim { columns: held: vector [m]; fixed: u == held; }
+        scene solve { }
+    }
+}
+
+nisp::pde! {
+    /// Plane strain with the pressure as a field of its own.
+    mod mixed {
+        coordinates: x [m], y [m];
+        fields: u: vector [m], p [Pa];
+        parameters: E [Pa], nu;
+        let mu = E / (2 * (1 + nu));
+        let sigma = 2 * mu * sym(grad(u)) - p * I;
+        on inside {
+            columns: b: vector [N/m^3];
+            balance: div(sigma) + b == 0;
+            volume: div(u) + p * (1 + nu) * (1 - 2 * nu) / (E * nu) == 0;
+        }
+        on rim { columns: held: vector [m]; fixed: u == held; }
+        scene solve { }
+    }
+}
+
+nisp::pde! {
+    /// Something that follows a slow cosine.
+    mod relaxation {
+        coordinates: t [s];
+        fields: u [V];
+        parameters: rate [1/s], slow [1/s], first [V], size [V];
+        on flow { law: d(u, t) == rate * (size * cos(slow * t) - u); }
+        on start { known: u == first; }
+        scene solve { }
+    }
+}
+
+fn solve(problem: &Problem, iterations: u64, local: Option<Local>) -> Option<Solution> {
+    let settings = Settings {
+        optimizer: if local.is_some() { Optimizer::Auto } else { Optimizer::Broyden },
+        architecture: Architecture { width: 16, ..Settings::default().architecture },
+        iterations: Some(iterations),
+        budget: None,
+        local,
+        ..Settings::default()
+    };
+    recover(problem, &settings, &mut |_| Flow::Continue).ok()
+}
+
+/// Mean distance of heads from the truth, over its mean size; NaN without a solution.
+fn error(solution: Option<Solution>, at: &[f64], truth: &[(&str, Vec<f64>)]) -> f64 {
+    let Some(solution) = solution else { return f64::NAN };
+    let estimates = solution.evaluate(at);
+    let (mut off, mut size) = (0.0, 0.0);
+    for (name, truth) in truth {
+        let Some(found) = estimates.iter().find(|estimate| estimate.name == *name) else { return f64::NAN };
+        off += found.values.iter().zip(truth).map(|(a, b)| (a - b).abs()).sum::<f64>();
+        size += truth.iter().map(|x| x.abs()).sum::<f64>();
+    }
+    off / size
+}
+
+/// A square of a metre whose divergence-free displacement is known for every Poisson's ratio.
+fn displacement(x: f64, y: f64) -> [f64; 2] {
+    [1e-3 * (PI * x).sin() * (PI * y).cos(), -1e-3 * (PI * x).cos() * (PI * y).sin()]
+}
+
+/// Midpoints of a grid, flat.
+fn grid(side: usize) -> Vec<f64> {
+    let at = move |i: usize| (i as f64 + 0.5) / side as f64;
+    (0..side).flat_map(|i| (0..side).flat_map(move |j| [at(i), at(j)])).collect()
+}
+
+/// One component of the displacement at flat points, times a factor.
+fn component(points: &[f64], axis: usize, factor: f64) -> Vec<f64> {
+    points.chunks_exact(2).map(|p| factor * displacement(p[0], p[1])[axis]).collect()
+}
+
+fn elastic_error(scene: nisp::SceneRef, nu: f64, side: usize, iterations: u64, local: Option<Local>) -> f64 {
+    const E: f64 = 1e5;
+    let mut problem = Problem::new(scene);
+    let inside = grid(side);
+    let rim: Vec<f64> = (0..4 * side)
+        .flat_map(|i| {
+            let s = (i % side) as f64 / side as f64;
+            [[s, 0.0], [1.0, s], [1.0 - s, 1.0], [0.0, 1.0 - s]][i / side]
+        })
+        .collect();
+    // -div sigma = -mu laplacian(u) = 2 pi^2 mu u
+    let load = 2.0 * PI * PI * E / (2.0 * (1.0 + nu));
+    let weights = vec![1.0 / (side * side) as f64; side * side];
+    let columns = |points: &[f64], factor: f64| vec![component(points, 0, factor), component(points, 1, factor)];
+    let points = Points { coordinates: inside.clone(), weights, ..Points::default() };
+    let bound = problem
+        .set_parameter("E", E)
+        .and_then(|()| problem.set_parameter("nu", nu))
+        .and_then(|()| problem.set_group("inside", points, columns(&inside, load)))
+        .and_then(|()| problem.set_group("rim", rim.clone().into(), columns(&rim, 1.0)));
+    bound.expect("a bound problem");
+    let at = grid(17);
+    let truth = [("u_x", component(&at, 0, 1.0)), ("u_y", component(&at, 1, 1.0))];
+    error(solve(&problem, iterations, local), &at, &truth)
+}
+
+fn plate_error(thickness_mm: f64, iterations: u64) -> f64 {
+    let entry = catalogue().into_iter().find(|entry| entry.name == "plate").expect("an entry");
+    let request = Request { parameters: vec![("t".into(), thickness_mm)], ..Request::default() };
+    let prepared = entry.prepare(&request).expect("the repository's example");
+    // Its defaults, in SI units; the deflection comes in millimetres.
+    let (young, nu, pressure, radius) = (1e9, 0.5, 2757.0, 0.04_f64);
+    let stiffness = young * (1e-3 * thickness_mm).powi(3) / (12.0 * (1.0 - nu * nu));
+    let deflection =
+        |p: &[f64]| 1e3 * pressure * (radius * radius - p[0] * p[0] - p[1] * p[1]).powi(2) / (64.0 * stiffness);
+    let truth = [("w", prepared.points.chunks_exact(2).map(deflection).collect())];
+    error(solve(&prepared.problem, iterations, None), &prepared.points, &truth)
+}
+
+fn relaxation_error(rate: f64, end: f64, iterations: u64) -> f64 {
+    let (slow, first) = (6.0 / end, 0.2);
+    let uniform = (0..=100).map(|i| end * f64::from(i) / 100.0);
+    let logarithmic = (0..100).map(|i| 1e-2 / rate * (rate * end / 1e-2).powf(f64::from(i) / 100.0));
+    let times: Vec<f64> = uniform.chain(logarithmic).collect();
+    let mut problem = Problem::new(scene::<relaxation::solve::Scene>());
+    let parameters = [("rate", rate), ("slow", slow), ("first", first), ("size", 1.0)];
+    for (name, value) in parameters {
+        problem.set_parameter(name, value).expect("a parameter");
+    }
+    let bound = problem
+        .set_group("flow", times.clone().into(), Vec::new())
+        .and_then(|()| problem.set_group("start", vec![0.0].into(), Vec::new()));
+    bound.expect("a bound problem");
+    let share = rate / (rate * rate + slow * slow);
+    let exact = |t: &f64| {
+        share * (rate * (slow * t).cos() + slow * (slow * t).sin()) + (first - share * rate) * (-rate * t).exp()
+    };
+    let truth = [("u", times.iter().map(exact).collect())];
+    error(solve(&problem, iterations, None), &times, &truth)
+}
+
+/// A row for each case but the first, which is the benign one: its error over that of the benign case.
+fn series(what: &str, name: &str, cases: &[f64], of: &dyn Fn(f64) -> f64, missing: (f64, &'static str)) -> Vec<Row> {
+    let benign = of(cases[0]);
+    let row = |&case: &f64| {
+        let worst = of(case);
+        let samples = format!("{worst:.1e} against {benign:.1e} at {name} = {}", cases[0]);
+        Row::new(format!("{what}, {name} = {case}: error over the benign one's"), samples, worst / benign, 2.0)
+            .missing(missing.0, missing.1)
+    };
+    cases[1..].iter().map(row).collect()
+}
+
+const FULL_NU: [f64; 5] = [0.1, 0.45, 0.499, 0.4999, 0.49999];
+
+pub(crate) fn rows(extent: Extent) -> Vec<Row> {
+    let (side, steps) = extent.pick((8, 150), (14, 2000));
+    let nus: &[f64] = extent.pick(&[0.1, 0.4999], &FULL_NU);
+    let local = |cells| Some(Local { cells, degree: 3, finer: 1, source_dimensions: 2, patches: None });
+    let (displacements, pressure) = (scene::<compact::solve::Scene>, scene::<mixed::solve::Scene>);
+    let mut rows = series(
+        "elasticity with a pressure field, network",
+        "nu",
+        nus,
+        &|nu| elastic_error(pressure(), nu, side, steps, None),
+        (20.0, "runs of a fixed number of steps end at errors that scatter"),
+    );
+    let locking =
+        "in displacements alone the volume is a penalty that grows with 1/(1 - 2 nu); declare a pressure field";
+    rows.extend(series(
+        "elasticity in displacements, network",
+        "nu",
+        nus,
+        &|nu| elastic_error(displacements(), nu, side, steps, None),
+        (1e6, locking),
+    ));
+    let cells = extent.pick(8, 16);
+    rows.extend(series(
+        "elasticity with a pressure field, local functions",
+        "nu",
+        nus,
+        &|nu| elastic_error(pressure(), nu, 3 * cells, 30, local(cells)),
+        (1e6, "displacement and pressure have splines of one degree, and equations a tolerance of a hundredth of their size"),
+    ));
+    rows.extend(series(
+        "elasticity in displacements, local functions",
+        "nu",
+        nus,
+        &|nu| elastic_error(displacements(), nu, 3 * cells, 30, local(cells)),
+        (1e6, "equations have a tolerance of a hundredth of their size, which grows with 1/(1 - 2 nu)"),
+    ));
+    let thin: &[f64] = extent.pick(&[0.3, 3e-5], &[0.3, 0.03, 3e-3, 3e-5, 3e-7]);
+    let plate_steps = extent.pick(25, 600);
+    let held = (2.0, "");
+    rows.extend(series("plate, network", "t in mm", thin, &|t| plate_error(t, plate_steps), held));
+    let ends: &[f64] = extent.pick(&[1.0, 1e6], &[1.0, 1e3, 1e6]);
+    let time_steps = extent.pick(60, 1500);
+    rows.extend(series(
+        "relaxation with rate 3/T over [0, T]",
+        "T in s",
+        ends,
+        &|end| relaxation_error(3.0 / end, end, time_steps),
+        held,
+    ));
+    if extent == Extent::Full {
+        let layer = "a layer of a second in so long a record takes more than a small network has";
+        rows.extend(series(
+            "relaxation with rate 1/s over [0, T]",
+            "T in s",
+            &[10.0, 1e3, 1e6],
+            &|end| relaxation_error(1.0, end, time_steps),
+            (1e6, layer),
+        ));
+    }
+    rows
+}
