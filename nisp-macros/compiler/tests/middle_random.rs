@@ -4,11 +4,8 @@ mod middle_support;
 
 use std::collections::BTreeMap;
 
-use middle_support::jet::Jet;
-use middle_support::{Numbers, dense};
-use nisp_compiler::channels::{self, ChannelSet, Operator};
-use nisp_compiler::plan::rule_programs;
-use nisp_compiler::program::{Program, Slot};
+use middle_support::{Numbers, dense, network};
+use nisp_compiler::channels::{ChannelSet, Operator};
 use nisp_compiler::rational::{Rational, ratio};
 use proptest::prelude::*;
 
@@ -56,50 +53,6 @@ fn operators() -> impl Strategy<Value = Vec<Operator>> {
     })
 }
 
-/// Channels of the two factors of a product, or of the argument of a composition.
-fn run(program: &Program, phi: &[f64], left: &[f64], right: &[f64]) -> Vec<f64> {
-    program.evaluate(|slot, index| match slot {
-        Slot::Phi => phi[index],
-        Slot::Argument | Slot::Left | Slot::Weight => left[index],
-        Slot::Right => right[index],
-        other => panic!("unexpected {other:?}"),
-    })
-}
-
-/// The largest size that cancellation can leave its rounding on: the same computation with absolute values.
-fn absolute(jet: &Jet) -> Jet {
-    let mut result = jet.clone();
-    result.coefficients.values_mut().for_each(|c| *c = c.abs());
-    result
-}
-
-fn check(set: &ChannelSet, seed: u64) -> Result<(), TestCaseError> {
-    let (mut numbers, degree) = (Numbers(seed), set.order());
-    let all = vec![true; set.len()];
-    let program = |rule: channels::Rule| rule_programs(rule, &all).unwrap().0;
-    let [compose, affine, product] =
-        [channels::compose(set), channels::affine(set), channels::product(set)].map(|rule| program(rule.unwrap()));
-    let phi = numbers.take(degree as usize + 1);
-    // Two affine units through the activation, multiplied, mixed and through the activation again.
-    let weights: Vec<Vec<f64>> = (0..2).map(|_| numbers.take(set.coordinates)).collect();
-    let unit = |w: &Vec<f64>| (run(&affine, &phi, w, &[]), Jet::affine(w, 0.3, degree).compose(&phi));
-    let ((a, a_jet), (b, b_jet)) = (unit(&weights[0]), unit(&weights[1]));
-    let (gate, gate_jet) = (run(&product, &phi, &a, &b), a_jet.times(&b_jet));
-    let mixed: Vec<f64> = gate.iter().zip(&a).map(|(g, a)| g - 0.5 * a).collect();
-    let mixed_jet = gate_jet.plus(&a_jet.scale(-0.5));
-    let (out, out_jet) = (run(&compose, &phi, &mixed, &[]), mixed_jet.compose(&phi));
-    let bounds = absolute(&absolute(&gate_jet).plus(&absolute(&a_jet)))
-        .compose(&phi.iter().map(|p| p.abs()).collect::<Vec<_>>());
-    for (operator, got) in set.basis.iter().zip(out) {
-        let positive =
-            Operator::from_terms(operator.terms().map(|(i, c)| (i.clone(), if *c < ratio(0, 1) { -c } else { *c })));
-        let scale = bounds.apply(&positive.unwrap()).max(1e-6);
-        let expected = out_jet.apply(operator);
-        prop_assert!((got - expected).abs() <= 1e-12 * scale, "{operator:?}: {got} instead of {expected} ({scale})");
-    }
-    Ok(())
-}
-
 proptest! {
     #![proptest_config(ProptestConfig { cases: 64, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -116,7 +69,7 @@ proptest! {
         let expected: Vec<_> = (0..set.len()).map(|k| Some(vec![(k, ratio(1, 1))])).collect();
         prop_assert_eq!(alone, expected);
         if set.len() <= LARGE {
-            check(&set, seed)?;
+            network::check(&set, seed)?;
         }
     }
 }

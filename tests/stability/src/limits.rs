@@ -57,12 +57,13 @@ nisp::pde! {
     }
 }
 
-fn solve(problem: &Problem, iterations: u64, local: Option<Local>) -> Option<Solution> {
+fn solve(problem: &Problem, iterations: u64, seed: u64, local: Option<Local>) -> Option<Solution> {
     let settings = Settings {
         optimizer: if local.is_some() { Optimizer::Auto } else { Optimizer::Broyden },
         architecture: Architecture { width: 16, ..Settings::default().architecture },
         iterations: Some(iterations),
         budget: None,
+        seed,
         local,
         ..Settings::default()
     };
@@ -121,7 +122,10 @@ fn elastic_error(scene: nisp::SceneRef, nu: f64, side: usize, iterations: u64, l
     bound.expect("a bound problem");
     let at = grid(17);
     let truth = [("u_x", component(&at, 0, 1.0)), ("u_y", component(&at, 1, 1.0))];
-    error(solve(&problem, iterations, local), &at, &truth)
+    // Runs of a fixed number of steps end at errors that scatter.
+    let seeds = if local.is_some() { 1 } else { SEEDS };
+    let errors = (0..seeds).map(|seed| error(solve(&problem, iterations, seed, local), &at, &truth));
+    errors.sum::<f64>() / seeds as f64
 }
 
 fn plate_error(thickness_mm: f64, iterations: u64) -> f64 {
@@ -134,7 +138,7 @@ fn plate_error(thickness_mm: f64, iterations: u64) -> f64 {
     let deflection =
         |p: &[f64]| 1e3 * pressure * (radius * radius - p[0] * p[0] - p[1] * p[1]).powi(2) / (64.0 * stiffness);
     let truth = [("w", prepared.points.chunks_exact(2).map(deflection).collect())];
-    error(solve(&prepared.problem, iterations, None), &prepared.points, &truth)
+    error(solve(&prepared.problem, iterations, 0, None), &prepared.points, &truth)
 }
 
 fn relaxation_error(rate: f64, end: f64, iterations: u64) -> f64 {
@@ -156,7 +160,7 @@ fn relaxation_error(rate: f64, end: f64, iterations: u64) -> f64 {
         share * (rate * (slow * t).cos() + slow * (slow * t).sin()) + (first - share * rate) * (-rate * t).exp()
     };
     let truth = [("u", times.iter().map(exact).collect())];
-    error(solve(&problem, iterations, None), &times, &truth)
+    error(solve(&problem, iterations, 0, None), &times, &truth)
 }
 
 /// A row for each case but the first, which is the benign one: its error over that of the benign case.
@@ -171,6 +175,9 @@ fn series(what: &str, name: &str, cases: &[f64], of: &dyn Fn(f64) -> f64, missin
     cases[1..].iter().map(row).collect()
 }
 
+/// Initial weights that errors of networks are averaged over.
+const SEEDS: u64 = 3;
+
 const FULL_NU: [f64; 5] = [0.1, 0.45, 0.499, 0.4999, 0.49999];
 
 pub(crate) fn rows(extent: Extent) -> Vec<Row> {
@@ -183,7 +190,7 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
         "nu",
         nus,
         &|nu| elastic_error(pressure(), nu, side, steps, None),
-        (20.0, "runs of a fixed number of steps end at errors that scatter"),
+        (20.0, "the pressure is a third field to be learned in as many steps"),
     );
     let locking =
         "in displacements alone the volume is a penalty that grows with 1/(1 - 2 nu); declare a pressure field";

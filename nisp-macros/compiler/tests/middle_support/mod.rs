@@ -4,6 +4,7 @@
 pub(crate) mod check;
 pub(crate) mod jet;
 pub(crate) mod models;
+pub(crate) mod network;
 pub(crate) mod oracle;
 
 use nisp_compiler::channels::{ChannelSet, Operator};
