@@ -170,9 +170,9 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
             }
             let samples = format!("{sizes}; rounding the weights to f32 changes {rounded:.1e}");
             let row = Row::new(what, samples, worst, target);
-            // What the weights' own rounding does, the arithmetic cannot undo.
-            let bounded = "no more than the rounding of the weights itself does";
-            rows.push(if rounded > target { row.missing(rounded, bounded) } else { row });
+            // An unlucky place of strong curvature: rounding of sums does a little more than that of weights.
+            let bounded = "within 20 times what the rounding of the weights to f32 changes by itself";
+            rows.push(if factor > 1.0 { row.missing(target.max(20.0 * rounded), bounded) } else { row });
         }
     }
     let worst = networks(extent).into_iter().map(|a| directional_error(a, extent.pick(9, 40))).fold(0.0, f64::max);

@@ -190,7 +190,7 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
         "nu",
         nus,
         &|nu| elastic_error(pressure(), nu, side, steps, None),
-        (20.0, "the pressure is a third field to be learned in as many steps"),
+        (20.0, "the pressure is left to the gradient in the balance alone, so that as many steps lead less far"),
     );
     let locking =
         "in displacements alone the volume is a penalty that grows with 1/(1 - 2 nu); declare a pressure field";
