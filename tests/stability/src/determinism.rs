@@ -3,7 +3,7 @@
 use nisp::network::Architecture;
 use nisp::simd::Isa;
 use nisp::solve::driver::Flow;
-use nisp::{Optimizer, Precision, Problem, Settings, recover, resume};
+use nisp::{Optimizer, Precision, Problem, Settings, Width, recover, resume};
 use nisp_equations::{Request, catalogue};
 
 use crate::models::each_model;
@@ -57,6 +57,7 @@ fn by_stopping(optimizer: Optimizer, steps: u64) -> usize {
     let problem = entry.prepare(&Request::default()).expect("the repository's example").problem;
     let settings = |iterations, threads| Settings {
         optimizer,
+        precision: Width::F64,
         architecture: Architecture { width: 6, ..Settings::default().architecture },
         budget: None,
         iterations: Some(iterations),

@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nisp::local::Local;
 use nisp::network::Architecture;
 use nisp::solve::driver::Flow;
-use nisp::{Optimizer, Points, Problem, Settings, Solution, recover, scene};
+use nisp::{Optimizer, Points, Problem, Settings, Solution, Width, recover, scene};
 use nisp_equations::{Request, catalogue};
 
 use crate::row::{Extent, Row};
@@ -60,6 +60,7 @@ nisp::pde! {
 fn solve(problem: &Problem, iterations: u64, seed: u64, local: Option<Local>) -> Option<Solution> {
     let settings = Settings {
         optimizer: if local.is_some() { Optimizer::Auto } else { Optimizer::Broyden },
+        precision: Width::F64,
         architecture: Architecture { width: 16, ..Settings::default().architecture },
         iterations: Some(iterations),
         budget: None,
