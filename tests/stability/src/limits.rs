@@ -184,7 +184,8 @@ const FULL_NU: [f64; 5] = [0.1, 0.45, 0.499, 0.4999, 0.49999];
 pub(crate) fn rows(extent: Extent) -> Vec<Row> {
     let (side, steps) = extent.pick((8, 150), (14, 2000));
     let nus: &[f64] = extent.pick(&[0.1, 0.4999], &FULL_NU);
-    let local = |cells| Some(Local { cells, degree: 3, finer: 1, source_dimensions: 2, patches: None });
+    let local =
+        |cells| Some(Local { cells, coarser: 3, degree: 3, tests: 1, finer: 1, source_dimensions: 2, patches: None });
     let (displacements, pressure) = (scene::<compact::solve::Scene>, scene::<mixed::solve::Scene>);
     let mut rows = series(
         "elasticity with a pressure field, network",
