@@ -18,6 +18,7 @@ mod meshes;
 mod normal;
 mod place;
 mod prior;
+mod refuse;
 mod solver;
 mod surface;
 

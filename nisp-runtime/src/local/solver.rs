@@ -7,16 +7,17 @@ use super::block::Block;
 use super::draws::Draws;
 use super::group::{Group, Sites};
 use super::heads::Heads;
-use super::lattice::{Lattice, MOST_COORDINATES};
+use super::lattice::Lattice;
 use super::meshes::{base, lattice, together};
 use super::normal::{Factor, Normal};
 use super::place::{Place, State};
 use super::prior::Sparse;
+use super::refuse::refuse_what_networks_do;
 use super::surface::{Feet, Surface};
 use super::{Local, LocalError, Progress, Stage};
 use crate::engine::Learned;
 use crate::problem::Bound;
-use crate::schema::{self, TermKind};
+use crate::schema::TermKind;
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::method::FAULTS_IN_A_ROW;
@@ -473,37 +474,6 @@ fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, no
     let sign = heads.bound[head].map_or(1.0, |(sign, _)| sign);
     let level = prior.level * bound.system.inward(&declared.unit) / heads.scale[head] * sign;
     Some(Sparse { heads, head, prior, level, finer: settings.finer, dimensions: settings.source_dimensions, noise })
-}
-
-/// Splines of a higher degree than this are a slip.
-const HIGHEST_DEGREE: usize = 8;
-
-/// What only networks do must not be left out quietly.
-fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(), LocalError> {
-    let inputs = schema.coordinates.len();
-    let terms = || schema.groups.iter().flat_map(|group| group.terms);
-    let one_sided = |head: &schema::Head| head.lower.is_some() != head.upper.is_some();
-    let derived = |jet: &schema::Jet| schema.heads[jet.head].transformed && jet.degree.iter().any(|&n| n > 0);
-    let cloud = |term: &schema::Term| matches!(term.kind, TermKind::Chamfer { .. });
-    let refused = [
-        (inputs > MOST_COORDINATES, "more than four coordinates"),
-        (schema.groups.iter().any(|group| group.paired), "paired points"),
-        (
-            schema.heads.iter().any(|h| h.hard || (h.transformed && !one_sided(h))),
-            "heads between two bounds or with hard conditions",
-        ),
-        (schema.groups.iter().flat_map(|g| g.jets).any(derived), "derivatives of bounded heads"),
-        (terms().any(|t| t.kind == TermKind::Observation && t.within.is_none()), "measurements without `within`"),
-        (terms().any(|t| t.kind == TermKind::Chamfer { symmetric: true, plane: false }), "symmetric Chamfer distances"),
-        (terms().any(|t| !cloud(t) && t.loss != schema::Loss::Square), "robust losses of equations"),
-        (terms().any(|t| cloud(t) && (t.rows != 3 || !(2..=3).contains(&inputs))), "clouds that are not in space"),
-        (settings.cells <= settings.tests || settings.finer == 0, "lattices of fewer cells than a test is spread over"),
-        (settings.degree > HIGHEST_DEGREE, "splines of such a degree"),
-    ];
-    match refused.into_iter().find(|(is_so, _)| *is_so) {
-        Some((_, what)) => Err(LocalError::Unsupported(what)),
-        None => Ok(()),
-    }
 }
 
 /// Largest change of a learned scalar's parameter.

@@ -1,0 +1,36 @@
+//! What local functions cannot do is refused before anything is computed.
+
+use super::lattice::MOST_COORDINATES;
+use super::{Local, LocalError};
+use crate::schema::{self, TermKind};
+
+/// Splines of a higher degree than this are a slip.
+const HIGHEST_DEGREE: usize = 8;
+
+/// What only networks do must not be left out quietly.
+pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(), LocalError> {
+    let inputs = schema.coordinates.len();
+    let terms = || schema.groups.iter().flat_map(|group| group.terms);
+    let one_sided = |head: &schema::Head| head.lower.is_some() != head.upper.is_some();
+    let derived = |jet: &schema::Jet| schema.heads[jet.head].transformed && jet.degree.iter().any(|&n| n > 0);
+    let cloud = |term: &schema::Term| matches!(term.kind, TermKind::Chamfer { .. });
+    let refused = [
+        (inputs > MOST_COORDINATES, "more than four coordinates"),
+        (schema.groups.iter().any(|group| group.paired), "paired points"),
+        (
+            schema.heads.iter().any(|h| h.hard || (h.transformed && !one_sided(h))),
+            "heads between two bounds or with hard conditions",
+        ),
+        (schema.groups.iter().flat_map(|g| g.jets).any(derived), "derivatives of bounded heads"),
+        (terms().any(|t| t.kind == TermKind::Observation && t.within.is_none()), "measurements without `within`"),
+        (terms().any(|t| t.kind == TermKind::Chamfer { symmetric: true, plane: false }), "symmetric Chamfer distances"),
+        (terms().any(|t| !cloud(t) && t.loss != schema::Loss::Square), "robust losses of equations"),
+        (terms().any(|t| cloud(t) && (t.rows != 3 || !(2..=3).contains(&inputs))), "clouds that are not in space"),
+        (settings.cells <= settings.tests || settings.finer == 0, "lattices of fewer cells than a test is spread over"),
+        (settings.degree > HIGHEST_DEGREE, "splines of such a degree"),
+    ];
+    match refused.into_iter().find(|(is_so, _)| *is_so) {
+        Some((_, what)) => Err(LocalError::Unsupported(what)),
+        None => Ok(()),
+    }
+}
