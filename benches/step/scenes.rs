@@ -75,7 +75,7 @@ nisp::pde! {
         let eps = sym(grad(u));
         let sigma = lambda * tr(eps) * I + 2 * mu * eps;
         on volume { balance: div(sigma) + rho * g == 0; }
-        on surface { columns: n: vector; traction: sigma * n == -f * n; }
+        on surface { columns: n: vector; traction: sigma * n == -f * n; cloud: chamfer [x + u_x, y + u_y, z + u_z]; }
         on top { held: u == 0; }
         scene contact { }
     }
@@ -130,12 +130,13 @@ fn membrane_on(scene: SceneRef, points: usize) -> Problem {
     problem
 }
 
-/// 5000 points in the cube, 1500 on its surface.
+/// 5000 points in the cube, 1500 for its surface, and a cloud of as many, none of which is where a point of the surface is.
 pub(crate) fn sponge() -> Problem {
     let mut problem = Problem::new(scene::<sponge::contact::Scene>());
     group(&mut problem, "volume", scatter(5000, &[0.046; 3]), vec![]);
     let normals = vec![wave(1500, 0.3), wave(1500, 0.7), wave(1500, 1.1)];
     group(&mut problem, "surface", scatter(1500, &[0.046; 3]), normals);
+    problem.set_cloud("surface", "cloud", scatter(1500, &[0.0455; 3]).coordinates).expect("a term of the scene");
     group(&mut problem, "top", Points::from(vec![0.01, 0.02, 0.046]), vec![]);
     problem
 }
