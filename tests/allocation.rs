@@ -1,4 +1,5 @@
-//! A step of a warm solver allocates nothing: its memory is laid out once, when the problem is bound.
+//! A step of a warm solver allocates nothing: its memory is laid out once, when the problem is bound. Only where a cloud may
+//! belong elsewhere than before is there a tree to build.
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,6 +22,8 @@ nisp::pde! {
         on inside { balance: d(T, t) == d(k * d(T, x), x) + q; }
         on probes { observe T with huber(0.5); }
         on whole { energy: integral(T * q) == 1.5 * k; }
+        /// A surface so flat that the cloud above it stays assigned as it is.
+        on sheet { seen: chamfer [x, t, T / 1000]; }
         scene recover { learn k; }
     }
 }
@@ -56,6 +59,10 @@ fn problem() -> Problem {
     let mut problem = Problem::new(scene::<heat::recover::Scene>());
     problem.set_group("inside", points(300), vec![]).expect("a group");
     problem.set_group("probes", points(50), vec![(0..50).map(|i| f64::from(i).sin()).collect()]).expect("a group");
+    let grid: Vec<f64> = (0..100).flat_map(|i| [f64::from(i % 10), f64::from(i / 10)]).map(|x| 0.1 * x).collect();
+    let above = grid.as_chunks().0.iter().flat_map(|&[x, t]| [x + 0.01, t, 0.02]).collect();
+    problem.set_group("sheet", grid.into(), vec![]).expect("a group");
+    problem.set_cloud("sheet", "seen", above).expect("a term");
     problem.set_group("whole", points(80), vec![]).expect("a group");
     problem
 }

@@ -212,6 +212,8 @@ pub struct Term {
     pub first: usize,
     /// Number of rows.
     pub rows: usize,
+    /// What its rows read of the heads, by index in [`Group::jets`].
+    pub jets: &'static [usize],
 }
 
 /// How a term's rows are meant.

@@ -1,6 +1,7 @@
 //! The whole engine, from `pde!` to gradients and Jacobian rows, against plain dense Taylor arithmetic.
 
 mod adjoint;
+mod assignment;
 mod beliefs;
 mod contact;
 mod dense_jet;

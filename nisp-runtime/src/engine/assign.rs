@@ -3,45 +3,11 @@
 use std::num::NonZero;
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::DMatrix;
+use nalgebra::SMatrix;
 use rayon::prelude::*;
 
-/// A cloud of points of two to four coordinates, and where each was nearest to a surface when last looked at.
-pub(super) trait Cloud: Send + Sync {
-    /// Number of points.
-    fn len(&self) -> usize;
-
-    /// Coordinates of a point.
-    fn point(&self, at: usize) -> &[f64];
-
-    /// Finds the surface point nearest to each point of the cloud; `surface` is flat and point by point, and finite.
-    /// Points for which it cannot have changed since they were last looked at are left alone.
-    fn assign(&mut self, surface: &[f64]);
-
-    /// The surface point nearest to each point of the cloud, as last assigned.
-    fn nearest(&self) -> &[usize];
-
-    /// For each surface point, the nearest point of the cloud.
-    fn nearest_of(&self, surface: &[f64]) -> Vec<usize>;
-
-    /// For each surface point, a unit vector across the surface: the direction in which its neighbours spread least.
-    fn normals(&self, surface: &[f64]) -> Vec<f64>;
-}
-
-/// A cloud from flat coordinates; nothing unless there are two to four coordinates, and a point.
-pub(super) fn cloud(points: &[f64], dimensions: usize) -> Option<Box<dyn Cloud>> {
-    Some(match dimensions {
-        2 => Box::new(Tracked::<2>::new(points)?),
-        3 => Box::new(Tracked::<3>::new(points)?),
-        4 => Box::new(Tracked::<4>::new(points)?),
-        _ => return None,
-    })
-}
-
-/// Neighbours that a surface's direction is taken from.
-const NEIGHBOURS: usize = 10;
-
-struct Tracked<const D: usize> {
+/// A cloud, and where each of its points was nearest to a surface when last looked at.
+pub(super) struct Assignment<const D: usize> {
     points: Vec<[f64; D]>,
     tree: ImmutableKdTree<f64, D>,
     nearest: Vec<usize>,
@@ -51,16 +17,60 @@ struct Tracked<const D: usize> {
     reference: Vec<[f64; D]>,
 }
 
-impl<const D: usize> Tracked<D> {
-    fn new(points: &[f64]) -> Option<Self> {
-        let points = arrays(points);
+impl<const D: usize> Assignment<D> {
+    /// Nothing assigned yet; nothing at all unless there is a point.
+    pub(super) fn new(points: Vec<[f64; D]>) -> Option<Self> {
         let tree = tree(&points)?;
         Some(Self { nearest: Vec::new(), reach: Vec::new(), reference: Vec::new(), points, tree })
     }
-}
 
-fn arrays<const D: usize>(flat: &[f64]) -> Vec<[f64; D]> {
-    flat.as_chunks().0.to_vec()
+    /// The cloud.
+    pub(super) fn points(&self) -> &[[f64; D]] {
+        &self.points
+    }
+
+    /// The surface point nearest to each point of the cloud, as last assigned; empty before the first time.
+    pub(super) fn nearest(&self) -> &[usize] {
+        &self.nearest
+    }
+
+    /// Finds the point of a surface, all finite, nearest to each point of the cloud, and returns true if any is another
+    /// than before. Points for which it cannot be are left alone; where that is so of all, nothing is allocated.
+    pub(super) fn assign(&mut self, surface: &[[f64; D]]) -> bool {
+        let moved = match self.reference.len() == surface.len() {
+            true => surface.iter().zip(&self.reference).map(|(a, b)| squared_distance(a, b)).fold(0.0, f64::max).sqrt(),
+            false => f64::INFINITY,
+        };
+        let stale = self.reach.iter().filter(|&&reach| reach <= moved).count();
+        if stale == 0 && moved.is_finite() {
+            return false;
+        }
+        let Some(tree) = tree(surface) else { return false };
+        // Most must be looked up anyway: begin anew, so that reaches are as long as they can be.
+        let anew = moved.is_infinite() || 2 * stale > self.points.len();
+        let moved = if anew { 0.0 } else { moved };
+        if anew {
+            surface.clone_into(&mut self.reference);
+            self.nearest.resize(self.points.len(), usize::MAX);
+            self.reach.clear();
+            self.reach.resize(self.points.len(), f64::NEG_INFINITY);
+        }
+        let look = |((nearest, reach), point): ((&mut usize, &mut f64), &[f64; D])| {
+            if *reach > moved {
+                return false;
+            }
+            let (found, margin) = look_up(&tree, point);
+            *reach = margin - moved;
+            std::mem::replace(nearest, found) != found
+        };
+        let states = self.nearest.par_iter_mut().zip(&mut self.reach).zip(&self.points);
+        states.map(look).reduce(|| false, |a, b| a | b)
+    }
+
+    /// For each surface point, the nearest point of the cloud.
+    pub(super) fn nearest_of(&self, surface: &[[f64; D]], nearest: &mut Vec<usize>) {
+        surface.par_iter().map(|point| look_up(&self.tree, point).0).collect_into_vec(nearest);
+    }
 }
 
 fn tree<const D: usize>(points: &[[f64; D]]) -> Option<ImmutableKdTree<f64, D>> {
@@ -82,67 +92,32 @@ fn look_up<const D: usize>(tree: &ImmutableKdTree<f64, D>, point: &[f64; D]) -> 
     }
 }
 
-impl<const D: usize> Cloud for Tracked<D> {
-    fn len(&self) -> usize {
-        self.points.len()
-    }
+/// Neighbours that a surface's direction is taken from.
+const NEIGHBOURS: usize = 10;
 
-    fn point(&self, at: usize) -> &[f64] {
-        &self.points[at]
-    }
+/// Most coordinates of a point.
+pub(super) const MOST: usize = 4;
 
-    fn assign(&mut self, surface: &[f64]) {
-        let surface: Vec<[f64; D]> = arrays(surface);
-        let moved = match self.reference.len() == surface.len() {
-            true => surface.iter().zip(&self.reference).map(|(a, b)| squared_distance(a, b)).fold(0.0, f64::max).sqrt(),
-            false => f64::INFINITY,
-        };
-        let stale = self.reach.iter().filter(|&&reach| reach <= moved).count();
-        if stale == 0 && moved.is_finite() {
-            return;
-        }
-        let Some(tree) = tree(&surface) else { return };
-        // Most must be looked up anyway: begin anew, so that reaches are as long as they can be.
-        let anew = moved.is_infinite() || 2 * stale > self.points.len();
-        let (moved, count) = if anew { (0.0, self.points.len()) } else { (moved, self.nearest.len()) };
-        if anew {
-            self.reference = surface;
-            self.nearest.resize(count, 0);
-            self.reach = vec![f64::NEG_INFINITY; count];
-        }
-        let states = self.nearest.par_iter_mut().zip(&mut self.reach);
-        states.zip(&self.points).for_each(|((nearest, reach), point)| {
-            if *reach <= moved {
-                let (found, margin) = look_up(&tree, point);
-                (*nearest, *reach) = (found, margin - moved);
-            }
-        });
-    }
-
-    fn nearest(&self) -> &[usize] {
-        &self.nearest
-    }
-
-    fn nearest_of(&self, surface: &[f64]) -> Vec<usize> {
-        let (points, _) = surface.as_chunks::<D>();
-        points.par_iter().map(|point| look_up(&self.tree, point).0).collect()
-    }
-
-    fn normals(&self, surface: &[f64]) -> Vec<f64> {
-        let points: Vec<[f64; D]> = arrays(surface);
-        let Some(tree) = tree(&points) else { return Vec::new() };
-        let count = const { NonZero::new(NEIGHBOURS).unwrap() };
-        let normal = |point: &[f64; D]| {
-            let around = tree.query(point).nearest_n::<SquaredEuclidean<f64>>(count).execute();
-            let around: Vec<&[f64; D]> = around.iter().map(|found| &points[found.item as usize]).collect();
-            let count = around.len().max(1) as f64;
-            let mean: [f64; D] = std::array::from_fn(|i| around.iter().map(|p| p[i]).sum::<f64>() / count);
-            let spread =
-                DMatrix::from_fn(D, D, |i, j| around.iter().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum());
-            let axes = spread.symmetric_eigen();
-            let (least, _) = axes.eigenvalues.argmin();
-            axes.eigenvectors.column(least).iter().copied().collect::<Vec<f64>>()
-        };
-        points.par_iter().flat_map_iter(normal).collect()
-    }
+/// For each surface point, a unit vector across the surface: the direction in which its neighbours spread least.
+pub(super) fn normals<const D: usize>(surface: &[[f64; D]], normals: &mut Vec<[f64; D]>) {
+    let Some(tree) = tree(surface) else { return };
+    let count = const { NonZero::new(NEIGHBOURS).unwrap() };
+    let normal = |point: &[f64; D]| {
+        let around = tree.query(point).nearest_n::<SquaredEuclidean<f64>>(count).execute();
+        let around = || around.iter().map(|found| &surface[found.item as usize]);
+        let count = around().count().max(1) as f64;
+        let mean: [f64; D] = std::array::from_fn(|i| around().map(|p| p[i]).sum::<f64>() / count);
+        let spread = |i: usize, j: usize| around().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum::<f64>();
+        let whole: f64 = (0..D).map(|i| spread(i, i)).sum();
+        // Coordinates that there are not spread more than any direction of those that there are.
+        let axes = SMatrix::<f64, MOST, MOST>::from_fn(|i, j| match (i < D && j < D, i == j) {
+            (true, _) => spread(i, j),
+            (false, true) => 2.0 * whole + 1.0,
+            (false, false) => 0.0,
+        })
+        .symmetric_eigen();
+        let (least, _) = axes.eigenvalues.argmin();
+        std::array::from_fn(|i| axes.eigenvectors[(i, least)])
+    };
+    surface.par_iter().map(normal).collect_into_vec(normals);
 }

@@ -13,17 +13,15 @@
 
 use std::ops::Range;
 
-use super::assign::{self, Cloud};
+use super::fit::{Fit, Measure, fit};
 use crate::real::Real;
-use crate::schema::{self, Loss, TermKind};
+use crate::schema::{self, TermKind};
 
 /// A Chamfer term's cloud and, as last assigned, its rows.
 pub(crate) struct Chamfer<E> {
-    cloud: Box<dyn Cloud>,
+    fit: Box<dyn Fit>,
     dimensions: usize,
-    symmetric: bool,
     plane: bool,
-    loss: Loss,
     points: usize,
     /// `o`, `[coordinate][point]`.
     origin: Vec<E>,
@@ -33,16 +31,6 @@ pub(crate) struct Chamfer<E> {
     root: Vec<E>,
     /// The part of the sum of squared distances that no surface can mend.
     scatter: f64,
-    /// The assignment that the rows stand for; empty before the first.
-    current: Vec<usize>,
-}
-
-/// A sum of squared distances from one surface point, about its origin.
-#[derive(Clone, Debug, Default)]
-struct Form {
-    a: Vec<f64>,
-    b: Vec<f64>,
-    c: f64,
 }
 
 impl<E: Real> Chamfer<E> {
@@ -53,32 +41,29 @@ impl<E: Real> Chamfer<E> {
         let dimensions = term.rows;
         let zeros = |count: usize| vec![E::ZERO; count * points];
         Some(Self {
-            cloud: assign::cloud(cloud, dimensions)?,
+            fit: fit(cloud, dimensions, points, Measure { symmetric, plane, loss: term.loss })?,
             dimensions,
-            symmetric,
             plane,
-            loss: term.loss,
             points,
             origin: zeros(dimensions),
             goal: zeros(dimensions),
             root: zeros(dimensions * dimensions),
             scatter: 0.0,
-            current: Vec::new(),
         })
     }
 
     /// Number of measurements that the rows stand for.
     pub(crate) fn data(&self) -> usize {
-        self.cloud.len() * if self.plane { 1 } else { self.dimensions }
+        self.cloud_points() * if self.plane { 1 } else { self.dimensions }
     }
 
     /// Points of the cloud.
     pub(crate) fn cloud_points(&self) -> usize {
-        self.cloud.len()
+        self.fit.cloud_points()
     }
 
     pub(crate) fn is_assigned(&self) -> bool {
-        !self.current.is_empty()
+        self.fit.is_assigned()
     }
 
     /// Length of the scatter row before it is scaled.
@@ -86,54 +71,25 @@ impl<E: Real> Chamfer<E> {
         self.scatter.sqrt()
     }
 
-    /// Assigns the cloud to a surface (flat, point by point); `size` is what distances are divided by before a robust
-    /// loss judges them. Returns true if rows have changed. A surface that is not finite changes nothing.
-    pub(crate) fn assign(&mut self, surface: &[f64], size: f64) -> bool {
-        if surface.iter().any(|x| !x.is_finite()) {
-            return false;
-        }
-        self.cloud.assign(surface);
-        let frozen = self.loss == Loss::Square && !self.plane && !self.symmetric;
-        if frozen && self.current == self.cloud.nearest() {
-            return false;
-        }
-        self.current.clear();
-        self.current.extend_from_slice(self.cloud.nearest());
-        self.complete_squares(surface, size);
-        true
+    /// The surface to assign next, flat and point by point, to be written.
+    pub(crate) fn surface(&mut self) -> &mut [f64] {
+        self.fit.surface()
     }
 
-    /// Rows for the present assignment, about the present surface.
-    fn complete_squares(&mut self, surface: &[f64], size: f64) {
-        let d = self.dimensions;
-        let normals = if self.plane { self.cloud.normals(surface) } else { Vec::new() };
-        let empty = Form { a: vec![0.0; d * d], b: vec![0.0; d], c: 0.0 };
-        let mut forms = vec![empty; self.points];
-        let mut add = |at: usize, datum: usize, weight: f64| {
-            let distance: Vec<f64> =
-                self.cloud.point(datum).iter().zip(&surface[at * d..]).map(|(y, x)| y - x).collect();
-            forms[at].add(&distance, normals.get(at * d..(at + 1) * d), weight, self.loss, size);
-        };
-        for (datum, &at) in self.current.iter().enumerate() {
-            add(at, datum, 1.0);
-        }
-        if self.symmetric {
-            let weight = self.cloud.len() as f64 / self.points as f64;
-            for (at, datum) in self.cloud.nearest_of(surface).into_iter().enumerate() {
-                add(at, datum, weight);
-            }
-        }
-        self.scatter = 0.0;
-        for (p, form) in forms.iter_mut().enumerate() {
-            self.scatter += form.complete_square();
-            for i in 0..d {
-                self.origin[i * self.points + p] = E::from_f64(surface[p * d + i]);
-                self.goal[i * self.points + p] = E::from_f64(form.b[i]);
-                for k in 0..d {
-                    self.root[(i * d + k) * self.points + p] = E::from_f64(form.a[i * d + k]);
+    /// Assigns the cloud to the surface; `size` is what distances are divided by before a robust loss judges them.
+    /// Returns true if rows have changed. A surface that is not finite changes nothing.
+    pub(crate) fn assign(&mut self, size: f64) -> bool {
+        let Some(scatter) = self.fit.refresh(size) else { return false };
+        self.scatter = scatter;
+        for p in 0..self.points {
+            let (origin, goal, root) = self.fit.sum(p);
+            for (to, from) in [(&mut self.origin, origin), (&mut self.goal, goal), (&mut self.root, root)] {
+                for (i, &x) in from.iter().enumerate() {
+                    to[i * self.points + p] = E::from_f64(x);
                 }
             }
         }
+        true
     }
 
     /// Replaces the coordinates of a tile's points (`[coordinate][point]`) by the rows as they count,
@@ -162,68 +118,5 @@ impl<E: Real> Chamfer<E> {
                 seeds[k * stride + p] += self.root[(i * d + k) * n + point] * row(p);
             }
         }
-    }
-}
-
-impl Form {
-    /// Adds a datum at `distance` from the origin, measured along `normal` if there is one.
-    fn add(&mut self, distance: &[f64], normal: Option<&[f64]>, weight: f64, loss: Loss, size: f64) {
-        let d = distance.len();
-        let across: Option<f64> = normal.map(|n| n.iter().zip(distance).map(|(n, r)| n * r).sum());
-        let square = across.map_or_else(|| distance.iter().map(|r| r * r).sum(), |across| across * across);
-        let (slope, rest) = majorant(loss, square / (size * size));
-        let weight_at = weight * slope;
-        for i in 0..d {
-            match (normal, across) {
-                (Some(normal), Some(across)) => {
-                    (0..d).for_each(|k| self.a[i * d + k] += weight_at * normal[i] * normal[k]);
-                    self.b[i] += weight_at * normal[i] * across;
-                }
-                _ => {
-                    self.a[i * d + i] += weight_at;
-                    self.b[i] += weight_at * distance[i];
-                }
-            }
-        }
-        self.c += weight_at * square + weight * rest * size * size;
-    }
-
-    /// Replaces `a` by `R` and `b` by `t`, with `a = R^T R` and `b = R^T t`; returns what is left of `c`. Directions
-    /// that nothing determines have rows of zeros.
-    fn complete_square(&mut self) -> f64 {
-        let d = self.b.len();
-        let largest = (0..d).map(|i| self.a[i * d + i]).fold(0.0, f64::max);
-        for i in 0..d {
-            let pivot = self.a[i * d + i];
-            let root = if pivot > 1e-12 * largest { pivot.sqrt() } else { 0.0 };
-            let over = |x: f64| if root > 0.0 { x / root } else { 0.0 };
-            self.b[i] = over(self.b[i]);
-            self.c -= self.b[i] * self.b[i];
-            for k in 0..d {
-                self.a[i * d + k] = if k < i { 0.0 } else { over(self.a[i * d + k]) };
-            }
-            for j in i + 1..d {
-                let factor = self.a[i * d + j];
-                self.b[j] -= factor * self.b[i];
-                (j..d).for_each(|k| self.a[j * d + k] -= factor * self.a[i * d + k]);
-            }
-        }
-        self.c.max(0.0)
-    }
-}
-
-/// `(w, e)` such that `2 rho(u) <= w u^2 + e` for all `u`, with equality at `u^2 = square`.
-fn majorant(loss: Loss, square: f64) -> (f64, f64) {
-    match loss {
-        Loss::Huber(delta) if square > delta * delta => {
-            let u = square.sqrt();
-            (delta / u, delta * u - delta * delta)
-        }
-        Loss::Welsch(delta) => {
-            let x = square / (2.0 * delta * delta);
-            let weight = (-x).exp();
-            (weight, -2.0 * delta * delta * (-x).exp_m1() - weight * square)
-        }
-        Loss::Square | Loss::Huber(_) => (1.0, 0.0),
     }
 }

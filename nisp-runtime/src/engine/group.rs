@@ -1,13 +1,14 @@
 //! A point group bound to its points and data.
 
 use super::chamfer::Chamfer;
-use crate::kernel::GroupKernel;
+use super::reading::Reading;
+use crate::kernel::{GroupKernel, Programs};
 use crate::real::Real;
 use crate::schema::{self, TermKind};
 
 /// A group, its points and how its rows count. All quantities are in the engine's own units.
 pub struct BoundGroup<E: Real> {
-    pub(crate) kernel: GroupKernel<E>,
+    pub(crate) programs: &'static dyn Programs<E>,
     pub(crate) schema: &'static schema::Group,
     /// Number of points.
     pub(crate) points: usize,
@@ -19,28 +20,10 @@ pub struct BoundGroup<E: Real> {
     pub(crate) columns: Vec<E>,
     /// How each term's rows count.
     pub(crate) terms: Vec<BoundTerm<E>>,
-    /// Head channels to evaluate, sorted by channel.
-    pub(crate) outputs: Vec<Output>,
-    /// How jets are made of head channels.
-    pub(crate) jets: Vec<JetMap<E>>,
-    /// Points of a tile.
-    pub(crate) tile: usize,
-}
-
-/// A channel of a head.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) struct Output {
-    pub(crate) channel: usize,
-    pub(crate) head: usize,
-}
-
-/// A jet in the engine's units: `offset + sum(factor * output)`.
-#[derive(Clone, Debug)]
-pub(crate) struct JetMap<E> {
-    pub(crate) offset: E,
-    /// 0 for the point itself, 1 for its partner.
-    pub(crate) site: usize,
-    pub(crate) parts: Vec<(usize, E)>,
+    /// What its programs read.
+    pub(crate) reading: Reading<E>,
+    /// What has to be known ahead of a step's pass, if that takes values only.
+    pub(crate) values: Option<Reading<E>>,
 }
 
 /// How the rows of a term count.
@@ -89,65 +72,37 @@ impl<E: Real> BoundGroup<E> {
             site.iter().skip(i).step_by(inputs).map(|&x| E::from_f64(x)).collect()
         };
         let transposed = sites.iter().flat_map(|site| (0..inputs).flat_map(|i| transposed(site, i))).collect();
-        let outputs = outputs_read(schema);
-        let jets = schema.jets.iter().map(|jet| JetMap::new(jet, &outputs, scaling)).collect();
         let terms = schema
             .terms
             .iter()
             .map(|schema| BoundTerm { schema, size: 1.0, factor: 1.0, point_weights: None, chamfer: None })
             .collect();
         Self {
-            kernel,
+            programs: kernel.programs,
             schema,
             points,
             network,
             coordinates: transposed,
             columns: columns.iter().flatten().map(|&x| E::from_f64(x)).collect(),
             terms,
-            outputs,
-            jets,
-            tile: 1,
+            reading: Reading::whole(kernel.layers, schema, scaling),
+            values: Reading::ahead(schema, scaling),
         }
+    }
+
+    /// What has to be known ahead of a step's pass.
+    pub(super) fn ahead(&self) -> &Reading<E> {
+        self.values.as_ref().unwrap_or(&self.reading)
     }
 
     /// First point and number of points of every tile.
     pub(super) fn tiles(&self) -> impl Iterator<Item = (usize, usize)> + use<E> {
-        let (points, tile) = (self.points, self.tile);
-        (0..points).step_by(tile).map(move |first| (first, tile.min(points - first)))
+        self.reading.tiles(self.points)
     }
 
     /// Points of the network for each point: two if points have partners.
     pub(crate) fn sites(&self) -> usize {
         1 + usize::from(self.schema.paired)
-    }
-}
-
-/// The head channels that a group's jets are made of, sorted by channel.
-fn outputs_read(group: &schema::Group) -> Vec<Output> {
-    let mut outputs: Vec<Output> = group
-        .jets
-        .iter()
-        .flat_map(|jet| jet.combination.iter().map(|&(channel, _)| Output { channel, head: jet.head }))
-        .collect();
-    outputs.sort_unstable();
-    outputs.dedup();
-    outputs
-}
-
-impl<E: Real> JetMap<E> {
-    fn new(jet: &schema::Jet, outputs: &[Output], scaling: &Scaling) -> Self {
-        let shrink: f64 = jet.degree.iter().zip(&scaling.half).map(|(&n, half)| half.powi(i32::from(n))).product();
-        let scale = scaling.scale[jet.head] / shrink;
-        let is_value = jet.degree.iter().all(|&n| n == 0);
-        let parts = jet
-            .combination
-            .iter()
-            .filter_map(|&(channel, coefficient)| {
-                let at = outputs.binary_search(&Output { channel, head: jet.head }).ok()?;
-                Some((at, E::from_f64(coefficient * scale)))
-            })
-            .collect();
-        Self { site: jet.site, offset: E::from_f64(if is_value { scaling.offset[jet.head] } else { 0.0 }), parts }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The linear heads on a tile: dot products of last-layer channels with each head's weights, and their adjoint.
 
-use super::group::Output;
+use super::reading::Output;
 use crate::layer::Shape;
 use crate::real::Real;
 use crate::simd::{Kernel, Simd};

@@ -55,7 +55,8 @@ impl Integrals {
             }
         }
         let involved = groups.iter().enumerate().filter(|(at, _)| rows.iter().any(|r| r.group == *at));
-        let tiles = involved.flat_map(|(at, group)| group.tiles().map(move |(first, count)| (at, first, count)));
+        let tiles = involved
+            .flat_map(|(at, group)| group.ahead().tiles(group.points).map(move |(first, count)| (at, first, count)));
         let parts = tiles.map(|(group, first, count)| (TileRange { group, first, count }, vec![0.0; rows.len()]));
         let most = groups.iter().map(|g| g.schema.rows).max().unwrap_or(0);
         Self {
@@ -76,7 +77,7 @@ impl<E: Real> Engine<E> {
         let Integrals { rows, parts, scalars, targets, .. } = &mut self.integrals;
         let rows_read: &[Integral] = rows;
         parts.par_iter_mut().for_each(|(range, sums)| {
-            let tile = Tile { group: &groups[range.group], first: range.first, count: range.count };
+            let tile = Tile::ahead(&groups[range.group], range.first, range.count);
             with_buffers(buffers, |buffers| sum_tile(&network, &tile, range.group, rows_read, buffers, sums));
         });
         scalars.iter_mut().zip(&self.scalars).for_each(|(to, from)| *to = from.to_f64());
@@ -85,7 +86,7 @@ impl<E: Real> Engine<E> {
             let term = &group.terms[integral.term];
             let sum: f64 =
                 parts.iter().filter(|(range, _)| range.group == integral.group).map(|(_, sums)| sums[at]).sum();
-            group.kernel.programs.target(scalars, targets);
+            group.programs.target(scalars, targets);
             let scale = term.factor / term.size;
             let misfit = (sum - targets[integral.row]) * scale;
             if !misfit.is_finite() {
@@ -101,7 +102,7 @@ impl<E: Real> Engine<E> {
         let Integrals { rows, scalars, slopes, .. } = &mut self.integrals;
         scalars.iter_mut().zip(&self.scalars).for_each(|(to, from)| *to = from.to_f64());
         for integral in rows {
-            self.groups[integral.group].kernel.programs.target_slopes(scalars, slopes);
+            self.groups[integral.group].programs.target_slopes(scalars, slopes);
             let learned = integral.target_slopes.len();
             integral.target_slopes.copy_from_slice(&slopes[integral.row * learned..][..learned]);
         }
@@ -122,7 +123,7 @@ fn sum_tile<E: Real>(
     let Buffers { jets, points, columns, rows, .. } = buffers;
     let scalars = network.scalars;
     let inputs = Points { count: tile.count, stride, jets, coordinates: points, columns, scalars, seeds: &[] };
-    tile.group.kernel.programs.residual(network.isa, inputs, rows);
+    tile.group.programs.residual(network.isa, inputs, rows);
     for (integral, sum) in integrals.iter().zip(sums).filter(|(integral, _)| integral.group == group) {
         let weights = tile.group.terms[integral.term].point_weights.as_deref();
         let rows = &rows[integral.row * stride..][..tile.count];

@@ -103,7 +103,7 @@ impl Engine<f64> {
                 let mut gradients = Vec::new();
                 let mut shares = vec![0.0; chunk.shares.len()];
                 for &TileRange { group, first, count } in &chunk.tiles {
-                    let tile = Tile { group: &groups[group], first, count };
+                    let tile = Tile::new(&groups[group], first, count);
                     network.forward(&tile, buffers);
                     let terms = tile.group.terms.len();
                     if let Some((term, point)) = weigh(&network, &tile, buffers, &mut shares[..terms]) {
@@ -165,7 +165,7 @@ impl Engine<f64> {
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         with_buffers(&self.buffers, |buffers| {
             for (first, count) in group.tiles() {
-                let tile = Tile { group, first, count };
+                let tile = Tile::new(group, first, count);
                 network.forward(&tile, buffers);
                 let stride = tile.stride();
                 buffers.seeds[..group.schema.rows * stride].fill(0.0);
@@ -195,7 +195,7 @@ impl Engine<f64> {
             chunk.gradient.fill(0.0);
             with_buffers(buffers, |buffers| {
                 for &TileRange { group, first, count } in &chunk.tiles {
-                    let tile = Tile { group: &groups[group], first, count };
+                    let tile = Tile::new(&groups[group], first, count);
                     network.forward(&tile, buffers);
                     let terms = tile.group.terms.len();
                     weigh(&network, &tile, buffers, &mut chunk.shares[..terms]);

@@ -12,7 +12,7 @@ use crate::real::Real;
 impl<E: Real> Network<'_, E> {
     /// Channels of the first layer and the gates, in `buffers.lifted`.
     pub(super) fn lift(&self, tile: &Tile<'_, E>, shape: Shape, buffers: &mut Buffers<E>) {
-        let kernel = tile.group.kernel.layers;
+        let kernel = tile.reading.layers;
         let rows = shape.points * kernel.channels();
         if let Some(features) = &self.weights.features {
             let layer = Features {
@@ -72,7 +72,7 @@ impl<E: Real> Network<'_, E> {
         parts: Parts,
         (j, matrix): (usize, &Matrix),
     ) {
-        let kernel = tile.group.kernel.layers;
+        let kernel = tile.reading.layers;
         let seed = [&buffers.bar, &buffers.difference_bar, &buffers.floor_bar][j];
         for (first, count, at) in parts.ranges() {
             let (weights_bar, rest) = gradient[at + matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
@@ -100,7 +100,7 @@ impl<E: Real> Network<'_, E> {
         parts: Parts,
         (j, matrix): (usize, &Matrix),
     ) {
-        let kernel = tile.group.kernel.layers;
+        let kernel = tile.reading.layers;
         let Buffers { bar, difference_bar, floor_bar, next_bar, output, values, slopes, features, .. } = buffers;
         let layer = LayerAdjoint {
             shape,

@@ -5,6 +5,8 @@
 
 mod assign;
 mod chamfer;
+mod fit;
+mod form;
 mod group;
 mod heads;
 mod integral;
@@ -12,6 +14,7 @@ mod jacobian;
 mod lift;
 mod objective;
 mod predict;
+mod reading;
 mod resample;
 mod tile;
 
@@ -52,6 +55,10 @@ pub struct Engine<E: Real> {
     pub(crate) layout: Layout,
     pub(crate) groups: Vec<BoundGroup<E>>,
     weights: Weights<E>,
+    /// The parameters that weights and scalars are of.
+    theta: Vec<E>,
+    /// True if clouds are assigned to the surfaces that these parameters predict.
+    is_assigned: bool,
     /// Scalars that programs read, in the engine's units; learned ones are refreshed from the parameters.
     pub(crate) scalars: Vec<E>,
     pub(crate) learned: Vec<Learned>,
@@ -124,7 +131,10 @@ impl<E: Real> Engine<E> {
         learned: Vec<Learned>,
     ) -> Self {
         for group in &mut groups {
-            group.tile = tile_points::<E>(&layout, group.kernel.layers.channels() * group.sites(), group.points);
+            let (sites, points) = (group.sites(), group.points);
+            for reading in std::iter::once(&mut group.reading).chain(&mut group.values) {
+                reading.tile = tile_points::<E>(&layout, reading.layers.channels() * sites, points);
+            }
         }
         let terms = groups.iter().map(|g| g.terms.len()).sum();
         let chunks = cut(&groups)
@@ -143,6 +153,8 @@ impl<E: Real> Engine<E> {
         let mut engine = Self {
             isa,
             weights: Weights::new(isa, &layout),
+            theta: vec![E::from_f64(f64::NAN); layout.len],
+            is_assigned: false,
             layout,
             scalars,
             learned,
@@ -174,8 +186,13 @@ impl<E: Real> Engine<E> {
         &self.layout
     }
 
-    /// Takes over parameters: weights are materialised and packed once, for all tiles.
+    /// Takes over parameters: weights are materialised and packed once, for all tiles and calls.
     pub(crate) fn set(&mut self, theta: &[E]) {
+        if self.theta == theta {
+            return;
+        }
+        self.theta.copy_from_slice(theta);
+        self.is_assigned = false;
         self.weights.set(&self.layout, theta);
         for (learned, &theta) in self.learned.iter().zip(&theta[self.layout.learned.clone()]) {
             self.scalars[learned.slot] = E::from_f64(learned.map.at(theta.to_f64()).0);
@@ -238,7 +255,7 @@ impl<E: Real> Engine<E> {
                 chunk.fault = None;
                 for range in &chunk.tiles {
                     let group = &groups[range.group];
-                    let tile = Tile { group, first: range.first, count: range.count };
+                    let tile = Tile::new(group, range.first, range.count);
                     network.forward(&tile, buffers);
                     let shares = &mut chunk.shares[first_term[range.group]..][..group.terms.len()];
                     let fault = weigh(&network, &tile, buffers, shares);
@@ -336,7 +353,7 @@ fn weigh<E: Real>(
     let Buffers { jets, points, columns, rows, seeds, row_slopes, .. } = buffers;
     let inputs =
         Points { count: tile.count, stride, jets, coordinates: points, columns, scalars: network.scalars, seeds: &[] };
-    tile.group.kernel.programs.residual(network.isa, inputs, rows);
+    tile.group.programs.residual(network.isa, inputs, rows);
     let mut fault = None;
     for ((index, term), share) in tile.group.terms.iter().enumerate().zip(shares) {
         if term.schema.kind == TermKind::Integral {
@@ -405,7 +422,7 @@ fn cut<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
         .iter()
         .enumerate()
         .flat_map(|(at, group)| {
-            let cost = group.sites() * group.kernel.layers.channels();
+            let cost = group.sites() * group.reading.layers.channels();
             group.tiles().map(move |(first, count)| (TileRange { group: at, first, count }, count * cost))
         })
         .collect();

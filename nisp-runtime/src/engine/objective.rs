@@ -21,11 +21,15 @@ impl<E: Real> Objective<E> for Engine<E> {
 
     fn accepted(&mut self, theta: &[E]) -> bool {
         let resampled = self.resample(theta);
+        self.refresh(theta) || resampled
+    }
+
+    fn refresh(&mut self, theta: &[E]) -> bool {
         if self.chamfers().next().is_none() {
-            return resampled;
+            return false;
         }
         self.set(theta);
-        self.assign() || resampled
+        !self.is_assigned && self.assign()
     }
 }
 
@@ -53,6 +57,8 @@ impl LeastSquares for Engine<f64> {
             term.size = sigma;
             term.factor = 1.0;
         }
+        // Robust losses judge distances by it.
+        self.is_assigned = false;
     }
 
     fn jacobian_vector(&mut self, theta: &[f64], v: &[f64], out: &mut [f64]) -> Result<(), Fault> {

@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 
 use super::tile::{Buffers, Network, Tile};
-use super::{BoundTerm, Chamfer, Engine, with_buffers};
+use super::{Chamfer, Engine, with_buffers};
 use crate::real::Real;
 use crate::residual::Points;
 
@@ -14,7 +14,7 @@ impl<E: Real> Engine<E> {
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         with_buffers(&self.buffers, |buffers| {
             for (first, count) in bound.tiles() {
-                let tile = Tile { group: bound, first, count };
+                let tile = Tile::new(bound, first, count);
                 residuals(&network, &tile, buffers);
                 work(&tile, buffers);
             }
@@ -36,6 +36,7 @@ impl<E: Real> Engine<E> {
         });
         all
     }
+
     /// Clouds of Chamfer terms.
     pub(super) fn chamfers(&self) -> impl Iterator<Item = &Chamfer<E>> {
         self.groups.iter().flat_map(|group| &group.terms).filter_map(|term| term.chamfer.as_ref())
@@ -46,24 +47,25 @@ impl<E: Real> Engine<E> {
         let mut changed = false;
         for group in 0..self.groups.len() {
             for term in 0..self.groups[group].terms.len() {
-                if self.groups[group].terms[term].chamfer.is_some() {
-                    let surface = self.surface(group, term);
-                    let BoundTerm { chamfer, size, .. } = &mut self.groups[group].terms[term];
-                    changed |= chamfer.as_mut().is_some_and(|chamfer| chamfer.assign(&surface, *size));
-                }
+                let Some(mut chamfer) = self.groups[group].terms[term].chamfer.take() else { continue };
+                self.predict_surface(group, term, chamfer.surface());
+                let term = &mut self.groups[group].terms[term];
+                changed |= chamfer.assign(term.size);
+                term.chamfer = Some(chamfer);
             }
         }
+        self.is_assigned = true;
         changed
     }
 
     /// Raw rows of a term, point by point.
-    fn surface(&self, group: usize, term: usize) -> Vec<f64> {
+    fn predict_surface(&self, group: usize, term: usize, surface: &mut [f64]) {
         let bound = &self.groups[group];
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         let schema = bound.terms[term].schema;
-        let mut surface = vec![0.0; bound.points * schema.rows];
-        surface.par_chunks_mut(bound.tile * schema.rows).enumerate().for_each(|(at, out)| {
-            let tile = Tile { group: bound, first: at * bound.tile, count: out.len() / schema.rows };
+        let points = bound.ahead().tile;
+        surface.par_chunks_mut(points * schema.rows).enumerate().for_each(|(at, out)| {
+            let tile = Tile::ahead(bound, at * points, out.len() / schema.rows);
             with_buffers(&self.buffers, |buffers| {
                 residuals(&network, &tile, buffers);
                 for (p, point) in out.chunks_exact_mut(schema.rows).enumerate() {
@@ -73,7 +75,6 @@ impl<E: Real> Engine<E> {
                 }
             });
         });
-        surface
     }
 }
 
@@ -90,5 +91,5 @@ fn residuals<E: Real>(network: &Network<'_, E>, tile: &Tile<'_, E>, buffers: &mu
         scalars: network.scalars,
         seeds: &[],
     };
-    tile.group.kernel.programs.residual(network.isa, inputs, rows);
+    tile.group.programs.residual(network.isa, inputs, rows);
 }

@@ -4,6 +4,7 @@
 
 use super::group::BoundGroup;
 use super::heads::{Heads, HeadsRowsAdjoint, HeadsWeightsAdjoint};
+use super::reading::Reading;
 use crate::aligned::AlignedVec;
 use crate::layer::{Gate, GateAdjoint, Gated, GatedAdjoint, Layer, LayerAdjoint, Shape, row_distance};
 use crate::network::{Layout, ProductAdjoint, Weights};
@@ -58,14 +59,17 @@ pub(crate) struct Extent {
 
 impl Extent {
     pub(crate) fn of<'a, E: Real>(groups: impl Iterator<Item = &'a BoundGroup<E>>) -> Self {
-        groups.fold(Self::default(), |extent, group| Self {
-            points: extent.points.max(group.tile * group.sites()),
-            rows: extent.rows.max(group.tile * group.sites() * group.kernel.layers.channels()),
-            sites: extent.sites.max(group.sites()),
-            outputs: extent.outputs.max(group.outputs.len()),
-            jets: extent.jets.max(group.jets.len()),
-            columns: extent.columns.max(group.schema.columns.len()),
-            residuals: extent.residuals.max(group.schema.rows),
+        groups.fold(Self::default(), |extent, group| {
+            let tiles = [&group.reading, group.ahead()].map(|reading| (reading.tile * group.sites(), reading));
+            Self {
+                points: tiles.iter().map(|(points, _)| *points).fold(extent.points, usize::max),
+                rows: tiles.iter().map(|(points, r)| points * r.layers.channels()).fold(extent.rows, usize::max),
+                sites: extent.sites.max(group.sites()),
+                outputs: extent.outputs.max(group.reading.outputs.len()),
+                jets: extent.jets.max(group.schema.jets.len()),
+                columns: extent.columns.max(group.schema.columns.len()),
+                residuals: extent.residuals.max(group.schema.rows),
+            }
         })
     }
 }
@@ -118,11 +122,22 @@ pub(crate) struct Network<'a, E: Real> {
 #[derive(Clone, Copy)]
 pub(crate) struct Tile<'a, E: Real> {
     pub(crate) group: &'a BoundGroup<E>,
+    pub(crate) reading: &'a Reading<E>,
     pub(crate) first: usize,
     pub(crate) count: usize,
 }
 
-impl<E: Real> Tile<'_, E> {
+impl<'a, E: Real> Tile<'a, E> {
+    /// A tile of which all is read that its group's programs read.
+    pub(crate) fn new(group: &'a BoundGroup<E>, first: usize, count: usize) -> Self {
+        Self { group, reading: &group.reading, first, count }
+    }
+
+    /// A tile of which is read what has to be known ahead of a step's pass.
+    pub(crate) fn ahead(group: &'a BoundGroup<E>, first: usize, count: usize) -> Self {
+        Self { group, reading: group.ahead(), first, count }
+    }
+
     fn shape(&self, layout: &Layout) -> Shape {
         Shape { points: self.count * self.group.sites(), width: layout.width, ld: row_distance(layout.width) }
     }
@@ -143,8 +158,7 @@ impl<E: Real> Network<'_, E> {
     pub(crate) fn forward(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
         self.load(tile, buffers);
         let shape = tile.shape(self.layout);
-        let group = tile.group;
-        let kernel = group.kernel.layers;
+        let kernel = tile.reading.layers;
         self.lift(tile, shape, buffers);
         let rows = shape.points * kernel.channels();
         let (first, gates) = split_gates(&mut buffers.lifted, rows * shape.ld);
@@ -189,25 +203,25 @@ impl<E: Real> Network<'_, E> {
 
     /// From the last layer's channels to jets.
     fn heads(&self, tile: &Tile<'_, E>, shape: Shape, buffers: &mut Buffers<E>) {
-        let group = tile.group;
+        let reading = tile.reading;
         let (stride, output_stride) = (tile.stride(), tile.output_stride());
         let heads = Heads {
             shape,
-            channels: group.kernel.layers.channels(),
-            outputs: &group.outputs,
+            channels: reading.layers.channels(),
+            outputs: &reading.outputs,
             weights: self.weights.matrix(&self.layout.head),
             rows: &buffers.output,
             out: &mut buffers.outputs,
             stride: output_stride,
         };
         dispatch(self.isa, heads);
-        for (output, out) in group.outputs.iter().zip(buffers.outputs.chunks_exact_mut(output_stride)) {
+        for (output, out) in reading.outputs.iter().zip(buffers.outputs.chunks_exact_mut(output_stride)) {
             if output.channel == 0 {
                 let bias = self.weights.bias(&self.layout.head)[output.head];
                 out[..shape.points].iter_mut().for_each(|x| *x += bias);
             }
         }
-        for (map, jet) in group.jets.iter().zip(buffers.jets.chunks_exact_mut(stride)) {
+        for (map, jet) in reading.jets.iter().zip(buffers.jets.chunks_exact_mut(stride)) {
             jet[..tile.count].fill(map.offset);
             for &(output, factor) in &map.parts {
                 let out = &buffers.outputs[output * output_stride + map.site * tile.count..][..tile.count];
@@ -223,8 +237,7 @@ impl<E: Real> Network<'_, E> {
     /// From the adjoints of a tile's rows (`buffers.seeds`) to the padded gradient, added to `gradient`: summed over
     /// the points, or one gradient per point, `padded_len` apart.
     pub(crate) fn adjoint(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>, gradient: &mut [E], per_point: bool) {
-        let group = tile.group;
-        let kernel = group.kernel.layers;
+        let kernel = tile.reading.layers;
         let shape = tile.shape(self.layout);
         let channels = kernel.channels();
         let parts = Parts { count: tile.count, points: shape.points, per_point, distance: self.layout.padded_len };
@@ -238,7 +251,7 @@ impl<E: Real> Network<'_, E> {
         let heads = HeadsRowsAdjoint {
             shape,
             channels,
-            outputs: &group.outputs,
+            outputs: &tile.reading.outputs,
             weights: self.weights.matrix(&self.layout.head),
             seeds: &buffers.output_bars,
             stride: tile.output_stride(),
@@ -274,7 +287,7 @@ impl<E: Real> Network<'_, E> {
 
     /// Adjoint of the group's programs and of the map from head channels to jets.
     fn programs_adjoint(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>, gradient: &mut [E], parts: Parts) {
-        let group = tile.group;
+        let reading = tile.reading;
         let stride = tile.stride();
         let points = Points {
             count: tile.count,
@@ -285,10 +298,10 @@ impl<E: Real> Network<'_, E> {
             scalars: self.scalars,
             seeds: &buffers.seeds,
         };
-        group.kernel.programs.adjoint(self.isa, points, &mut buffers.bars);
+        tile.group.programs.adjoint(self.isa, points, &mut buffers.bars);
         let output_stride = tile.output_stride();
-        buffers.output_bars[..group.outputs.len() * output_stride].fill(E::ZERO);
-        for (map, bar) in group.jets.iter().zip(buffers.bars.chunks_exact(stride)) {
+        buffers.output_bars[..reading.outputs.len() * output_stride].fill(E::ZERO);
+        for (map, bar) in reading.jets.iter().zip(buffers.bars.chunks_exact(stride)) {
             for &(output, factor) in &map.parts {
                 let out = &mut buffers.output_bars[output * output_stride + map.site * tile.count..][..tile.count];
                 for (out, &bar) in out.iter_mut().zip(bar) {
@@ -296,7 +309,7 @@ impl<E: Real> Network<'_, E> {
                 }
             }
         }
-        let learned = &buffers.bars[group.jets.len() * stride..];
+        let learned = &buffers.bars[reading.jets.len() * stride..];
         for (first, count, at) in (Parts { points: tile.count, ..parts }).ranges() {
             for i in 0..self.layout.learned.len() {
                 gradient[at + self.layout.learned_at + i] +=
@@ -304,7 +317,7 @@ impl<E: Real> Network<'_, E> {
             }
         }
         for (first, count, at) in parts.ranges() {
-            for (output, bar) in group.outputs.iter().zip(buffers.output_bars.chunks_exact(output_stride)) {
+            for (output, bar) in reading.outputs.iter().zip(buffers.output_bars.chunks_exact(output_stride)) {
                 if output.channel == 0 {
                     gradient[at + self.layout.head.padded_bias + output.head] +=
                         bar[first..][..count].iter().copied().sum();
@@ -324,7 +337,7 @@ impl<E: Real> Network<'_, E> {
         parts: Parts,
         layer: usize,
     ) {
-        let channels = tile.group.kernel.layers.channels();
+        let channels = tile.reading.layers.channels();
         let next = self.layout.hidden.get(layer);
         for (first, count, at) in parts.ranges() {
             let start = first * channels * shape.ld;
@@ -333,7 +346,7 @@ impl<E: Real> Network<'_, E> {
                     let heads = HeadsWeightsAdjoint {
                         shape: Shape { points: count, ..shape },
                         channels,
-                        outputs: &tile.group.outputs,
+                        outputs: &tile.reading.outputs,
                         first,
                         rows: &buffers.output,
                         seeds: &buffers.output_bars,
@@ -365,7 +378,7 @@ impl<E: Real> Network<'_, E> {
         gradient: &mut [E],
         parts: Parts,
     ) {
-        let kernel = tile.group.kernel.layers;
+        let kernel = tile.reading.layers;
         let gated = self.layout.affine.len() > 1;
         if gated {
             let gate = GateAdjoint {

@@ -183,6 +183,7 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Adam<E> {
 
     fn step(&mut self, objective: &mut O) -> Result<Step, Fault> {
         if self.loss.is_none() {
+            objective.refresh(&self.now.theta);
             match objective.gradient(&self.now.theta, &mut self.gradient) {
                 Ok(loss) => self.loss = Some(loss),
                 Err(fault) => return self.refuse(fault),
@@ -190,9 +191,14 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Adam<E> {
         }
         let coefficients = self.coefficients();
         update(&self.now, &self.gradient, &mut self.trial, coefficients);
+        // Every step is taken, so that what is frozen may follow it before the one gradient that it costs.
+        objective.refresh(&self.trial.theta);
         match objective.gradient(&self.trial.theta, &mut self.trial_gradient) {
             Ok(loss) => self.loss = Some(loss),
-            Err(fault) => return self.refuse(fault),
+            Err(fault) => {
+                objective.refresh(&self.now.theta);
+                return self.refuse(fault);
+            }
         }
         std::mem::swap(&mut self.now, &mut self.trial);
         std::mem::swap(&mut self.gradient, &mut self.trial_gradient);

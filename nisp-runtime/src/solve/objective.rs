@@ -8,7 +8,7 @@ use std::ops::Range;
 ///
 /// Implementations check their own results: every value that is returned as `Ok` is finite, and the fault names the
 /// term and point otherwise. Calls with the same `theta` give the same bits, whatever was called before, until
-/// [`Objective::accepted`] is called.
+/// [`Objective::accepted`] or [`Objective::refresh`] is called.
 #[expect(clippy::len_without_is_empty, reason = "a problem without parameters is no problem")]
 pub trait Objective<E: Real> {
     /// Number of parameters.
@@ -29,6 +29,15 @@ pub trait Objective<E: Real> {
     /// `theta` is the new iterate. What is frozen during a step (assignments of a cloud, active sets) may be
     /// refreshed here. Returns true if the function has changed by it, so that the solver evaluates afresh.
     fn accepted(&mut self, theta: &[E]) -> bool {
+        let _ = theta;
+        false
+    }
+
+    /// Refreshes what is frozen during a step and follows from `theta` alone (assignments of a cloud), as if `theta` were
+    /// the new iterate. A method that takes every step evaluates once at a trial point that way, and calls it again at the
+    /// former iterate, which restores the function to the bit, should the trial be refused. Returns true if the function
+    /// has changed by it.
+    fn refresh(&mut self, theta: &[E]) -> bool {
         let _ = theta;
         false
     }

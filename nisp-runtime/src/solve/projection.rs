@@ -145,6 +145,14 @@ impl<O: LeastSquares + ?Sized> Objective<f64> for Projection<'_, O> {
         }
         changed
     }
+
+    fn refresh(&mut self, phi: &[f64]) -> bool {
+        let changed = self.project(phi).is_ok() && self.objective.refresh(&self.theta);
+        if changed {
+            self.at.fill(f64::NAN);
+        }
+        changed
+    }
 }
 
 impl<O: LeastSquares + ?Sized> LeastSquares for Projection<'_, O> {

@@ -209,11 +209,12 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
         }
         _ => quote!(None),
     };
-    let (first, rows) = (plan.first, plan.rows);
+    let (first, rows, jets) = (plan.first, plan.rows, &plan.jets);
     quote! {
         schema::Term {
             name: #name, equation: #equation, latex: #latex, unit: #unit, kind: #kind, loss: #loss,
             weight: #weight, within: #within, measure: #measure, first: #first, rows: #rows,
+            jets: &[#(#jets),*],
         }
     }
 }

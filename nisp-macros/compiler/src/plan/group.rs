@@ -68,6 +68,7 @@ pub(super) fn draft(
             loss: term.loss,
             first,
             rows: count,
+            jets: Vec::new(),
             target_slopes: Program::default(),
         });
         all.extend(rows);
@@ -87,8 +88,12 @@ pub(super) fn draft(
     if let Some(fault) = graph.fault() {
         return Err(error(fault, scene, name));
     }
-    let jets = jets(&graph, &rows, &set).into_iter().collect();
-    Ok(Draft { group, graph, terms, rows, targets, set, jets })
+    let all: Vec<(usize, usize, usize)> = jets(&graph, &rows, &set).into_iter().collect();
+    for term in &mut terms {
+        let own = jets(&graph, &rows[term.first..term.first + term.rows], &set);
+        term.jets = (0..all.len()).filter(|&at| own.contains(&all[at])).collect();
+    }
+    Ok(Draft { group, graph, terms, rows, targets, set, jets: all })
 }
 
 fn kind(kind: &TermKind) -> RowKind {

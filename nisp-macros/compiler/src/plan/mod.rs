@@ -168,6 +168,8 @@ pub struct TermPlan {
     pub first: usize,
     /// Number of rows.
     pub rows: usize,
+    /// Jets of the group that its rows read.
+    pub jets: Vec<usize>,
     /// Of an integral: the derivatives of its targets by the learned parameters, over slot Parameter only. Outputs row
     /// by row, each in the order of [`ScenePlan::learned`]. Empty for other kinds.
     pub target_slopes: Program,
