@@ -1,80 +1,76 @@
 //! A few rows that depend on the same few coefficients.
 
-use super::lattice::{Lattice, NONE, Place, Span};
+use super::lattice::{NONE, Span};
 
 /// Rows, and their derivatives by the coefficients of some boxes of functions and by the learned scalars.
 #[derive(Clone, Debug)]
 pub(super) struct Block {
     pub(super) misfits: Vec<f64>,
+    /// `[row][learned parameter]`
+    pub(super) by_learned: Vec<f64>,
     /// Numbers of the coefficients; [`NONE`] for functions that are not kept.
     pub(super) dofs: Vec<u32>,
     /// `[row][coefficient]`
     pub(super) slopes: Vec<f64>,
-    /// Derivatives of the learned scalars by their parameters.
-    learned: Vec<f64>,
-    /// `[row][learned parameter]`
-    pub(super) by_learned: Vec<f64>,
-    /// Head, box, and where its coefficients begin.
-    heads: Vec<(usize, Span, usize)>,
+}
+
+/// How the rows of a point lie in a plain slice: misfits, derivatives by learned parameters, derivatives by the functions of
+/// the point's cell, head after head.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Layout {
+    pub(super) rows: usize,
+    pub(super) learned: usize,
+    /// Functions of the cell, of all heads.
+    pub(super) width: usize,
+}
+
+impl Layout {
+    /// Numbers of a point.
+    pub(super) fn len(&self) -> usize {
+        self.rows * (1 + self.learned + self.width)
+    }
+
+    /// Misfits, derivatives by learned parameters, and derivatives by functions.
+    pub(super) fn split<'a>(&self, record: &'a [f64]) -> (&'a [f64], &'a [f64], &'a [f64]) {
+        let (misfits, rest) = record.split_at(self.rows);
+        let (by_learned, slopes) = rest.split_at(self.rows * self.learned);
+        (misfits, by_learned, slopes)
+    }
+
+    /// The same, to be written.
+    pub(super) fn split_mut<'a>(&self, record: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64], &'a mut [f64]) {
+        let (misfits, rest) = record.split_at_mut(self.rows);
+        let (by_learned, slopes) = rest.split_at_mut(self.rows * self.learned);
+        (misfits, by_learned, slopes)
+    }
 }
 
 impl Block {
-    pub(super) fn new(rows: usize, learned: &[f64]) -> Self {
-        Self {
-            misfits: vec![0.0; rows],
-            dofs: Vec::new(),
-            slopes: Vec::new(),
-            learned: learned.to_vec(),
-            by_learned: vec![0.0; rows * learned.len()],
-            heads: Vec::new(),
-        }
+    /// The rows of a point, where `dofs` are the functions of its cell.
+    pub(super) fn of(layout: Layout, record: &[f64], dofs: Vec<u32>) -> Self {
+        let (misfits, by_learned, slopes) = layout.split(record);
+        Self { misfits: misfits.to_vec(), by_learned: by_learned.to_vec(), dofs, slopes: slopes.to_vec() }
     }
 
-    /// Makes room for the functions of a box.
-    pub(super) fn add_head(&mut self, head: usize, span: Span, dofs: impl Iterator<Item = u32>) {
-        self.heads.push((head, span, self.dofs.len()));
-        self.dofs.extend(dofs);
-        self.slopes.resize(self.dofs.len() * self.misfits.len(), 0.0);
+    /// Rows of nothing yet.
+    pub(super) fn new(layout: Layout, dofs: Vec<u32>) -> Self {
+        let Layout { rows, learned, .. } = layout;
+        let slopes = vec![0.0; rows * dofs.len()];
+        Self { misfits: vec![0.0; rows], by_learned: vec![0.0; rows * learned], dofs, slopes }
     }
 
-    /// Adds values of the functions of a place's cell, times a factor of each row.
-    pub(super) fn add_cell(
+    /// Adds rows of a cell; for every head, the boxes of functions of the cell and of this block.
+    pub(super) fn add(
         &mut self,
-        head: usize,
-        lattice: &Lattice,
-        place: &Place,
-        values: &[f64],
-        factor: impl Fn(usize) -> f64,
+        layout: Layout,
+        record: &[f64],
+        boxes: impl Iterator<Item = (Span, Span)>,
+        dimensions: usize,
     ) {
-        let Some(&(_, span, first)) = self.heads.iter().find(|(h, _, _)| *h == head) else { return };
-        let (width, count) = (self.dofs.len(), lattice.degree + 1);
-        let shift: usize = (0..lattice.dimensions())
-            .map(|axis| (place.cell[axis] - span.first[axis]) * span.count.pow(axis as u32))
-            .sum();
-        for row in 0..self.misfits.len() {
-            let factor = factor(row);
-            if factor == 0.0 {
-                continue;
-            }
-            let slopes = &mut self.slopes[row * width + first..];
-            for (line, values) in values.chunks_exact(count).enumerate() {
-                let (mut line, mut start, mut stride) = (line, shift, span.count);
-                for _ in 1..lattice.dimensions() {
-                    start += line % count * stride;
-                    line /= count;
-                    stride *= span.count;
-                }
-                for (slope, value) in slopes[start..start + count].iter_mut().zip(values) {
-                    *slope += factor * value;
-                }
-            }
-        }
-    }
-
-    /// Adds a share of a block of one of the cells that this one is spread over.
-    pub(super) fn add_share(&mut self, of: &Block, share: f64, dimensions: usize) {
-        let (width, own) = (self.dofs.len(), of.dofs.len());
-        for (&(_, cell, from), &(_, span, first)) in of.heads.iter().zip(&self.heads) {
+        let (misfits, by_learned, slopes) = layout.split(record);
+        let width = self.dofs.len();
+        let (mut from, mut first) = (0, 0);
+        for (cell, span) in boxes {
             let shift: usize =
                 (0..dimensions).map(|axis| (cell.first[axis] - span.first[axis]) * span.count.pow(axis as u32)).sum();
             for line in 0..cell.count.pow(dimensions as u32 - 1) {
@@ -84,28 +80,23 @@ impl Block {
                     at /= cell.count;
                     stride *= span.count;
                 }
-                for row in 0..self.misfits.len() {
+                for row in 0..layout.rows {
                     let to = &mut self.slopes[row * width + start..][..cell.count];
-                    let from = &of.slopes[row * own + from + line * cell.count..][..cell.count];
-                    to.iter_mut().zip(from).for_each(|(to, from)| *to += share * from);
+                    let from = &slopes[row * layout.width + from + line * cell.count..][..cell.count];
+                    to.iter_mut().zip(from).for_each(|(to, from)| *to += from);
                 }
             }
+            from += cell.count.pow(dimensions as u32);
+            first += span.count.pow(dimensions as u32);
         }
-        self.misfits.iter_mut().zip(&of.misfits).for_each(|(to, from)| *to += share * from);
-        self.by_learned.iter_mut().zip(&of.by_learned).for_each(|(to, from)| *to += share * from);
-    }
-
-    /// Adds the derivatives of the rows by the learned scalars.
-    pub(super) fn add_learned(&mut self, slope: impl Fn(usize, usize) -> f64) {
-        let count = self.learned.len();
-        for (at, sum) in self.by_learned.iter_mut().enumerate() {
-            *sum += slope(at / count, at % count) * self.learned[at % count];
-        }
+        self.misfits.iter_mut().zip(misfits).for_each(|(to, from)| *to += from);
+        self.by_learned.iter_mut().zip(by_learned).for_each(|(to, from)| *to += from);
     }
 
     /// Divides each row.
     pub(super) fn divide(&mut self, by: impl Iterator<Item = f64>) {
-        let (width, learned) = (self.dofs.len(), self.learned.len());
+        let (width, rows) = (self.dofs.len(), self.misfits.len());
+        let learned = self.by_learned.len() / rows.max(1);
         for (row, by) in by.enumerate() {
             self.misfits[row] /= by;
             self.slopes[row * width..(row + 1) * width].iter_mut().for_each(|slope| *slope /= by);

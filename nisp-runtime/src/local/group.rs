@@ -7,53 +7,32 @@
 
 use rayon::prelude::*;
 
-use super::block::Block;
+use super::block::{Block, Layout};
 use super::heads::Heads;
-use super::lattice::{Exponents, Lattice, MOST_COORDINATES, NONE, Place, Span};
+use super::lattice::{Exponents, Lattice, Span};
+use super::sites::Sites;
+use super::testing::{Test, tests};
 use crate::kernel::GroupKernel;
 use crate::residual::Points;
 use crate::schema::{self, TermKind};
 use crate::simd::Isa;
 
-/// Padding of the points, as everywhere in the engine.
-const LANES: usize = 16;
-
-/// Tests whose hats see less than this share of the fullest one's weight are left out.
-const LEAST_MASS: f64 = 0.05;
-
 /// A group at its points.
 pub(super) struct Group {
     pub(super) schema: &'static schema::Group,
     kernel: GroupKernel<f64>,
-    pub(super) sites: Sites,
+    sites: Sites,
     operators: Vec<Vec<(Exponents, f64)>>,
     /// By row: what it is divided by.
     pub(super) sigma: Vec<f64>,
     /// Weights of the points; empty if each has rows of its own.
     pub(super) weights: Vec<f64>,
-    nodes: Vec<Node>,
+    /// What weighted points are tested with, their points cell by cell.
+    tests: Vec<Test>,
     /// Degree of the tests.
-    tests: usize,
-    /// Heads that the group reads.
-    heads: Vec<usize>,
-}
-
-/// Points as programs read them, and their places.
-pub(super) struct Sites {
-    pub(super) count: usize,
-    stride: usize,
-    coordinates: Vec<f64>,
-    columns: Vec<f64>,
-    /// `[head][point]`
-    places: Vec<Vec<Place>>,
-}
-
-/// A test: the points around a node with their shares, which add up to one.
-struct Node {
-    points: Vec<(u32, f64)>,
-    /// First of the cells around it.
-    cell: [usize; MOST_COORDINATES],
-    weight: f64,
+    degree: usize,
+    /// By head, the highest derivative that the group reads; nothing of those that it does not read.
+    highest: Vec<Option<u8>>,
 }
 
 /// Values of all rows at all points, and their derivatives.
@@ -65,32 +44,15 @@ pub(super) struct Evaluated {
     bars: Vec<Vec<f64>>,
 }
 
-impl Sites {
-    /// Points given flat, point by point, with columns `[column][point]`.
-    pub(super) fn new(heads: &Heads, flat: &[f64], columns: &[Vec<f64>]) -> Self {
-        let inputs = heads.lattices[0].dimensions();
-        let count = flat.len() / inputs;
-        let stride = count.next_multiple_of(LANES);
-        let spread = |value: &dyn Fn(usize) -> f64| (0..stride).map(|p| value(p.min(count - 1))).collect::<Vec<_>>();
-        Self {
-            count,
-            stride,
-            coordinates: (0..inputs).flat_map(|i| spread(&|p| flat[p * inputs + i])).collect(),
-            columns: columns.iter().flat_map(|column| spread(&|p| column[p])).collect(),
-            places: heads.lattices.iter().map(|l| flat.chunks_exact(inputs).map(|x| l.place(x)).collect()).collect(),
-        }
-    }
-}
-
 impl Group {
-    /// A group whose points' weights are given, or none.
+    /// A group at points, given flat with columns `[column][point]`, whose weights are given, or none.
     pub(super) fn new(
         schema: &'static schema::Group,
         kernel: GroupKernel<f64>,
-        sites: Sites,
+        heads: &Heads,
+        (flat, columns): (&[f64], &[Vec<f64>]),
         weights: Vec<f64>,
-        (base, tests): (&Lattice, usize),
-        flat: &[f64],
+        (base, degree): (&Lattice, usize),
     ) -> Self {
         let operator = |jet: &schema::Jet| {
             let term = |(index, coefficient): &(&[u8], f64)| {
@@ -100,21 +62,24 @@ impl Group {
             };
             jet.operator.iter().map(term).collect()
         };
-        let mut heads: Vec<usize> = schema.jets.iter().map(|jet| jet.head).collect();
-        heads.sort_unstable();
-        heads.dedup();
-        let nodes = if weights.is_empty() { Vec::new() } else { nodes(base, tests, flat, &weights) };
-        Self {
-            schema,
-            kernel,
-            operators: schema.jets.iter().map(operator).collect(),
-            sigma: vec![1.0; schema.rows],
-            sites,
-            weights,
-            nodes,
-            tests,
-            heads,
+        let operators: Vec<Vec<(Exponents, f64)>> = schema.jets.iter().map(operator).collect();
+        let mut highest = vec![None; heads.lattices.len()];
+        for (jet, operator) in schema.jets.iter().zip(&operators) {
+            let order = operator.iter().flat_map(|(exponents, _)| exponents).copied().max();
+            highest[jet.head] = highest[jet.head].max(order);
         }
+        let sites = Sites::new(heads, &highest, flat, columns);
+        let mut tests = if weights.is_empty() { Vec::new() } else { tests(base, degree, flat, &weights) };
+        let cells = |p: u32| sites.splines.iter().filter_map(move |s| s.places.get(p as usize)).map(|place| place.cell);
+        for test in &mut tests {
+            test.points.sort_by(|&(p, _), &(q, _)| cells(p).cmp(cells(q)));
+        }
+        Self { schema, kernel, operators, sigma: vec![1.0; schema.rows], sites, weights, tests, degree, highest }
+    }
+
+    /// Other points than the group's own, without columns.
+    pub(super) fn sites_at(&self, heads: &Heads, flat: &[f64]) -> Sites {
+        Sites::new(heads, &self.highest, flat, &[])
     }
 
     /// Rows of the group at other points, and their derivatives if `slopes`.
@@ -129,14 +94,22 @@ impl Group {
         let stride = sites.stride;
         let count = self.schema.jets.len();
         let mut jets = vec![0.0; count * stride];
+        let spread: Vec<Vec<f64>> = (0..heads.lattices.len()).map(|head| heads.spread(head, theta)).collect();
         // Bounded heads: the slope of the jet by the head, and what the program does not see of it.
         let mut bounded: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
         jets.par_chunks_mut(stride).zip(&mut bounded).enumerate().for_each(|(at, (jets, bounded))| {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
             let is_value = jet.degree.iter().all(|&n| n == 0);
-            let mut scratch = Vec::new();
+            let (splines, lattice) = (&sites.splines[jet.head], &heads.lattices[jet.head]);
+            let lines = lattice.lines();
+            let mut across = Vec::new();
             for (p, out) in jets.iter_mut().enumerate().take(sites.count) {
-                let value = heads.derivative(jet.head, &sites.places[jet.head][p], operator, theta, &mut scratch);
+                let cell = &spread[jet.head][lattice.first(&splines.places[p])..];
+                let term = |(exponents, coefficient): &(Exponents, f64)| {
+                    let along = splines.factors(p, exponents, &mut across);
+                    coefficient * contracted(cell, &lines, &across, along)
+                };
+                let value = heads.scale[jet.head] * operator.iter().map(term).sum::<f64>();
                 *out = if heads.bound[jet.head].is_some() && is_value {
                     let (raw, slope, rest) = heads.raw(jet.head, value);
                     bounded.push((slope, rest));
@@ -187,7 +160,8 @@ impl Group {
         Evaluated { stride, rows, bars }
     }
 
-    fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
+    /// Rows of the group at its own points, and their derivatives if `slopes`.
+    pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
         self.evaluate_at(&self.sites, heads, theta, scalars, slopes)
     }
 
@@ -198,6 +172,11 @@ impl Group {
         own.flat_map(|term| term.first..term.first + term.rows).collect()
     }
 
+    /// False where a cloud is all that the group is compared with.
+    pub(super) fn has_rows(&self) -> bool {
+        self.schema.terms.iter().any(|term| !matches!(term.kind, TermKind::Chamfer { .. }))
+    }
+
     /// Name of the term of one of [`Group::own_rows`], as the user wrote it.
     pub(super) fn name(&self, at: usize) -> String {
         let row = self.own_rows()[at];
@@ -206,45 +185,71 @@ impl Group {
     }
 
     /// Rows over their tolerances and their derivatives.
-    pub(super) fn blocks(&self, heads: &Heads, theta: &[f64], scalars: &[f64], learned: &[f64]) -> Vec<Block> {
+    pub(super) fn blocks(&self, heads: &Heads, evaluated: &Evaluated, learned: &[f64]) -> Vec<Block> {
         let rows = self.own_rows();
+        let layout = self.layout(heads, rows.len(), learned.len());
         if rows.is_empty() {
             return Vec::new();
         }
-        let evaluated = self.evaluate(heads, theta, scalars, true);
-        let at_point = |p: usize| {
-            let mut block = self.empty(heads, rows.len(), learned, |lattice| {
-                heads.lattices[lattice].cell_span(&self.sites.places[lattice][p])
-            });
-            self.add(&mut block, heads, &evaluated, &rows, p, 1.0);
-            block
-        };
-        let mut points: Vec<Block> = (0..self.sites.count).into_par_iter().map(at_point).collect();
+        let mut records = vec![0.0; self.sites.count * layout.len()];
+        records.par_chunks_exact_mut(layout.len()).enumerate().for_each_init(Vec::new, |across, (p, record)| {
+            for (misfit, &row) in record.iter_mut().zip(&rows) {
+                *misfit = evaluated.row(row, p);
+            }
+            let seed = |at: usize, bar| evaluated.bar(rows[at], bar, p);
+            self.add_slopes(heads, &self.sites, p, (layout, record), learned, seed, across);
+        });
+        let record = |p: usize| &records[p * layout.len()..][..layout.len()];
         if self.weights.is_empty() {
-            points.par_iter_mut().for_each(|block| block.divide(rows.iter().map(|&row| self.sigma[row])));
-            return points;
+            let at_point = |p: usize| {
+                let mut block = Block::of(layout, record(p), self.dofs(heads, |head| self.cell(heads, p, head)));
+                block.divide(rows.iter().map(|&row| self.sigma[row]));
+                block
+            };
+            return (0..self.sites.count).into_par_iter().map(at_point).collect();
         }
         let dimensions = heads.lattices[0].dimensions();
-        self.nodes
-            .par_iter()
-            .map(|node| {
-                let mut block = self.empty(heads, rows.len(), learned, |head| self.span(heads, node, head));
-                node.points.iter().for_each(|&(p, share)| block.add_share(&points[p as usize], share, dimensions));
-                block.divide(rows.iter().map(|&row| self.sigma[row] / node.weight));
-                block
-            })
-            .collect()
+        let tested = |sum: &mut Vec<f64>, test: &Test| {
+            let mut block = Block::new(layout, self.dofs(heads, |head| self.span(heads, test, head)));
+            let cells = |p: u32| self.read().map(move |head| self.sites.splines[head].places[p as usize].cell);
+            for points in test.points.chunk_by(|&(p, _), &(q, _)| cells(p).eq(cells(q))) {
+                sum.clear();
+                sum.resize(layout.len(), 0.0);
+                for &(p, share) in points {
+                    sum.iter_mut().zip(record(p as usize)).for_each(|(sum, value)| *sum += share * value);
+                }
+                let p = points[0].0 as usize;
+                let boxes = self.read().map(|head| (self.cell(heads, p, head), self.span(heads, test, head)));
+                block.add(layout, sum, boxes, dimensions);
+            }
+            block.divide(rows.iter().map(|&row| self.sigma[row] / test.weight));
+            block
+        };
+        self.tests.par_iter().map_init(Vec::new, tested).collect()
+    }
+
+    /// Heads that the group reads.
+    fn read(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.highest.len()).filter(|&head| self.highest[head].is_some())
+    }
+
+    /// How rows at a point lie in memory.
+    fn layout(&self, heads: &Heads, rows: usize, learned: usize) -> Layout {
+        Layout { rows, learned, width: self.read().map(|head| heads.lattices[head].per_cell()).sum() }
     }
 
     /// Half the sum of squares of the rows over their tolerances, integrals among them.
     pub(super) fn loss(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> f64 {
+        if !self.has_rows() {
+            return 0.0;
+        }
         let evaluated = self.evaluate(heads, theta, scalars, false);
         let square = |row: usize, value: f64| 0.5 * (value / self.sigma[row]).powi(2);
         let mut own = 0.0;
         for row in self.own_rows() {
             own += match self.weights.is_empty() {
                 true => (0..self.sites.count).map(|p| square(row, evaluated.row(row, p))).sum::<f64>(),
-                false => self.nodes.iter().map(|node| square(row, node.weight * node.mean(&evaluated, row))).sum(),
+                false => self.tests.iter().map(|test| square(row, test.weight * evaluated.mean(test, row))).sum(),
             };
         }
         let integrals = self.targets(scalars).into_iter().map(|(row, target)| {
@@ -272,84 +277,104 @@ impl Group {
     }
 
     /// Functions of a head around a test.
-    fn span(&self, heads: &Heads, node: &Node, head: usize) -> Span {
+    fn span(&self, heads: &Heads, test: &Test, head: usize) -> Span {
         let lattice = &heads.lattices[head];
         let times = lattice.cells[0] / heads.lattices.iter().map(|l| l.cells[0]).min().unwrap_or(1);
-        Span { first: node.cell.map(|cell| cell * times), count: (self.tests + 1) * times + lattice.degree }
+        Span { first: test.cell.map(|cell| cell * times), count: (self.degree + 1) * times + lattice.degree }
     }
 
-    /// One row at a point, of nothing yet.
-    pub(super) fn at_point(&self, heads: &Heads, sites: &Sites, p: usize, learned: &[f64]) -> Block {
-        self.empty(heads, 1, learned, |head| heads.lattices[head].cell_span(&sites.places[head][p]))
+    /// Functions of a head on the cell of one of the group's points.
+    fn cell(&self, heads: &Heads, p: usize, head: usize) -> Span {
+        heads.lattices[head].cell_span(&self.sites.splines[head].places[p])
     }
 
-    fn empty(&self, heads: &Heads, rows: usize, learned: &[f64], span: impl Fn(usize) -> Span) -> Block {
-        let mut block = Block::new(rows, learned);
-        for &head in &self.heads {
-            let span = span(head);
-            let first = heads.first[head] as u32;
-            let numbers = heads.lattices[head].kept(span);
-            block.add_head(head, span, numbers.map(|n| if n == NONE { NONE } else { first + n }));
-        }
-        block
+    /// Numbers of the coefficients of boxes of functions.
+    fn dofs(&self, heads: &Heads, span: impl Fn(usize) -> Span) -> Vec<u32> {
+        self.read().flat_map(|head| heads.dofs(head, span(head))).collect()
     }
 
-    /// Adds a point's rows and their derivatives, times its share.
-    fn add(&self, block: &mut Block, heads: &Heads, evaluated: &Evaluated, rows: &[usize], p: usize, share: f64) {
-        for (at, &row) in rows.iter().enumerate() {
-            block.misfits[at] += share * evaluated.rows[row * evaluated.stride + p];
-        }
-        self.add_slopes(block, heads, &self.sites, p, |at, bar| share * evaluated.bar(rows[at], bar, p));
-    }
-
-    /// Adds the derivatives of rows, of which `seed(row, jet or learned scalar)` gives the derivative by a jet.
-    pub(super) fn add_slopes(
+    /// A row at a point of which the misfit is known, and by `seed(jet or learned scalar)` the derivatives.
+    pub(super) fn at_point(
         &self,
-        block: &mut Block,
+        heads: &Heads,
+        (sites, p): (&Sites, usize),
+        learned: &[f64],
+        misfit: f64,
+        seed: impl Fn(usize) -> f64,
+    ) -> Block {
+        let layout = self.layout(heads, 1, learned.len());
+        let mut record = vec![0.0; layout.len()];
+        record[0] = misfit;
+        self.add_slopes(heads, sites, p, (layout, &mut record), learned, |_, bar| seed(bar), &mut Vec::new());
+        let cell = |head: usize| heads.lattices[head].cell_span(&sites.splines[head].places[p]);
+        Block::of(layout, &record, self.dofs(heads, cell))
+    }
+
+    /// Adds to the rows of a point their derivatives, of which `seed(row, jet or learned scalar)` gives those by jets.
+    #[expect(clippy::too_many_arguments)]
+    fn add_slopes(
+        &self,
         heads: &Heads,
         sites: &Sites,
         p: usize,
+        (layout, record): (Layout, &mut [f64]),
+        learned: &[f64],
         seed: impl Fn(usize, usize) -> f64,
+        across: &mut Vec<f64>,
     ) {
-        let mut values = Vec::new();
+        let (_, by_learned, slopes) = layout.split_mut(record);
+        let mut first = vec![0; heads.lattices.len()];
+        let mut width = 0;
+        for head in self.read() {
+            first[head] = width;
+            width += heads.lattices[head].per_cell();
+        }
         for (number, (jet, operator)) in self.schema.jets.iter().zip(&self.operators).enumerate() {
-            let lattice = &heads.lattices[jet.head];
-            let place = &sites.places[jet.head][p];
-            values.resize(lattice.per_cell(), 0.0);
             for (exponents, coefficient) in operator {
-                lattice.values(place, exponents, &mut values);
+                let along = sites.splines[jet.head].factors(p, exponents, across);
                 let factor = coefficient * heads.scale[jet.head];
-                block.add_cell(jet.head, lattice, place, &values, |row| factor * seed(row, number));
+                for row in 0..layout.rows {
+                    let factor = factor * seed(row, number);
+                    if factor == 0.0 {
+                        continue;
+                    }
+                    let slopes = &mut slopes[row * layout.width + first[jet.head]..];
+                    for (line, across) in slopes.chunks_exact_mut(along.len()).zip(across.iter()) {
+                        let factor = factor * across;
+                        line.iter_mut().zip(along).for_each(|(slope, along)| *slope += factor * along);
+                    }
+                }
             }
         }
-        block.add_learned(|row, learned| seed(row, self.schema.jets.len() + learned));
+        for (row, by_learned) in by_learned.chunks_exact_mut(learned.len().max(1)).enumerate() {
+            for (at, (sum, learned)) in by_learned.iter_mut().zip(learned).enumerate() {
+                *sum += seed(row, self.schema.jets.len() + at) * learned;
+            }
+        }
     }
 
     /// The weighted sums of integral terms over the points, and their derivatives by every coefficient.
-    pub(super) fn integrals(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Integral> {
-        let rows = self.targets(scalars);
-        if rows.is_empty() {
-            return Vec::new();
-        }
-        let evaluated = self.evaluate(heads, theta, scalars, true);
-        rows.into_iter()
-            .map(|(row, target)| {
-                let mut sum = Integral { misfit: -target, slopes: vec![0.0; heads.len()], sigma: self.sigma[row] };
-                for p in 0..self.sites.count {
-                    sum.misfit += self.weight(p) * evaluated.rows[row * evaluated.stride + p];
-                    let mut block =
-                        self.empty(heads, 1, &[], |head| heads.lattices[head].cell_span(&self.sites.places[head][p]));
-                    self.add(&mut block, heads, &evaluated, &[row], p, self.weight(p));
-                    for (&dof, slope) in block.dofs.iter().zip(&block.slopes) {
-                        if dof != NONE {
-                            sum.slopes[dof as usize] += slope;
-                        }
-                    }
-                }
-                sum
-            })
-            .collect()
+    pub(super) fn integrals(&self, heads: &Heads, evaluated: &Evaluated, scalars: &[f64]) -> Vec<Integral> {
+        let integral = |(row, target): (usize, f64)| {
+            let mut sum = Integral { misfit: -target, slopes: vec![0.0; heads.len()], sigma: self.sigma[row] };
+            for p in 0..self.sites.count {
+                let seed = |bar| evaluated.bar(row, bar, p);
+                let block = self.at_point(heads, (&self.sites, p), &[], evaluated.row(row, p), seed);
+                sum.misfit += self.weight(p) * block.misfits[0];
+                block.kept().for_each(|(at, dof)| sum.slopes[dof as usize] += self.weight(p) * block.slopes[at]);
+            }
+            sum
+        };
+        self.targets(scalars).into_iter().map(integral).collect()
     }
+}
+
+/// Sum of a cell's coefficients, of which `lines` says where each line begins, times splines along and across the lines.
+fn contracted(cell: &[f64], lines: &[usize], across: &[f64], along: &[f64]) -> f64 {
+    let line = |(&first, across): (&usize, &f64)| {
+        across * cell[first..first + along.len()].iter().zip(along).map(|(c, value)| c * value).sum::<f64>()
+    };
+    lines.iter().zip(across).map(line).sum()
 }
 
 /// An integral's misfit, and its derivative by every coefficient.
@@ -359,14 +384,12 @@ pub(super) struct Integral {
     pub(super) sigma: f64,
 }
 
-impl Node {
-    /// Weighted mean of a row.
-    fn mean(&self, evaluated: &Evaluated, row: usize) -> f64 {
-        self.points.iter().map(|&(p, share)| share * evaluated.row(row, p as usize)).sum()
-    }
-}
-
 impl Evaluated {
+    /// Mean of a row over a test's points.
+    fn mean(&self, test: &Test, row: usize) -> f64 {
+        test.points.iter().map(|&(p, share)| share * self.row(row, p as usize)).sum()
+    }
+
     /// Value of a row at a point.
     pub(super) fn row(&self, row: usize, p: usize) -> f64 {
         self.rows[row * self.stride + p]
@@ -376,28 +399,4 @@ impl Evaluated {
     pub(super) fn bar(&self, row: usize, bar: usize, p: usize) -> f64 {
         self.bars[row][bar * self.stride + p]
     }
-}
-
-/// The tests of a group: splines of a degree on the base lattice, each with the points that it sees.
-fn nodes(base: &Lattice, degree: usize, flat: &[f64], weights: &[f64]) -> Vec<Node> {
-    let tests = base.refined(degree, 1);
-    let mut found: std::collections::BTreeMap<usize, Node> = std::collections::BTreeMap::new();
-    let mut values = vec![0.0; tests.per_cell()];
-    for (p, point) in flat.chunks_exact(tests.dimensions()).enumerate() {
-        let place = tests.place(point);
-        tests.values(&place, &Exponents::default(), &mut values);
-        let span = tests.cell_span(&place);
-        for ((number, value), cell) in tests.numbers(span).zip(&values).zip(base.around(&place, degree)) {
-            let node = found.entry(number).or_insert_with(|| Node { points: Vec::new(), cell, weight: 0.0 });
-            node.points.push((p as u32, weights[p] * value));
-            node.weight += weights[p] * value;
-        }
-    }
-    let most = found.values().map(|node| node.weight).fold(0.0, f64::max);
-    let mut nodes: Vec<Node> = found.into_values().filter(|node| node.weight > LEAST_MASS * most).collect();
-    for node in &mut nodes {
-        node.points.iter_mut().for_each(|(_, share)| *share /= node.weight);
-        node.weight = (node.weight / most).sqrt();
-    }
-    nodes
 }

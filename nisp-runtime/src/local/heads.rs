@@ -1,7 +1,7 @@
 //! All heads of a scene on their lattices, and the vector of their coefficients.
 
 use super::block::Block;
-use super::lattice::{Exponents, Lattice, MOST_COORDINATES, NONE, Place};
+use super::lattice::{Exponents, Lattice, NONE, Span};
 use crate::engine::Scaling;
 use crate::functions::{sigmoid, softplus};
 use crate::problem::Bound;
@@ -50,57 +50,42 @@ impl Heads {
         self.first[self.first.len() - 1]
     }
 
-    /// Sum of coefficients times a derivative of the splines at a place, times the scale; without the offset.
-    pub(super) fn derivative(
-        &self,
-        head: usize,
-        place: &Place,
-        operator: &[(Exponents, f64)],
-        theta: &[f64],
-        scratch: &mut Vec<f64>,
-    ) -> f64 {
-        let lattice = &self.lattices[head];
-        scratch.resize(lattice.per_cell(), 0.0);
-        let mut sum = 0.0;
-        for (exponents, coefficient) in operator {
-            lattice.values(place, exponents, scratch);
-            let numbers = lattice.kept(lattice.cell_span(place));
-            let parts = numbers.zip(scratch.iter()).map(|(number, value)| match number {
-                NONE => 0.0,
-                number => theta[self.first[head] + number as usize] * value,
-            });
-            sum += coefficient * parts.sum::<f64>();
-        }
-        sum * self.scale[head]
+    /// A head's coefficients by the full numbers of its functions; zero for those that are not kept.
+    pub(super) fn spread(&self, head: usize, theta: &[f64]) -> Vec<f64> {
+        let own = &theta[self.first[head]..self.first[head + 1]];
+        self.lattices[head].spread(own)
+    }
+
+    /// Numbers of the coefficients of a box of a head's functions; [`NONE`] for those that are not kept.
+    pub(super) fn dofs(&self, head: usize, span: Span) -> impl Iterator<Item = u32> + '_ {
+        let first = self.first[head] as u32;
+        self.lattices[head].kept(span).map(move |n| if n == NONE { NONE } else { first + n })
+    }
+
+    /// Sum of coefficients times splines at a point, times the scale; without the offset.
+    fn sum(&self, head: usize, point: &[f64], theta: &[f64]) -> f64 {
+        self.parts(head, point).into_iter().map(|(at, value)| theta[at] * value).sum()
+    }
+
+    /// The coefficients that a head's value at a point depends on, and its derivatives by them.
+    fn parts(&self, head: usize, point: &[f64]) -> Vec<(usize, f64)> {
+        let (lattice, scale) = (&self.lattices[head], self.scale[head]);
+        let place = lattice.place(point);
+        let mut splines = vec![0.0; lattice.per_cell()];
+        lattice.values(&place, &Exponents::default(), &mut splines);
+        let dofs = self.dofs(head, lattice.cell_span(&place)).zip(splines);
+        dofs.filter(|(dof, _)| *dof != NONE).map(|(dof, value)| (dof as usize, scale * value)).collect()
     }
 
     /// A head's row at a point whose misfit is what `theta` would have to be changed by for this head to equal another's.
-    pub(super) fn difference(
-        &self,
-        head: usize,
-        point: &[f64],
-        other: &Heads,
-        theta: &[f64],
-        learned: &[f64],
-    ) -> Block {
-        let lattice = &self.lattices[head];
-        let place = lattice.place(point);
-        let mut values = vec![0.0; lattice.per_cell()];
-        lattice.values(&place, &Exponents::default(), &mut values);
-        let mut block = Block::new(1, learned);
-        let first = self.first[head] as u32;
-        let span = lattice.cell_span(&place);
-        block.add_head(head, span, lattice.kept(span).map(|n| if n == NONE { NONE } else { first + n }));
-        block.add_cell(head, lattice, &place, &values, |_| self.scale[head]);
-        let away = other.lattices[head].place(point);
-        block.misfits[0] = -other.derivative(head, &away, &[(Exponents::default(), 1.0)], theta, &mut Vec::new());
-        block
+    pub(super) fn difference(&self, head: usize, point: &[f64], other: &Heads, theta: &[f64], learned: usize) -> Block {
+        let (dofs, slopes) = self.parts(head, point).into_iter().map(|(at, value)| (at as u32, value)).unzip();
+        Block { misfits: vec![-other.sum(head, point, theta)], by_learned: vec![0.0; learned], dofs, slopes }
     }
 
     /// Value of a head, within its bound.
-    pub(super) fn value(&self, head: usize, point: &[f64], theta: &[f64], scratch: &mut Vec<f64>) -> f64 {
-        let place = self.lattices[head].place(point);
-        let value = self.derivative(head, &place, &[([0; MOST_COORDINATES], 1.0)], theta, scratch);
+    pub(super) fn value(&self, head: usize, point: &[f64], theta: &[f64]) -> f64 {
+        let value = self.sum(head, point, theta);
         match self.bound[head] {
             Some((sign, bound)) => bound + sign * (sign * value).max(0.0),
             None => self.offset[head] + value,
@@ -114,14 +99,7 @@ impl Heads {
         point: &[f64],
         vectors: &'a [Vec<f64>],
     ) -> impl Iterator<Item = f64> + use<'a> {
-        let (lattice, scale) = (&self.lattices[head], self.scale[head]);
-        let place = lattice.place(point);
-        let mut splines = vec![0.0; lattice.per_cell()];
-        lattice.values(&place, &Exponents::default(), &mut splines);
-        let first = self.first[head];
-        let numbers = lattice.kept(lattice.cell_span(&place)).zip(splines);
-        let parts: Vec<(usize, f64)> =
-            numbers.filter(|(n, _)| *n != NONE).map(|(n, value)| (first + n as usize, scale * value)).collect();
+        let parts = self.parts(head, point);
         vectors.iter().map(move |vector| parts.iter().map(|&(at, value)| vector[at] * value).sum())
     }
 

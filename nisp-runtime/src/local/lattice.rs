@@ -143,6 +143,24 @@ impl Lattice {
         self.numbers(span).map(|at| self.kept[at])
     }
 
+    /// Values by the numbers of the functions that are kept, as values by full numbers; zero for the others.
+    pub(super) fn spread(&self, values: &[f64]) -> Vec<f64> {
+        let mut all = vec![0.0; self.full_len()];
+        self.full.iter().zip(values).for_each(|(&at, &value)| all[at] = value);
+        all
+    }
+
+    /// Full number of the first function that does not vanish on a place's cell.
+    pub(super) fn first(&self, place: &Place) -> usize {
+        self.numbers(Span { first: place.cell, count: 1 }).next().unwrap_or(0)
+    }
+
+    /// Where the lines of a cell's functions along the first coordinate begin, as full numbers from the cell's first.
+    pub(super) fn lines(&self) -> Vec<usize> {
+        let cell = Span { first: [0; MOST_COORDINATES], count: self.degree + 1 };
+        self.numbers(cell).step_by(self.degree + 1).collect()
+    }
+
     /// A derivative of the functions of a cell, in the order of [`Lattice::numbers`].
     pub(super) fn values(&self, place: &Place, exponents: &Exponents, out: &mut [f64]) {
         let count = self.degree + 1;

@@ -19,8 +19,11 @@ mod normal;
 mod place;
 mod prior;
 mod refuse;
+mod sites;
 mod solver;
+mod sorted;
 mod surface;
+mod testing;
 
 use std::time::Instant;
 
@@ -182,9 +185,8 @@ impl Stage<'_> {
 impl LocalSolution {
     /// Values of a head at points in the engine's units, flat.
     pub(crate) fn evaluate(&self, head: usize, points: &[f64]) -> Vec<f64> {
-        let mut scratch = Vec::new();
         let inputs = self.heads.lattices[head].dimensions();
-        points.chunks_exact(inputs).map(|point| self.heads.value(head, point, &self.theta, &mut scratch)).collect()
+        points.chunks_exact(inputs).map(|point| self.heads.value(head, point, &self.theta)).collect()
     }
 
     /// Standard deviations of a head at points in the engine's units, flat: root mean squares of draws from the posterior.

@@ -9,6 +9,11 @@ use rayon::prelude::*;
 
 use super::block::Block;
 use super::draws::Draws;
+use super::sorted::Sorted;
+use crate::simd::Isa;
+
+/// Pieces that the matrix is summed up in, at the same time: a fixed number, many enough for all threads.
+const PIECES: usize = 32;
 
 /// The normal matrix's lower triangle with its pattern, its gradient and its border.
 pub(super) struct Normal {
@@ -87,54 +92,63 @@ impl Normal {
 
     /// Adds the rows of blocks, in their order.
     pub(super) fn add_all(&mut self, blocks: &[Block]) {
-        // So many at a time that their products stay in cache.
-        for blocks in blocks.chunks(8) {
-            let products: Vec<Products> = blocks.par_iter().map(Products::of).collect();
-            blocks.iter().zip(&products).for_each(|(block, products)| self.add_products(block, products));
+        let sorted: Vec<Sorted> = blocks.par_iter().map(Sorted::of).collect();
+        self.add_products(&sorted);
+        for (block, sorted) in blocks.iter().zip(&sorted) {
+            self.add_gradient(block, sorted);
+            if let Some(draws) = &mut self.draws {
+                (0..block.misfits.len()).for_each(|row| draws.add_row(block, row));
+            }
         }
     }
 
-    /// Adds the rows of a block.
-    pub(super) fn add(&mut self, block: &Block) {
-        self.add_products(block, &Products::of(block));
-    }
-
-    fn add_products(&mut self, block: &Block, products: &Products) {
-        let rows = block.misfits.len();
-        if let Some(draws) = &mut self.draws {
-            (0..rows).for_each(|row| draws.add_row(block, row));
-        }
+    /// Adds the products of the rows' slopes, piece by piece of the matrix: every entry is summed up in the blocks' order.
+    fn add_products(&mut self, blocks: &[Sorted]) {
         let (starts, indices) = (self.pattern.col_ptr(), self.pattern.row_idx());
-        let Products { dofs, slopes, lower } = products;
-        let mut first = 0;
-        for (at, &column) in dofs.iter().enumerate() {
-            let column = column as usize;
-            for row in 0..rows {
-                let own = slopes[row * dofs.len() + at];
-                self.gradient[column] += own * block.misfits[row];
-                for learned in 0..self.learned {
-                    self.border[learned][column] += own * block.by_learned[row * self.learned + learned];
+        let columns = self.gradient.len();
+        let mut pieces = Vec::new();
+        let (mut rest, mut first) = (self.values.as_mut_slice(), 0);
+        for piece in 1..=PIECES {
+            let end = starts.partition_point(|&start| start < indices.len() * piece / PIECES).min(columns);
+            let (own, others) = rest.split_at_mut(starts[end] - starts[first]);
+            pieces.push((first..end, own));
+            (rest, first) = (others, end);
+        }
+        let isa = Isa::detect();
+        pieces.into_par_iter().for_each(|(columns, values)| {
+            let origin = starts[columns.start];
+            let mut line = Vec::new();
+            for block in blocks {
+                let from = block.dofs.partition_point(|&dof| (dof as usize) < columns.start);
+                for at in from..block.dofs.len() {
+                    let column = block.dofs[at] as usize;
+                    if column >= columns.end {
+                        break;
+                    }
+                    block.products(isa, at, &mut line);
+                    let range = starts[column]..starts[column + 1];
+                    let values = &mut values[range.start - origin..range.end - origin];
+                    block.scatter(at, &line, &indices[range], values);
                 }
             }
-            let line = &lower[first..first + dofs.len() - at];
-            first += line.len();
-            let mut place = starts[column];
-            let end = starts[column + 1];
-            for (sum, &row) in line.iter().zip(&dofs[at..]) {
-                let row = row as usize;
-                if place < end && indices[place] != row {
-                    place = first_from(&indices[..end], place, row);
-                }
-                if place < end && indices[place] == row {
-                    self.values[place] += sum;
-                    place += 1;
+        });
+    }
+
+    /// Adds what rows say of the gradient, the border and the corner.
+    fn add_gradient(&mut self, block: &Block, sorted: &Sorted) {
+        for (row, slopes) in sorted.slopes.chunks_exact(sorted.dofs.len().max(1)).enumerate() {
+            let by = &block.by_learned[row * self.learned..(row + 1) * self.learned];
+            for (&column, slope) in sorted.dofs.iter().zip(slopes) {
+                self.gradient[column as usize] += slope * block.misfits[row];
+                for (border, by) in self.border.iter_mut().zip(by) {
+                    border[column as usize] += slope * by;
                 }
             }
         }
-        for row in 0..rows {
+        for (row, misfit) in block.misfits.iter().enumerate() {
             let by = &block.by_learned[row * self.learned..(row + 1) * self.learned];
             for (i, a) in by.iter().enumerate() {
-                self.border_gradient[i] += a * block.misfits[row];
+                self.border_gradient[i] += a * misfit;
                 for (j, b) in by.iter().enumerate() {
                     self.corner[(i, j)] += a * b;
                 }
@@ -232,37 +246,6 @@ impl Normal {
     }
 }
 
-/// A block's rows by the coefficients that are kept, in ascending order, and the lower triangle of their products.
-struct Products {
-    dofs: Vec<u32>,
-    /// `[row][coefficient]`
-    slopes: Vec<f64>,
-    /// Column after column, from the diagonal down.
-    lower: Vec<f64>,
-}
-
-impl Products {
-    fn of(block: &Block) -> Self {
-        let mut kept: Vec<(usize, u32)> = block.kept().collect();
-        kept.sort_unstable_by_key(|&(_, dof)| dof);
-        let (width, count) = (block.dofs.len(), kept.len());
-        let rows = block.slopes.chunks_exact(width.max(1));
-        let slopes: Vec<f64> = rows.flat_map(|row| kept.iter().map(|&(at, _)| row[at])).collect();
-        let mut lower = vec![0.0; count * (count + 1) / 2];
-        for row in slopes.chunks_exact(count.max(1)) {
-            let mut first = 0;
-            for (at, &own) in row.iter().enumerate() {
-                let line = &mut lower[first..first + count - at];
-                first += line.len();
-                if own != 0.0 {
-                    line.iter_mut().zip(&row[at..]).for_each(|(sum, slope)| *sum += own * slope);
-                }
-            }
-        }
-        Self { dofs: kept.into_iter().map(|(_, dof)| dof).collect(), slopes, lower }
-    }
-}
-
 impl Factor {
     /// Solves the bordered system.
     pub(super) fn solve(&self, right: &[f64], below: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
@@ -308,17 +291,6 @@ impl Factor {
     pub(super) fn learned_variance(&self, at: usize) -> Option<f64> {
         self.schur.clone().try_inverse().map(|inverse| inverse[(at, at)])
     }
-}
-
-/// The first place at or after `from` whose index is not below `row`; usually near.
-fn first_from(indices: &[usize], from: usize, row: usize) -> usize {
-    let (mut low, mut step) = (from, 1);
-    while low + step < indices.len() && indices[low + step] < row {
-        low += step;
-        step *= 2;
-    }
-    let high = (low + step).min(indices.len());
-    low + indices[low..high].partition_point(|&index| index < row)
 }
 
 fn solve(factor: &Llt<usize, f64>, right: &[f64]) -> Vec<f64> {

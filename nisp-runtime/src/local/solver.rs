@@ -5,7 +5,7 @@ use rand::{RngExt, SeedableRng};
 
 use super::block::Block;
 use super::draws::Draws;
-use super::group::{Group, Sites};
+use super::group::Group;
 use super::heads::Heads;
 use super::lattice::Lattice;
 use super::meshes::{base, lattice, together};
@@ -131,10 +131,10 @@ impl<'a> Solver<'a> {
         let cell = (0..inputs).map(|axis| base.spacing(axis)).fold(0.0, f64::max);
         for (at, (kernel, schema)) in kernels.into_iter().zip(schema.groups).enumerate() {
             let flat = &bound.coordinates[at];
-            let sites = Sites::new(&heads, flat, &bound.columns[at]);
+            let points = (flat.as_slice(), bound.columns[at].as_slice());
             let measure = schema.terms.iter().find_map(|term| term.measure.as_ref());
             let weights = bound.weights(at, measure);
-            let mut group = Group::new(schema, kernel, sites, weights, (&base, settings.tests), flat);
+            let mut group = Group::new(schema, kernel, &heads, points, weights, (&base, settings.tests));
             for (term, size) in schema.terms.iter().zip(&bound.sizes[at]) {
                 let tolerance = if term.within.is_some() { 1.0 } else { TOLERANCE };
                 group.sigma[term.first..term.first + term.rows].fill(tolerance * size / term.weight.sqrt());
@@ -177,19 +177,21 @@ impl<'a> Solver<'a> {
     /// The state of another lattice on this one: its values at all points, by least squares.
     pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<Place, LocalError> {
         let inputs = self.heads.lattices[0].dimensions();
-        let unmoved = vec![0.0; state.learned.len()];
+        let learned = state.learned.len();
         self.normal.clear();
+        let mut rows = Vec::new();
         for (group, points) in self.bound.problem.scene().schema.groups.iter().zip(&self.bound.coordinates) {
             for head in 0..self.heads.lattices.len() {
                 for point in points.chunks_exact(inputs).filter(|_| group.jets.iter().any(|jet| jet.head == head)) {
-                    self.normal.add(&self.heads.difference(head, point, other, &state.theta, &unmoved));
+                    rows.push(self.heads.difference(head, point, other, &state.theta, learned));
                 }
             }
         }
+        self.normal.add_all(&rows);
         for at in 0..self.heads.len() {
             self.normal.add_stiffness(at, NEGLIGIBLE);
         }
-        (0..unmoved.len()).for_each(|at| self.normal.add_learned(at, 1.0, 0.0));
+        (0..learned).for_each(|at| self.normal.add_learned(at, 1.0, 0.0));
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
         let (theta, _) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
         // Who comes with a state needs no regression, and few steps before the penalty may end at its level.
@@ -368,7 +370,11 @@ impl<'a> Solver<'a> {
             if regress && !group.weights.is_empty() {
                 continue;
             }
-            let blocks = group.blocks(&self.heads, theta, &self.scalars, &slopes);
+            if !group.has_rows() {
+                continue;
+            }
+            let evaluated = group.evaluate(&self.heads, theta, &self.scalars, true);
+            let blocks = group.blocks(&self.heads, &evaluated, &slopes);
             for block in &blocks {
                 loss += half_square(block, |row| group.name(row))?;
                 rows += block.misfits.len();
@@ -377,21 +383,22 @@ impl<'a> Solver<'a> {
             if regress {
                 continue;
             }
-            for integral in group.integrals(&self.heads, theta, &self.scalars) {
+            for integral in group.integrals(&self.heads, &evaluated, &self.scalars) {
                 loss += 0.5 * (integral.misfit / integral.sigma).powi(2);
                 self.normal.add_dense(&integral.slopes, integral.misfit, integral.sigma);
             }
         }
         for surface in &self.surfaces {
             let group = &self.groups[surface.group];
-            for block in surface.blocks(group, &self.heads, theta, &self.scalars, &slopes, noise) {
-                half_square(&block, |_| format!("{}.{}", group.schema.name, surface.term))?;
-                self.normal.add(&block);
+            let blocks = surface.blocks(group, &self.heads, theta, &self.scalars, &slopes, noise);
+            for block in &blocks {
+                half_square(block, |_| format!("{}.{}", group.schema.name, surface.term))?;
                 for probe in &mut probes {
                     let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
                     block.kept().for_each(|(at, dof)| probe[dof as usize] += sign * block.slopes[at]);
                 }
             }
+            self.normal.add_all(&blocks);
             rows += surface.misfits().count();
             loss += surface.loss(noise);
         }

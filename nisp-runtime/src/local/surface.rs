@@ -7,7 +7,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::block::Block;
-use super::group::{Group, Sites};
+use super::group::Group;
 use super::heads::Heads;
 use crate::schema;
 
@@ -118,7 +118,7 @@ impl Surface {
         scalars: &[f64],
         flat: &[f64],
     ) -> Vec<Vector3<f64>> {
-        let sites = Sites::new(heads, flat, &[]);
+        let sites = group.sites_at(heads, flat);
         let rows = group.evaluate_at(&sites, heads, theta, scalars, false);
         (0..sites.count).map(|p| Vector3::from_fn(|c, _| rows.row(self.first + c, p))).collect()
     }
@@ -218,16 +218,12 @@ impl Surface {
         learned: &[f64],
         sigma: f64,
     ) -> Vec<Block> {
-        let sites = Sites::new(heads, &self.feet, &[]);
+        let sites = group.sites_at(heads, &self.feet);
         let evaluated = group.evaluate_at(&sites, heads, theta, scalars, true);
         let kept = (0..self.cloud.len()).filter(|&i| self.found[i]);
         kept.map(|i| {
-            let mut block = group.at_point(heads, &sites, i, learned);
-            block.misfits[0] = self.misfits[i];
-            let normal = self.normals[i];
-            group.add_slopes(&mut block, heads, &sites, i, |_, bar| {
-                (0..3).map(|c| normal[c] * evaluated.bar(self.first + c, bar, i)).sum()
-            });
+            let seed = |bar| (0..3).map(|c| self.normals[i][c] * evaluated.bar(self.first + c, bar, i)).sum();
+            let mut block = group.at_point(heads, (&sites, i), learned, self.misfits[i], seed);
             block.divide(std::iter::once(sigma / weight(self.misfits[i] / sigma).sqrt()));
             block
         })

@@ -1,0 +1,131 @@
+//! A block as the normal matrix wants it: products of its rows' slopes, column by column, and where they go.
+
+use super::block::Block;
+use crate::simd::{Isa, Kernel, Simd, dispatch};
+
+/// A block's rows by the coefficients that are kept, in ascending order.
+pub(super) struct Sorted {
+    pub(super) dofs: Vec<u32>,
+    /// By coefficient: where the run of consecutive numbers that it is in ends.
+    runs: Vec<u32>,
+    /// `[row][coefficient]`
+    pub(super) slopes: Vec<f64>,
+}
+
+impl Sorted {
+    pub(super) fn of(block: &Block) -> Self {
+        let mut kept: Vec<(usize, u32)> = block.kept().collect();
+        kept.sort_unstable_by_key(|&(_, dof)| dof);
+        let rows = block.slopes.chunks_exact(block.dofs.len().max(1));
+        let slopes: Vec<f64> = rows.flat_map(|row| kept.iter().map(|&(at, _)| row[at])).collect();
+        let dofs: Vec<u32> = kept.into_iter().map(|(_, dof)| dof).collect();
+        let mut runs = vec![dofs.len() as u32; dofs.len()];
+        for at in (1..dofs.len()).rev() {
+            runs[at - 1] = if dofs[at - 1] + 1 == dofs[at] { runs[at] } else { at as u32 };
+        }
+        Self { dofs, runs, slopes }
+    }
+
+    /// Products of a coefficient's slopes with its own and those of all after it, summed over the rows.
+    pub(super) fn products(&self, isa: Isa, at: usize, line: &mut Vec<f64>) {
+        line.clear();
+        line.resize(self.dofs.len() - at, 0.0);
+        dispatch(isa, Products { block: self, at, line });
+    }
+
+    /// Adds [`Sorted::products`] to a column of the matrix, which has entries for `indices`.
+    pub(super) fn scatter(&self, at: usize, line: &[f64], indices: &[usize], values: &mut [f64]) {
+        let (mut from, mut place) = (at, 0);
+        while from < self.dofs.len() && place < indices.len() {
+            let end = self.runs[from] as usize;
+            place = first_from(indices, place, self.dofs[from] as usize);
+            // Coefficients of a run that the pattern has all lie side by side there too.
+            let sums = &line[from - at..end - at];
+            let last = place + sums.len() - 1;
+            if indices.get(last).is_some_and(|&row| row == self.dofs[end - 1] as usize) {
+                values[place..=last].iter_mut().zip(sums).for_each(|(value, sum)| *value += sum);
+            } else {
+                for (sum, &row) in sums.iter().zip(&self.dofs[from..end]) {
+                    if let Ok(place) = indices.binary_search(&(row as usize)) {
+                        values[place] += sum;
+                    }
+                }
+            }
+            from = end;
+        }
+    }
+}
+
+/// Sums `slopes[row][at] * slopes[row][at..]` over the rows into a line.
+struct Products<'a> {
+    block: &'a Sorted,
+    at: usize,
+    line: &'a mut [f64],
+}
+
+impl Kernel<f64> for Products<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Simd<Elem = f64>>(self) {
+        let Self { block, at, line } = self;
+        for row in block.slopes.chunks_exact(block.dofs.len()) {
+            let (own, row) = (row[at], &row[at..]);
+            if own == 0.0 {
+                continue;
+            }
+            let factor = V::splat(own);
+            let (mut sums, mut slopes) = (line.chunks_exact_mut(V::LANES), row.chunks_exact(V::LANES));
+            for (sum, slope) in (&mut sums).zip(&mut slopes) {
+                // SAFETY: the chunks have LANES elements.
+                unsafe { V::load(slope.as_ptr()).mul_add(factor, V::load(sum.as_ptr())).store(sum.as_mut_ptr()) };
+            }
+            let rest = sums.into_remainder().iter_mut().zip(slopes.remainder());
+            rest.for_each(|(sum, slope)| *sum += own * slope);
+        }
+    }
+}
+
+/// The first place at or after `from` whose index is not below `row`; usually near.
+fn first_from(indices: &[usize], from: usize, row: usize) -> usize {
+    if indices.get(from).is_none_or(|&index| index >= row) {
+        return from;
+    }
+    let (mut low, mut step) = (from, 1);
+    while low + step < indices.len() && indices[low + step] < row {
+        low += step;
+        step *= 2;
+    }
+    let high = (low + step).min(indices.len());
+    low + indices[low..high].partition_point(|&index| index < row)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two rows of five coefficients, one of them not kept, into a column that lacks one of the products.
+    #[test]
+    fn products_land_where_the_pattern_has_them() {
+        let block = Block {
+            misfits: vec![0.0; 2],
+            by_learned: Vec::new(),
+            dofs: vec![7, 3, crate::local::lattice::NONE, 4, 5],
+            slopes: vec![1.0, 2.0, 9.0, 3.0, 0.5, -1.0, 4.0, 9.0, 0.0, 2.0],
+        };
+        let sorted = Sorted::of(&block);
+        assert_eq!(
+            (sorted.dofs.as_slice(), sorted.runs.as_slice()),
+            ([3, 4, 5, 7].as_slice(), [3, 3, 3, 4].as_slice())
+        );
+        let mut line = Vec::new();
+        sorted.products(Isa::detect(), 0, &mut line);
+        assert_eq!(line, [20.0, 6.0, 9.0, -2.0]);
+        let mut values = [1.0; 4];
+        sorted.scatter(0, &line, &[3, 4, 5, 9], &mut values);
+        assert_eq!(values, [21.0, 7.0, 10.0, 1.0]);
+        let mut values = [1.0; 4];
+        sorted.scatter(0, &line, &[3, 5, 6, 7], &mut values);
+        assert_eq!(values, [21.0, 10.0, 1.0, -1.0]);
+    }
+}
