@@ -9,7 +9,11 @@ fn plate(options: &[&str]) -> serde_json::Value {
         .args(options)
         .output()
         .unwrap();
-    assert!(out.path().join("out/plot.svg").exists(), "{}", String::from_utf8_lossy(&run.stderr));
+    let plot = std::fs::read_to_string(out.path().join("out/plot.svg"));
+    let plot = plot.unwrap_or_else(|error| panic!("{error}: {}", String::from_utf8_lossy(&run.stderr)));
+    for part in [">estimate<", ">truth<", ">error of w ["] {
+        assert!(plot.contains(part), "no `{part}` in the plot");
+    }
     serde_json::from_slice(&run.stdout).unwrap()
 }
 

@@ -67,38 +67,37 @@ fn maps(
     let scene = solution.scene();
     let dim = scene.coordinates.len();
     let plane = |points: &[f64]| -> Vec<[f64; 2]> { points.chunks_exact(dim).map(|p| [p[0], p[1]]).collect() };
-    let quantity = || Quantity::new(head.name, head.unit.text);
-    let found = estimates.iter().find(|estimate| estimate.name == head.name).map_or(&[][..], |found| &found.values);
+    let Some(estimate) = estimates.iter().find(|estimate| estimate.name == head.name) else {
+        return Err(DataError::Invalid(format!("the scene has no `{}` to draw", head.name)));
+    };
+    let found = &estimate.values;
     let places = plane(&prepared.points);
     let grid = Grid::from_points(&places, found)?;
     let mut outlines = Vec::new();
     if contact.pressure.is_some() {
         outlines.push(("estimated patch".to_string(), grid.clone(), contact.rule.threshold(found)));
     }
-    let mut panels = Vec::new();
-    let mut add = |title: &str, value, grid, scale, contours| {
-        panels.push(MapPanel { title: title.into(), value, grid, scale, contours });
-    };
-    match prepared.truth.as_ref().and_then(|truth| Some((truth, truth.of(head.name)?))) {
-        None => add("estimate", quantity(), grid, ColourScale::from_zero(found), outlines),
+    let panels = match prepared.truth.as_ref().and_then(|truth| Some((truth, truth.of(head.name)?))) {
+        None => {
+            let value = Quantity::new(head.name, head.unit.text);
+            let panel = super::panel("estimate", value, grid, ColourScale::from_zero(found));
+            vec![MapPanel { contours: outlines, ..panel }]
+        }
         Some((truth, real)) => {
             let at = plane(&truth.points);
             let mask = contact.truth.as_ref().map(|truth| Grid::from_mask(&at, &truth.mask)).transpose()?;
             let own: Vec<_> = mask.into_iter().map(|mask| ("true patch".to_string(), mask, 0.5)).collect();
-            let both = || outlines.iter().chain(&own).cloned().collect::<Vec<_>>();
-            let again = solution.evaluate(&truth.points).into_iter().find(|estimate| estimate.name == head.name);
-            let error: Vec<f64> =
-                again.iter().flat_map(|found| &found.values).zip(real).map(|(found, real)| found - real).collect();
-            let scale = ColourScale::from_zero(real);
-            // One wild point must not leave the rest of the error without a colour.
-            let most = real.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-            let shown: Vec<f64> = error.iter().map(|error| error.clamp(-most, most)).collect();
-            add("estimate", quantity(), grid, scale, both());
-            add("truth", quantity(), Grid::from_points(&at, real)?, scale, own.clone());
-            let difference = Quantity::new(&format!("error of {}", head.name), head.unit.text);
-            add("error", difference, Grid::from_points(&at, &error)?, ColourScale::diverging(&shown), both());
+            let both = [outlines, own.clone()].concat();
+            let truth = (truth.points.as_slice(), at.as_slice(), real);
+            let [shown, real, error] =
+                super::compared(solution, estimate, &places, truth, ColourScale::from_zero(real))?;
+            vec![
+                MapPanel { contours: both.clone(), ..shown },
+                MapPanel { contours: own, ..real },
+                MapPanel { contours: both, ..error },
+            ]
         }
-    }
+    };
     let axis = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
     field_map(&FieldMap {
         title: super::title(solution),

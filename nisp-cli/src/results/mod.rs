@@ -89,20 +89,28 @@ fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estima
     line_plot(&LinePlot { title: title(solution), subtitle: subtitle(prepared, solution), x, panels: panels.collect() })
 }
 
-/// Sources, or fields if there are none, over a plane domain.
+/// Sources, or fields if there are none, over a plane domain: a lone one beside its truth where that is known.
 fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Result<Picture, DataError> {
     let scene = solution.scene();
     let (points, _) = prepared.points.as_chunks::<2>();
     let sources = estimates.iter().any(|estimate| estimate.source);
-    let panels = estimates.iter().filter(|estimate| estimate.source == sources).take(3).map(|estimate| {
-        Ok(MapPanel {
-            title: "estimate".into(),
-            value: Quantity::new(estimate.name, estimate.unit.text),
-            grid: Grid::from_points(points, &estimate.values)?,
-            scale: ColourScale::sequential(&estimate.values),
-            contours: Vec::new(),
-        })
-    });
+    let shown: Vec<&Estimate> = estimates.iter().filter(|estimate| estimate.source == sources).take(3).collect();
+    let truth = prepared.truth.as_ref();
+    let panels = match (shown.as_slice(), truth.and_then(|truth| Some((truth, truth.of(shown.first()?.name)?)))) {
+        ([estimate], Some((truth, real))) => {
+            let (at, _) = truth.points.as_chunks::<2>();
+            let scale = ColourScale::sequential(real);
+            compared(solution, estimate, points, (&truth.points, at, real), scale)?.into()
+        }
+        _ => {
+            let panel = |estimate: &&Estimate| {
+                let scale = ColourScale::sequential(&estimate.values);
+                let value = Quantity::new(estimate.name, estimate.unit.text);
+                Ok(panel("estimate", value, Grid::from_points(points, &estimate.values)?, scale))
+            };
+            shown.iter().map(panel).collect::<Result<_, DataError>>()?
+        }
+    };
     let quantity = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
     field_map(&FieldMap {
         title: title(solution),
@@ -110,8 +118,36 @@ fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Res
         x: quantity(0),
         y: quantity(1),
         outline: prepared.outline.clone(),
-        panels: panels.collect::<Result<_, DataError>>()?,
+        panels,
     })
+}
+
+fn panel(title: &str, value: Quantity, grid: Grid, scale: ColourScale) -> MapPanel {
+    MapPanel { title: title.into(), value, grid, scale, contours: Vec::new() }
+}
+
+/// An estimate, the truth in the same colours, and what the estimate is off by; the truth with its points, flat and in the
+/// plane of the picture.
+fn compared(
+    solution: &Solution,
+    estimate: &Estimate,
+    places: &[[f64; 2]],
+    (points, at, real): (&[f64], &[[f64; 2]], &[f64]),
+    scale: ColourScale,
+) -> Result<[MapPanel; 3], DataError> {
+    let again = solution.evaluate(points).into_iter().find(|again| again.name == estimate.name);
+    let found = again.iter().flat_map(|found| &found.values);
+    let error: Vec<f64> = found.zip(real).map(|(found, real)| found - real).collect();
+    // One wild point must not leave the rest of the error without a colour.
+    let most = real.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let clamped: Vec<f64> = error.iter().map(|error| error.clamp(-most, most)).collect();
+    let quantity = |name: &str| Quantity::new(name, estimate.unit.text);
+    let difference = quantity(&format!("error of {}", estimate.name));
+    Ok([
+        panel("estimate", quantity(estimate.name), Grid::from_points(places, &estimate.values)?, scale),
+        panel("truth", quantity(estimate.name), Grid::from_points(at, real)?, scale),
+        panel("error", difference, Grid::from_points(at, &error)?, ColourScale::diverging(&clamped)),
+    ])
 }
 
 fn title(solution: &Solution) -> String {
