@@ -55,6 +55,9 @@ fn clouds() {
     // Near, but beside the membrane.
     cloud(&bubble(1.0, 0.08), "", &["% of the points lie where the membrane can be", "another object"]);
     cloud(&bubble(5.0, 0.0), "", &["another object"]);
+    let few = |count: usize| bubble(1.0, 0.0).lines().take(count).map(|line| format!("{line}\n")).collect::<String>();
+    cloud(&few(49), "", &["c.csv: 49 points do not show a membrane; record 50 at least"]);
+    cloud(&few(1), "", &["1 points do not show a membrane"]);
     // A sponge hangs below its origin.
     let sponge = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data/sponge/edge_1_cloud_0.ply");
     let line = format!("membrane --data {} --set p=5670", sponge.display());
@@ -66,7 +69,9 @@ fn clouds() {
     );
     let wrench = "--set force_x=0 --set force_y=0 --set force_z=3 --set torque_x=0 --set torque_y=0 --set torque_z=0";
     let parts = &["where the sponge can be", "another object"];
-    refused(&[("c.csv", &bubble(1.0, 0.0))], &format!("sponge --data c.csv {wrench}"), parts);
+    let line = format!("sponge --data c.csv {wrench}");
+    refused(&[("c.csv", &bubble(1.0, 0.0))], &line, parts);
+    refused(&[("c.csv", &few(49))], &line, &["49 points do not show a sponge; record 50 at least"]);
 }
 
 #[test]
