@@ -85,13 +85,14 @@ fn assignments() -> [f64; 2] {
     problem.set_cloud("surface", "cloud", cloud).expect("a term of the scene");
     let mut engine = problem.engine::<f64>(Isa::detect(), Architecture::modified(64, 3)).expect("a bound problem");
     let there = initialise(engine.layout(), 1);
-    let elsewhere: Vec<f64> = there.iter().map(|x| -2.0 * x).collect();
+    let [nearby, elsewhere] = [1.0 + 1e-12, -2.0].map(|factor| there.iter().map(|x| factor * x).collect::<Vec<f64>>());
     engine.loss(&there).expect("finite");
     let budget = Duration::from_secs(1);
-    let kept = best(budget, || {
-        assert!(!engine.accepted(&there));
-    });
     let mut back = false;
+    let kept = best(budget, || {
+        assert!(!engine.accepted(if back { &there } else { &nearby }));
+        back = !back;
+    });
     let anew = best(budget, || {
         assert!(engine.accepted(if back { &there } else { &elsewhere }));
         back = !back;

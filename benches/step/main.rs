@@ -1,7 +1,8 @@
 //! Whole Adam steps of the paper's scenes at the paper's sizes and their share of the machine's peak, iterations of
 //! Levenberg-Marquardt, and cost and memory against the number of points.
 //!
-//! `cargo bench --bench step`, or parts of it: `cargo bench --bench step -- table`, `... marquardt`, `... scale`
+//! `cargo bench --bench step`, or parts of it: `cargo bench --bench step -- table`, `... marquardt`, `... scale`. Words after
+//! `table` pick its rows: `... table membrane f32 avx512`
 
 mod allocated;
 mod scenes;
@@ -89,6 +90,11 @@ fn timed(mut work: impl FnMut()) -> [f64; 2] {
 /// Milliseconds of a step and the share of the peak that its matrix products are, by the clock and by processor time.
 /// The second is what a machine would show that runs nothing else.
 fn row<E: Precision>(scene: &Scene, isa: Isa, width: usize, threads: usize) {
+    let entries = [scene.name, &width.to_string(), E::NAME, isa.name()];
+    let mut words = std::env::args().skip_while(|word| word != "table").skip(1).filter(|word| !word.starts_with('-'));
+    if words.any(|word| !entries.contains(&word.as_str())) {
+        return;
+    }
     let architecture = Architecture::modified(width, scene.layers);
     let [wall, processor] = timed(adam::<E>(&scene.problem, isa, architecture));
     let processor = processor / threads as f64;
