@@ -379,6 +379,7 @@ impl<E: Real> Network<'_, E> {
         parts: Parts,
     ) {
         let kernel = tile.reading.layers;
+        let len = shape.points * kernel.channels() * shape.ld;
         let gated = self.layout.affine.len() > 1;
         if gated {
             let gate = GateAdjoint {
@@ -396,12 +397,12 @@ impl<E: Real> Network<'_, E> {
             };
             kernel.gate_adjoint(self.isa, layer);
             // z = d + (c - d) z': c takes the adjoint of the difference, d what is left of its own.
-            for (floor, &difference) in buffers.floor_bar.iter_mut().zip(buffers.difference_bar.iter()) {
+            for (floor, &difference) in buffers.floor_bar[..len].iter_mut().zip(&buffers.difference_bar[..len]) {
                 *floor -= difference;
             }
         } else {
             std::mem::swap(&mut buffers.bar, &mut buffers.seed);
-            buffers.output.copy_from_slice(&buffers.lifted[0]);
+            buffers.output[..len].copy_from_slice(&buffers.lifted[0][..len]);
         }
         self.output_used(tile, shape, buffers, gradient, parts, 0);
         self.lift_adjoint(tile, shape, buffers, gradient, parts);
