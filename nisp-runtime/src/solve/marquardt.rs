@@ -2,7 +2,7 @@
 //! damping controlled by the ratio of actual to predicted decrease (Nielsen 1999).
 //!
 //! Each step solves `(J^T J + A + lambda D) p = -g`, where `A` is the weight prior and `D` the diagonal of `J^T J`.
-//! The matrix is that of parameters or that of rows, whichever is smaller.
+//! The matrix is that of parameters or that of rows, whichever costs less.
 
 use super::damping::Damping;
 use super::fault::{Fault, Kind};
