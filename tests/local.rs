@@ -229,3 +229,44 @@ fn weights_are_in_the_unit_of_the_coordinates() {
         assert!((value - 150.0).abs() < 1e-3, "{value}");
     }
 }
+
+nisp::pde! {
+    /// A drumhead under a ceiling, above which its equation has no value.
+    pub mod low {
+        coordinates:
+            /// place
+            x [mm],
+            /// place
+            y [mm];
+        fields:
+            /// height
+            w [mm];
+        parameters:
+            /// tension
+            T [N/m] in 1 .. 1000 = 20,
+            /// pressure from below
+            p [Pa],
+            /// height of the ceiling
+            c [mm];
+
+        on interior { balance: -T * laplacian(w) == p + 1e-9 * p * sqrt(1 - w / c); }
+        on surface { cloud: chamfer [x, y, w]; }
+        on rim { held: w == 0; }
+
+        /// The tension.
+        scene under { learn T; }
+    }
+}
+
+/// Data lead every step through the ceiling: all of them are taken back, and what is left is the state before.
+#[test]
+fn steps_into_places_without_a_value_are_taken_back_and_named() {
+    let mut problem = Problem::new(scene::<low::under::Scene>());
+    problem.set_parameter("c", 0.5 * height(0.0, 0.0, 1.0)).unwrap();
+    bind(&mut problem, 0.0, 1.0, 0.0);
+    let solution = solve(&problem, None, 2);
+    assert_eq!(solution.status, Status::NotConverged);
+    let named = |warning: &str| warning.contains("interior.balance") && warning.contains("point");
+    assert!(solution.warnings.iter().any(|warning| named(&warning.message)), "{:?}", solution.warnings);
+    assert!(values(&solution.evaluate(&disc(200)), "w").iter().all(|w| w.is_finite()));
+}

@@ -70,6 +70,16 @@ fn a_converged_run_is_the_same_however_often_it_stopped() {
 }
 
 #[test]
+fn single_precision_gives_way_to_double_with_the_same_bits() {
+    let circuit = prepared("rlc", None, true);
+    let settings = settings(Optimizer::Lbfgs, Width::Auto);
+    let promoted = run(&circuit, &settings, 2000, 2, None);
+    assert_eq!(promoted.precision(), "f64", "a run that ends in double precision");
+    // In single precision, and in double.
+    stops_leave_no_trace(&circuit, &settings, &[50, 1990], 2000);
+}
+
+#[test]
 fn assignments_of_a_cloud_are_those_of_the_last_step() {
     let membrane = prepared("membrane", None, true);
     stops_leave_no_trace(&membrane, &settings(Optimizer::Adam, Width::F64), &[4], 7);

@@ -7,8 +7,8 @@ use super::init::normal;
 /// What the network is a function of. Coordinates are scaled to [-1, 1] beforehand.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Inputs {
-    /// Stretched at a hundredth of the range where there is one coordinate, and the plain coordinates where there are
-    /// more.
+    /// Stretched at a hundredth of the range where there is one coordinate (at a tenth where a source's value at its start
+    /// is a condition), and the plain coordinates where there are more.
     Automatic,
     /// The coordinates.
     Coordinates,

@@ -5,6 +5,7 @@
 
 mod checkpoint;
 mod course;
+mod layers;
 mod network;
 mod noise;
 mod place;
@@ -131,7 +132,9 @@ fn solve(
     monitor: &mut Monitor<'_>,
 ) -> Result<Solution, RecoverError> {
     let start = Instant::now();
-    let bound = problem.bound(settings.architecture.inputs)?;
+    let architecture = layers::suited(&problem.bound(settings.architecture.inputs)?, settings.architecture);
+    let settings = &Settings { architecture, ..settings.clone() };
+    let bound = problem.bound(architecture.inputs)?;
     let fingerprint = checkpoint::fingerprint(problem, settings);
     if checkpoint.is_some_and(|checkpoint| checkpoint.fingerprint != fingerprint) {
         return Err(CheckpointError::Other.into());

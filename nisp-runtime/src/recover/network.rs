@@ -31,6 +31,10 @@ const MOST_FOR_CURVATURE: usize = 4000;
 /// Steps that L-BFGS remembers.
 const MEMORY: usize = 20;
 
+/// Estimated distance of the loss from its minimum, relative to the loss, at which noisy data count as
+/// fitted: some hundredths of a logarithm of probability, which move the answer by a tenth of an error bar.
+const NOISE_TOLERANCE: f64 = 1e-4;
+
 /// Inner iterations of a Gauss-Newton step at most.
 const INNER: usize = 100;
 
@@ -43,6 +47,9 @@ pub(super) fn solve(
 ) -> Result<Solution, RecoverError> {
     let mut fit = Fit::new(&bound, settings)?;
     let optimizer = fit.choose(&course)?;
+    if optimizer == Optimizer::Evidence {
+        course.limits.tolerance = NOISE_TOLERANCE;
+    }
     let precision = match settings.precision {
         Width::Auto if !(optimizer.works_in_single() && bound.problem.scene().has_single()) => Width::F64,
         chosen => chosen,

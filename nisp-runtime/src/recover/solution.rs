@@ -110,7 +110,7 @@ pub(super) struct Run {
 
 /// What the prior's part of a deviation is multiplied by. Sources are rougher than a network whose smoothness suits the
 /// states believes. Chosen on simulated motions and voltages: `cargo run --release -p nisp-equations --example calibrate`.
-const DISTRUST: f64 = 1.75;
+const DISTRUST: f64 = 2.75;
 
 impl Solution {
     pub(super) fn new(bound: Bound, engine: Engine<f64>, outcome: Outcome<f64>, settings: &Settings, run: Run) -> Self {
