@@ -93,6 +93,7 @@ fn assignments() -> [f64; 2] {
         assert!(!engine.accepted(if back { &there } else { &nearby }));
         back = !back;
     });
+    back = false;
     let anew = best(budget, || {
         assert!(engine.accepted(if back { &there } else { &elsewhere }));
         back = !back;
