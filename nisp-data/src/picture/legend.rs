@@ -21,6 +21,8 @@ pub(super) enum Swatch<'a> {
 }
 
 const SWATCH: f64 = 28.0;
+/// Radius of the white inside of a hollow point, beside its own.
+pub(super) const HOLLOW: f64 = 0.5;
 const ROW: f64 = 1.55 * TICK;
 
 /// Breaks the entries into rows of at most `width`.
@@ -77,6 +79,9 @@ fn draw_swatch(canvas: &mut Canvas, [x, y]: [f64; 2], swatch: &Swatch<'_>) {
         Swatch::LineDot { stroke, radius } => {
             canvas.line(ends.0, ends.1, stroke);
             canvas.dots(&[[x + 0.5 * SWATCH, y]], radius, stroke.colour);
+            if !stroke.dash.is_empty() {
+                canvas.dots(&[[x + 0.5 * SWATCH, y]], HOLLOW * radius, "#ffffff");
+            }
         }
     }
 }

@@ -82,6 +82,9 @@ pub fn log_log(plot: &LogLog) -> Result<Picture, DataError> {
         }
         canvas.dots(&points, RADIUS + 1.5, "#ffffff");
         canvas.dots(&points, RADIUS, stroke.colour);
+        if !stroke.dash.is_empty() {
+            canvas.dots(&points, legend::HOLLOW * RADIUS, "#ffffff");
+        }
     }
     area.draw_frame(&mut canvas, true, true);
     area.draw_x_label(&mut canvas, &plot.x.label());
@@ -89,8 +92,10 @@ pub fn log_log(plot: &LogLog) -> Result<Picture, DataError> {
     Ok(canvas.finish(WIDTH, top + HEIGHT + x_axis_height() + 0.5 * MARGIN, &plot.title))
 }
 
+/// Colours in turn; the second time round lines are dotted and points hollow.
 fn stroke(index: usize) -> Stroke<'static> {
-    Stroke::solid(PALETTE[index % PALETTE.len()], 2.0)
+    let dash = if index < PALETTE.len() { "" } else { "2 4" };
+    Stroke { colour: PALETTE[index % PALETTE.len()], width: 2.0, dash }
 }
 
 fn swatch(index: usize, joined: bool) -> Swatch<'static> {

@@ -184,6 +184,12 @@ impl Group {
         format!("{}.{}", self.schema.name, term.map_or("", |term| term.name))
     }
 
+    /// The first point at which one of [`Group::own_rows`] is not finite.
+    pub(super) fn first_without_value(&self, evaluated: &Evaluated, at: usize) -> Option<usize> {
+        let row = self.own_rows()[at];
+        (0..self.sites.count).find(|&p| !evaluated.row(row, p).is_finite())
+    }
+
     /// Rows over their tolerances and their derivatives.
     pub(super) fn blocks(&self, heads: &Heads, evaluated: &Evaluated, learned: &[f64]) -> Vec<Block> {
         let rows = self.own_rows();

@@ -376,7 +376,9 @@ impl<'a> Solver<'a> {
             let evaluated = group.evaluate(&self.heads, theta, &self.scalars, true);
             let blocks = group.blocks(&self.heads, &evaluated, &slopes);
             for block in &blocks {
-                loss += half_square(block, |row| group.name(row))?;
+                loss += half_square(block, |at| {
+                    Fault::residual(group.name(at), group.first_without_value(&evaluated, at))
+                })?;
                 rows += block.misfits.len();
             }
             self.normal.add_all(&blocks);
@@ -392,7 +394,8 @@ impl<'a> Solver<'a> {
             let group = &self.groups[surface.group];
             let blocks = surface.blocks(group, &self.heads, theta, &self.scalars, &slopes, noise);
             for block in &blocks {
-                half_square(block, |_| format!("{}.{}", group.schema.name, surface.term))?;
+                let term = || format!("{}.{}", group.schema.name, surface.term);
+                half_square(block, |_| Fault::residual(term(), None))?;
                 for probe in &mut probes {
                     let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
                     block.kept().for_each(|(at, dof)| probe[dof as usize] += sign * block.slopes[at]);
@@ -496,10 +499,10 @@ struct Found {
     factor: Factor,
 }
 
-/// Half the sum of a block's squares; `name` names a row's term.
-fn half_square(block: &Block, name: impl Fn(usize) -> String) -> Result<f64, LocalError> {
+/// Half the sum of a block's squares; `fault` says of a row that it is not finite.
+fn half_square(block: &Block, fault: impl Fn(usize) -> Fault) -> Result<f64, LocalError> {
     match block.misfits.iter().position(|misfit| !misfit.is_finite()) {
-        Some(row) => Err(LocalError::Fault(Fault::residual(name(row), None))),
+        Some(row) => Err(LocalError::Fault(fault(row))),
         None => Ok(block.misfits.iter().map(|misfit| 0.5 * misfit * misfit).sum()),
     }
 }

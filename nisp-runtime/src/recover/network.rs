@@ -256,8 +256,9 @@ impl<'a> Fit<'a> {
         self.weigh(optimizer)?;
         let mut promotion = Promotion::new(self.bound, self.settings.architecture, &self.engine)?;
         let single = self.in_single(optimizer, course, Some(&mut promotion))?;
-        let gave_up = single.status == Status::NotConverged;
-        if !(promotion.due || gave_up) {
+        // What counts as a minimum in single precision may be none in double.
+        let was_ended = matches!(single.status, Status::Budget | Status::Interrupted);
+        if was_ended && !promotion.due {
             return Ok(single);
         }
         course.promote(&single);
