@@ -8,21 +8,20 @@
 use rayon::prelude::*;
 
 use super::block::{Block, Layout};
+use super::evaluated::Evaluated;
 use super::heads::Heads;
 use super::lattice::{Exponents, Lattice, Span};
 use super::sites::Sites;
 use super::testing::{Test, tests};
 use crate::kernel::GroupKernel;
-use crate::residual::Points;
 use crate::schema::{self, TermKind};
-use crate::simd::Isa;
 
 /// A group at its points.
 pub(super) struct Group {
     pub(super) schema: &'static schema::Group,
-    kernel: GroupKernel<f64>,
-    sites: Sites,
-    operators: Vec<Vec<(Exponents, f64)>>,
+    pub(super) kernel: GroupKernel<f64>,
+    pub(super) sites: Sites,
+    pub(super) operators: Vec<Vec<(Exponents, f64)>>,
     /// By row: what it is divided by.
     pub(super) sigma: Vec<f64>,
     /// Weights of the points; empty if each has rows of its own.
@@ -33,15 +32,6 @@ pub(super) struct Group {
     degree: usize,
     /// By head, the highest derivative that the group reads; nothing of those that it does not read.
     highest: Vec<Option<u8>>,
-}
-
-/// Values of all rows at all points, and their derivatives.
-pub(super) struct Evaluated {
-    stride: usize,
-    /// `[row][point]`
-    pub(super) rows: Vec<f64>,
-    /// By row: `[jet or learned scalar][point]`.
-    bars: Vec<Vec<f64>>,
 }
 
 impl Group {
@@ -80,89 +70,6 @@ impl Group {
     /// Other points than the group's own, without columns.
     pub(super) fn sites_at(&self, heads: &Heads, flat: &[f64]) -> Sites {
         Sites::new(heads, &self.highest, flat, &[])
-    }
-
-    /// Rows of the group at other points, and their derivatives if `slopes`.
-    pub(super) fn evaluate_at(
-        &self,
-        sites: &Sites,
-        heads: &Heads,
-        theta: &[f64],
-        scalars: &[f64],
-        slopes: bool,
-    ) -> Evaluated {
-        let stride = sites.stride;
-        let count = self.schema.jets.len();
-        let mut jets = vec![0.0; count * stride];
-        let spread: Vec<Vec<f64>> = (0..heads.lattices.len()).map(|head| heads.spread(head, theta)).collect();
-        // Bounded heads: the slope of the jet by the head, and what the program does not see of it.
-        let mut bounded: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
-        jets.par_chunks_mut(stride).zip(&mut bounded).enumerate().for_each(|(at, (jets, bounded))| {
-            let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
-            let is_value = jet.degree.iter().all(|&n| n == 0);
-            let (splines, lattice) = (&sites.splines[jet.head], &heads.lattices[jet.head]);
-            let lines = lattice.lines();
-            let mut across = Vec::new();
-            for (p, out) in jets.iter_mut().enumerate().take(sites.count) {
-                let cell = &spread[jet.head][lattice.first(&splines.places[p])..];
-                let term = |(exponents, coefficient): &(Exponents, f64)| {
-                    let along = splines.factors(p, exponents, &mut across);
-                    coefficient * contracted(cell, &lines, &across, along)
-                };
-                let value = heads.scale[jet.head] * operator.iter().map(term).sum::<f64>();
-                *out = if heads.bound[jet.head].is_some() && is_value {
-                    let (raw, slope, rest) = heads.raw(jet.head, value);
-                    bounded.push((slope, rest));
-                    raw
-                } else if is_value {
-                    heads.offset[jet.head] + value
-                } else {
-                    value
-                };
-            }
-            let last = jets[sites.count - 1];
-            jets[sites.count..].fill(last);
-        });
-        let points = Points {
-            count: sites.count,
-            stride,
-            jets: &jets,
-            coordinates: &sites.coordinates,
-            columns: &sites.columns,
-            scalars,
-            seeds: &[],
-        };
-        let mut rows = vec![0.0; self.schema.rows * stride];
-        self.kernel.programs.residual(Isa::detect(), points, &mut rows);
-        let straight = bounded.iter().all(|b| b.iter().all(|&(_, rest)| rest == 0.0));
-        if !slopes && straight {
-            return Evaluated { stride, rows, bars: Vec::new() };
-        }
-        let mut bars: Vec<Vec<f64>> = (0..self.schema.rows)
-            .into_par_iter()
-            .map(|row| {
-                let mut seeds = vec![0.0; self.schema.rows * stride];
-                seeds[row * stride..][..stride].fill(1.0);
-                let mut bars = vec![0.0; (count + scalars.len()) * stride];
-                self.kernel.programs.adjoint(Isa::detect(), Points { seeds: &seeds, ..points }, &mut bars);
-                bars
-            })
-            .collect();
-        for (jet, bounded) in bounded.iter().enumerate() {
-            for (row, bars) in bars.iter_mut().enumerate() {
-                for (p, &(slope, rest)) in bounded.iter().enumerate() {
-                    let bar = &mut bars[jet * stride + p];
-                    *bar *= slope;
-                    rows[row * stride + p] += *bar * rest;
-                }
-            }
-        }
-        Evaluated { stride, rows, bars }
-    }
-
-    /// Rows of the group at its own points, and their derivatives if `slopes`.
-    pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
-        self.evaluate_at(&self.sites, heads, theta, scalars, slopes)
     }
 
     /// Rows whose terms are tested or asked for at every point.
@@ -375,34 +282,9 @@ impl Group {
     }
 }
 
-/// Sum of a cell's coefficients, of which `lines` says where each line begins, times splines along and across the lines.
-fn contracted(cell: &[f64], lines: &[usize], across: &[f64], along: &[f64]) -> f64 {
-    let line = |(&first, across): (&usize, &f64)| {
-        across * cell[first..first + along.len()].iter().zip(along).map(|(c, value)| c * value).sum::<f64>()
-    };
-    lines.iter().zip(across).map(line).sum()
-}
-
 /// An integral's misfit, and its derivative by every coefficient.
 pub(super) struct Integral {
     pub(super) misfit: f64,
     pub(super) slopes: Vec<f64>,
     pub(super) sigma: f64,
-}
-
-impl Evaluated {
-    /// Mean of a row over a test's points.
-    fn mean(&self, test: &Test, row: usize) -> f64 {
-        test.points.iter().map(|&(p, share)| share * self.row(row, p as usize)).sum()
-    }
-
-    /// Value of a row at a point.
-    pub(super) fn row(&self, row: usize, p: usize) -> f64 {
-        self.rows[row * self.stride + p]
-    }
-
-    /// Derivative of a row at a point by a jet or learned scalar.
-    pub(super) fn bar(&self, row: usize, bar: usize, p: usize) -> f64 {
-        self.bars[row][bar * self.stride + p]
-    }
 }

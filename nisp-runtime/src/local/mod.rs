@@ -8,14 +8,18 @@
 //!
 //! Meant for two or three coordinates and a few fields; scenes over time are in better hands with a network.
 
+mod assembly;
 mod block;
 mod bspline;
+mod course;
 mod draws;
+mod evaluated;
 mod group;
 mod heads;
 mod lattice;
 mod meshes;
 mod normal;
+mod phase;
 mod place;
 mod prior;
 mod refuse;
@@ -36,9 +40,10 @@ use crate::solve::state::State;
 
 pub use prior::Patches;
 
+use course::End;
 use heads::Heads;
 use normal::Factor;
-use solver::{End, Solver};
+use solver::Solver;
 
 /// How fine the local functions are, and what is known of the sources.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,0 +1,173 @@
+//! The normal equations about a state: rows of all groups and clouds, and priors. The prior of the sources is majorised anew
+//! for every step.
+
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+use super::block::Block;
+use super::draws::Draws;
+use super::heads::Heads;
+use super::phase::Phase;
+use super::place::State;
+use super::prior::Sparse;
+use super::solver::Solver;
+use super::{Local, LocalError};
+use crate::problem::Bound;
+use crate::solve::fault::Fault;
+
+/// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
+const RIDGE: f64 = 1e-6;
+const STIFFNESS: f64 = 1e-3;
+/// Stiffness of differences in the first step, which only regresses the data: so much that noise cannot crease the state.
+const ROUGH: f64 = 1000.0;
+/// Random vectors for the trace of the influence matrix (Hutchinson).
+const PROBES: usize = 2;
+/// Stiffness of a parameter that is held.
+const HELD: f64 = 1e30;
+
+impl Solver<'_> {
+    /// The normal equations about a state whose feet are found; also the loss, how many rows there are, and random
+    /// combinations of the clouds' rows.
+    pub(super) fn assemble(
+        &mut self,
+        state: &State,
+        noise: f64,
+        phase: Phase,
+    ) -> Result<(f64, usize, Vec<Vec<f64>>), LocalError> {
+        let slopes = self.set_learned(&state.learned);
+        let theta = &state.theta;
+        let regress = phase == Phase::Regress;
+        let mut probes = vec![vec![0.0; theta.len()]; PROBES];
+        let mut random = StdRng::seed_from_u64(0);
+        self.normal.clear();
+        let (mut loss, mut rows) = (0.0, 0);
+        for group in &self.groups {
+            // The first step regresses data and pointwise conditions; equations come after.
+            if regress && !group.weights.is_empty() {
+                continue;
+            }
+            if !group.has_rows() {
+                continue;
+            }
+            let evaluated = group.evaluate(&self.heads, theta, &self.scalars, true);
+            let blocks = group.blocks(&self.heads, &evaluated, &slopes);
+            for block in &blocks {
+                loss += half_square(block, |at| {
+                    Fault::residual(group.name(at), group.first_without_value(&evaluated, at))
+                })?;
+                rows += block.misfits.len();
+            }
+            self.normal.add_all(&blocks);
+            if regress {
+                continue;
+            }
+            for integral in group.integrals(&self.heads, &evaluated, &self.scalars) {
+                loss += 0.5 * (integral.misfit / integral.sigma).powi(2);
+                self.normal.add_dense(&integral.slopes, integral.misfit, integral.sigma);
+            }
+        }
+        for surface in &self.surfaces {
+            let group = &self.groups[surface.group];
+            let blocks = surface.blocks(group, &self.heads, theta, &self.scalars, &slopes, noise);
+            for block in &blocks {
+                let term = || format!("{}.{}", group.schema.name, surface.term);
+                half_square(block, |_| Fault::residual(term(), None))?;
+                for probe in &mut probes {
+                    let sign = if random.random::<bool>() { 1.0 } else { -1.0 };
+                    block.kept().for_each(|(at, dof)| probe[dof as usize] += sign * block.slopes[at]);
+                }
+            }
+            self.normal.add_all(&blocks);
+            rows += surface.misfits().count();
+            loss += surface.loss(noise);
+        }
+        for at in 0..theta.len() {
+            self.normal.add_stiffness(at, RIDGE);
+        }
+        for (at, parameter) in state.learned.iter().enumerate() {
+            // Parameters wait until the state is one of the equations' solutions. Their own scale is of the order of one.
+            let stiffness = if matches!(phase, Phase::Regress | Phase::Convex { held: true }) { HELD } else { 1e-2 };
+            self.normal.add_learned(at, stiffness, 1e-2 * parameter);
+        }
+        self.add_priors(theta, noise, regress, phase == Phase::Concave);
+        Ok((loss, rows, probes))
+    }
+
+    /// Priors of sources, or of all heads' roughness while only data are regressed.
+    fn add_priors(&mut self, theta: &[f64], noise: f64, regress: bool, concave: bool) {
+        let schema = self.bound.problem.scene().schema;
+        for (head, declared) in schema.heads.iter().enumerate() {
+            let first = self.heads.first[head];
+            let stiffness = if regress { ROUGH } else { STIFFNESS };
+            for axis in (0..schema.coordinates.len()).filter(|_| regress || !declared.source) {
+                for (a, b) in self.heads.lattices[head].neighbours(axis) {
+                    let (i, j) = (first + a as usize, first + b as usize);
+                    self.normal.add_difference([i, j], stiffness, theta[j] - theta[i]);
+                }
+            }
+            if regress {
+                continue;
+            }
+            let Some(sparse) = sparse(self.bound, self.settings, &self.heads, head, noise / self.cell) else {
+                continue;
+            };
+            sparse.add(&mut self.normal, theta, concave);
+        }
+    }
+
+    /// What priors add to the loss, but for a constant.
+    pub(super) fn penalty(&self, state: &State, noise: f64, concave: bool) -> f64 {
+        let schema = self.bound.problem.scene().schema;
+        let sources = schema.heads.iter().enumerate().filter(|(_, head)| head.source);
+        let of_sources: f64 = sources
+            .filter_map(|(head, _)| {
+                let sparse = sparse(self.bound, self.settings, &self.heads, head, noise / self.cell)?;
+                Some(sparse.value(&state.theta, concave))
+            })
+            .sum();
+        of_sources + state.learned.iter().map(|x| 0.5e-2 * x * x).sum::<f64>()
+    }
+
+    /// Half the sum of squares of all rows.
+    pub(super) fn loss(&mut self, state: &State, noise: f64) -> f64 {
+        self.find_feet(&state.theta, &state.learned);
+        let groups = self.groups.iter().map(|group| group.loss(&self.heads, &state.theta, &self.scalars));
+        groups.sum::<f64>() + self.surfaces.iter().map(|surface| surface.loss(noise)).sum::<f64>()
+    }
+
+    /// Finds the feet of all clouds on the present surface.
+    pub(super) fn find_feet(&mut self, theta: &[f64], learned: &[f64]) {
+        self.set_learned(learned);
+        for surface in &mut self.surfaces {
+            surface.find(&self.groups[surface.group], &self.heads, theta, &self.scalars);
+        }
+    }
+
+    /// Deviations of the coefficients, drawn from the posterior about a state. The patch is taken as it is: what the prior
+    /// holds at zero stays there.
+    pub(super) fn deviations(&mut self, state: &State) -> Option<Vec<Vec<f64>>> {
+        self.find_feet(&state.theta, &state.learned);
+        self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
+        let assembled = self.assemble(state, state.noise, Phase::Concave);
+        let draws = self.normal.draws.take()?;
+        assembled.ok()?;
+        self.normal.factor()?.deviations(&draws)
+    }
+}
+
+/// The prior of a head where the clouds are off by `noise` cells; none of a field, or where nothing is known.
+fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, noise: f64) -> Option<Sparse<'a>> {
+    let declared = &bound.problem.scene().schema.heads[head];
+    let prior = settings.patches.filter(|_| declared.source)?;
+    let sign = heads.bound[head].map_or(1.0, |(sign, _)| sign);
+    let level = prior.level * bound.system.inward(&declared.unit) / heads.scale[head] * sign;
+    Some(Sparse { heads, head, prior, level, finer: settings.finer, dimensions: settings.source_dimensions, noise })
+}
+
+/// Half the sum of a block's squares; `fault` says of a row that it is not finite.
+fn half_square(block: &Block, fault: impl Fn(usize) -> Fault) -> Result<f64, LocalError> {
+    match block.misfits.iter().position(|misfit| !misfit.is_finite()) {
+        Some(row) => Err(LocalError::Fault(fault(row))),
+        None => Ok(block.misfits.iter().map(|misfit| 0.5 * misfit * misfit).sum()),
+    }
+}

@@ -1,0 +1,233 @@
+//! Gauss-Newton: steps that are taken until they change nothing.
+
+use super::heads::Heads;
+use super::normal::Factor;
+use super::phase::{CONVEX_STEPS, Phase, WARM_STEPS};
+use super::place::{Place, State};
+use super::solver::Solver;
+use super::surface::Surface;
+use super::{LocalError, Progress, Stage};
+use crate::solve::driver::{Flow, Status, Warning, WarningKind};
+use crate::solve::fault::Fault;
+use crate::solve::method::FAULTS_IN_A_ROW;
+use crate::solve::state;
+
+/// The same where nothing but values is wanted.
+const NEGLIGIBLE: f64 = 1e-9;
+/// Noise that clouds are credited with at least, as a share of a cell: what splines cannot follow.
+const LEAST_NOISE: f64 = 1e-2;
+/// Largest change of a field in one step, in its natural sizes.
+const FARTHEST: f64 = 5.0;
+/// What error bars take, in steps.
+const BARS: f64 = 2.0;
+/// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
+const MOST_OFF: f64 = 5.0;
+/// Relative change of the coefficients at which the answer counts as converged.
+const CONVERGED: f64 = 2e-2;
+/// Change of the logarithm of the probability, by rows, at which the answer counts as converged too if learned scalars rest:
+/// a pressure that the data hardly determine may wander for long.
+const SETTLED: f64 = 1e-3;
+/// Change of the parameters of learned scalars that rest.
+const RESTING: f64 = 1e-3;
+/// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
+const ROUGHLY: f64 = 0.1;
+const COARSE_STEPS: u64 = 4;
+/// Share of a step that is tried where the whole led to numbers that are not finite.
+const RETREAT: f64 = 0.25;
+
+/// How a run ended.
+pub(super) struct End {
+    pub(super) state: State,
+    pub(super) status: Status,
+    pub(super) iterations: u64,
+    pub(super) loss: f64,
+    /// What the last step left open; empty if nothing.
+    pub(super) warnings: Vec<Warning>,
+    pub(super) factor: Option<Factor>,
+    /// The state before the last step, which whoever goes on from it repeats.
+    pub(super) checkpoint: state::State,
+}
+
+impl Solver<'_> {
+    /// The state of another lattice on this one: its values at all points, by least squares.
+    pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<Place, LocalError> {
+        let inputs = self.heads.lattices[0].dimensions();
+        let learned = state.learned.len();
+        self.normal.clear();
+        let mut rows = Vec::new();
+        for (group, points) in self.bound.problem.scene().schema.groups.iter().zip(&self.bound.coordinates) {
+            for head in 0..self.heads.lattices.len() {
+                for point in points.chunks_exact(inputs).filter(|_| group.jets.iter().any(|jet| jet.head == head)) {
+                    rows.push(self.heads.difference(head, point, other, &state.theta, learned));
+                }
+            }
+        }
+        self.normal.add_all(&rows);
+        for at in 0..self.heads.len() {
+            self.normal.add_stiffness(at, NEGLIGIBLE);
+        }
+        (0..learned).for_each(|at| self.normal.add_learned(at, 1.0, 0.0));
+        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
+        let (theta, _) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
+        // Who comes with a state needs no regression, and few steps before the penalty may end at its level.
+        Ok(Place { skipped: CONVEX_STEPS - WARM_STEPS, ..self.place(&State { theta, ..state.clone() }, 0) })
+    }
+
+    /// Where a saved run stood on this lattice.
+    pub(super) fn restore(&self, saved: &state::State) -> Result<Place, Fault> {
+        let mut place = self.first();
+        place.restore(saved)?;
+        place.skipped = if saved.counter("lattice")? > 0 { CONVEX_STEPS - WARM_STEPS } else { 0 };
+        Ok(place)
+    }
+
+    /// Repeats steps until they change nothing, or steps or time are spent.
+    pub(super) fn run(&mut self, from: Place, coarse: bool, stage: &mut Stage<'_>) -> Result<End, LocalError> {
+        let Place { mut state, step: mut iteration, skipped, feet } = from;
+        self.set_feet(feet);
+        let mut good = self.place(&state, iteration);
+        let mut loss = f64::INFINITY;
+        let mut rows = 0;
+        let mut status = Status::Budget;
+        let mut factor = None;
+        let mut faults = Vec::new();
+        let mut longest = 0.0f64;
+        while factor.is_none() || stage.before + iteration < stage.limits.iterations {
+            let began = stage.start.elapsed().as_secs_f64();
+            let budget = stage.limits.budget.map_or(f64::INFINITY, |budget| budget.as_secs_f64());
+            let wanted = if coarse { longest } else { (1.0 + BARS) * longest };
+            if began + wanted > budget && factor.is_some() {
+                break;
+            }
+            let place = self.place(&state, iteration);
+            let (next, found) = match self.step(&state, iteration + skipped, coarse) {
+                Ok(found) => found,
+                // The step that led here was too long: it is taken back, and a part of it is tried.
+                Err(LocalError::Fault(fault)) if factor.is_some() => {
+                    faults.push(fault);
+                    self.set_feet(good.feet.clone());
+                    if faults.len() >= FAULTS_IN_A_ROW as usize {
+                        (state, status) = (good.state.clone(), Status::NotConverged);
+                        break;
+                    }
+                    state = good.state.towards(&state, RETREAT);
+                    continue;
+                }
+                Err(error) => return Err(error),
+            };
+            good = place;
+            faults.clear();
+            let (change, gain) = (self.change(&state, &next), found.gain);
+            let before = std::mem::replace(&mut state, next);
+            (loss, rows) = (found.loss, found.rows);
+            factor = Some(found.factor);
+            iteration += 1;
+            let elapsed_s = stage.start.elapsed().as_secs_f64();
+            longest = longest.max(elapsed_s - began);
+            let (steps_before, lattice) = (stage.before, stage.lattice);
+            let checkpoint = &|| good.save(steps_before, lattice);
+            if (stage.monitor)(Progress { iteration: steps_before + iteration, elapsed_s, loss, checkpoint })
+                == Flow::Stop
+            {
+                status = Status::Interrupted;
+                break;
+            }
+            let (steps, small) = if coarse { (COARSE_STEPS, ROUGHLY) } else { (CONVEX_STEPS + 1, CONVERGED) };
+            let resting = learned_change(&before, &state) < RESTING;
+            let settled = !coarse && resting && gain.abs() < SETTLED * rows as f64;
+            if iteration + skipped > steps && (change < small || settled) {
+                status = Status::Converged;
+                break;
+            }
+        }
+        let mut warnings = self.doubts(loss, rows);
+        if !warnings.is_empty() && status != Status::Interrupted {
+            status = Status::NotConverged;
+        }
+        let fault = faults.pop().filter(|_| status == Status::NotConverged);
+        warnings.extend(fault.map(|fault| Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) }));
+        let checkpoint = good.save(stage.before, stage.lattice);
+        Ok(End { state, status, iterations: stage.before + iteration, loss, warnings, factor, checkpoint })
+    }
+
+    /// One step; also what it found on its way.
+    fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, Found), LocalError> {
+        let regress = iteration == 0;
+        self.find_feet(&state.theta, &state.learned);
+        let noise = if regress { state.noise } else { self.noise(state.used) };
+        let (loss, rows, probes) = self.assemble(state, noise, Phase::of(iteration, coarse))?;
+        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
+        let used: f64 = probes.iter().map(|probe| factor.inner(probe)).sum::<f64>() / probes.len() as f64;
+        let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
+        // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
+        let fields = self.fields().flat_map(|range| &step[range]);
+        let largest = fields.map(|x| x.abs()).fold(0.0, f64::max);
+        let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
+        let mut next = State { noise, used, ..state.clone() };
+        next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
+        next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
+        let concave = Phase::of(iteration, coarse) == Phase::Concave;
+        let before = loss + self.penalty(state, noise, concave);
+        let after = self.loss(&next, noise) + self.penalty(&next, noise, concave);
+        Ok((next, Found { loss, gain: before - after, rows, factor }))
+    }
+
+    /// Standard deviation of the clouds about the surface, outliers counted for little.
+    fn noise(&self, used: f64) -> f64 {
+        let misfits: Vec<f64> = self.surfaces.iter().flat_map(Surface::misfits).collect();
+        let mut magnitudes: Vec<f64> = misfits.iter().map(|m| m.abs()).collect();
+        magnitudes.sort_by(f64::total_cmp);
+        let middle = magnitudes.get(magnitudes.len() / 2).copied().unwrap_or(0.0) * 1.4826;
+        let (mut sum, mut count) = (0.0, 0.0f64);
+        for misfit in magnitudes.iter().filter(|m| **m <= 4.0 * middle) {
+            sum += misfit * misfit;
+            count += 1.0;
+        }
+        (sum / (count - used).max(0.2 * count).max(1.0)).sqrt().max(LEAST_NOISE * self.cell)
+    }
+
+    /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.
+    fn doubts(&self, loss: f64, rows: usize) -> Vec<Warning> {
+        let mut doubts = Vec::new();
+        let off = (2.0 * loss / rows.max(1) as f64).sqrt();
+        if off > MOST_OFF {
+            doubts.push(format!(
+                "rows are off by {off:.0} times their tolerance: the steps did not reach a solution of the equations; give \
+                 more --budget, and check the parameters"
+            ));
+        }
+        let all: usize = self.surfaces.iter().map(Surface::len).sum();
+        let lost = all - self.surfaces.iter().map(|surface| surface.misfits().count()).sum::<usize>();
+        if 2 * lost > all {
+            doubts.push(format!(
+                "{lost} of the cloud's {all} points are not near the surface: is it a cloud of this body, in its frame?"
+            ));
+        }
+        doubts.into_iter().map(|message| Warning { kind: WarningKind::Stagnation, message }).collect()
+    }
+
+    /// Ranges of the coefficients of fields.
+    fn fields(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
+        let heads = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| !head.source);
+        heads.map(|(at, _)| self.heads.first[at]..self.heads.first[at + 1])
+    }
+
+    /// Largest change of a field's coefficient or a learned parameter; sources may flicker at their edges for long.
+    fn change(&self, before: &State, after: &State) -> f64 {
+        let fields = self.fields().flat_map(|range| range.map(|at| (before.theta[at], after.theta[at])));
+        fields.map(|(a, b)| (a - b).abs()).fold(learned_change(before, after), f64::max)
+    }
+}
+
+/// The loss before a step, from so many rows, what the step gained, and the factorised matrix.
+struct Found {
+    loss: f64,
+    gain: f64,
+    rows: usize,
+    factor: Factor,
+}
+
+/// Largest change of a learned scalar's parameter.
+fn learned_change(before: &State, after: &State) -> f64 {
+    before.learned.iter().zip(&after.learned).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+}
