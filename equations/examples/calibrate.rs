@@ -1,8 +1,8 @@
 //! How far the error bars are to be trusted, on simulated motions and voltages that are nowhere in the repository:
 //! `cargo run --release -p nisp-equations --example calibrate -- SEED SECONDS RUNS`.
 //!
-//! The prior's part of a bar is multiplied by a constant (`DISTRUST` in the runtime) so that two standard deviations hold
-//! 90 to 98 per cent of the truth over the noise ladder. This prints the cover for several values of that constant.
+//! The prior's part of a bar is multiplied by a constant of the scene (`Settings::distrust`) so that two standard deviations
+//! hold 90 to 98 per cent of the truth over the noise ladder. This prints the cover for multiples of that constant.
 
 use std::error::Error;
 use std::time::Duration;
@@ -15,7 +15,7 @@ use rand::{RngExt, SeedableRng, rngs::StdRng};
 
 /// Noise on every measured quantity, in its declared unit.
 const LADDER: [f64; 5] = [0.001, 0.003, 0.01, 0.03, 0.1];
-/// What the prior's part of a bar may be multiplied by, beside what the runtime does.
+/// What the scene's constant is multiplied by.
 const FACTORS: [f64; 6] = [0.5, 0.75, 1.0, 1.5, 2.0, 3.0];
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -69,7 +69,7 @@ fn add_cover(
     }
     let copy = noisy_copy(&truth, schema, 4, noise, seed)?;
     let sample = series.bind(entry, &request, &copy, Some(&truth))?;
-    let mut solution = recover(&sample.problem, settings, &mut |_| Flow::Continue)?;
+    let mut solution = recover(&sample.problem, &sample.suited(settings.clone()), &mut |_| Flow::Continue)?;
     let truth = sample.truth.as_ref().ok_or("no truth")?;
     for estimate in solution.evaluate_with_errors(&truth.points) {
         let (Some(real), Some(bars), Some(by_prior)) =

@@ -64,7 +64,7 @@ fn judge(samples: &[Prepared], settings: &Settings) -> Result<String, Box<dyn Er
     let (mut error, mut seconds, mut converged) = (0.0, 0.0, 0);
     let mut cover: Vec<(&'static str, f64)> = Vec::new();
     for sample in samples {
-        let mut solution = recover(&sample.problem, settings, &mut |_| Flow::Continue)?;
+        let mut solution = recover(&sample.problem, &sample.suited(settings.clone()), &mut |_| Flow::Continue)?;
         seconds += solution.wall_s;
         converged += usize::from(solution.status == nisp::solve::driver::Status::Converged);
         let Some(truth) = &sample.truth else { continue };

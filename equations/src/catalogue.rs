@@ -4,6 +4,7 @@
 
 use std::path::PathBuf;
 
+use nisp::Settings;
 use nisp::local::Local;
 use nisp::{Problem, SceneRef};
 use nisp_data::cloud::LengthUnit;
@@ -143,11 +144,18 @@ pub struct Prepared {
     pub rival: Option<Box<dyn System>>,
     /// Local functions, where they suit the scene better than a network.
     pub local: Option<Local>,
+    /// [`Settings::distrust`] that was found for the scene on simulated data; none where nobody looked.
+    pub distrust: Option<f64>,
     /// The body whose surface was seen, where the data are a cloud.
     pub contact: Option<Contact>,
 }
 
 impl Prepared {
+    /// Settings with what suits the scene.
+    pub fn suited(&self, settings: Settings) -> Settings {
+        Settings { local: self.local, distrust: self.distrust.unwrap_or(settings.distrust), ..settings }
+    }
+
     /// What the classical rivals answer at times `at`, where `truth` is true; nothing where none knows this scene. They
     /// are given the noise that they find themselves.
     pub fn contest(&self, at: &[f64], truth: &[f64]) -> Vec<Answer> {

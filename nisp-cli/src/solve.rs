@@ -35,7 +35,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         parameters: options.set.clone(),
     };
     let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
-    let settings = Settings { local: prepared.local, ..settings };
+    let settings = prepared.suited(settings);
     let from = options.resume.as_deref().map(checkpoint::read).transpose()?;
     let mut out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::listen()?;

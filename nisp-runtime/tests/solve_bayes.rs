@@ -136,6 +136,11 @@ fn deviations_are_those_of_linear_regression() {
         let variance: f64 = (0..LEN).map(|k| cosine(k, i, ROWS).powi(2) / (square(k) / (sigma * sigma) + alpha)).sum();
         close(*deviation, variance.sqrt(), 1e-12);
     }
+    for (by_noise, i) in found.by_noise.iter().zip([0, 7, 30]) {
+        let kept = |k: usize| sigma * square(k).sqrt() / (square(k) + alpha * sigma * sigma);
+        let variance: f64 = (0..LEN).map(|k| (cosine(k, i, ROWS) * kept(k)).powi(2)).sum();
+        close(*by_noise, variance.sqrt(), 1e-12);
+    }
     // Ridge regression misses (1 - shrinkage) of each coefficient, whose deviation is that of the prior.
     for (by_prior, i) in found.by_prior.iter().zip([0, 7, 30]) {
         let missed = |k: usize| 1.0 - square(k) / (square(k) + alpha * sigma * sigma);

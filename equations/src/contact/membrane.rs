@@ -143,6 +143,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         warnings: observed.cloud.warnings,
         rival: None,
         local,
+        distrust: None,
         contact: Some(contact),
     })
 }

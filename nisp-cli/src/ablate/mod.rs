@@ -107,10 +107,12 @@ fn means(study: &Study, variation: &Variation, options: &Options) -> Result<(Vec
 
 /// Settings of a variation for a sample.
 fn settings(study: &Study, variation: &Variation, prepared: &Prepared, options: &Options) -> Settings {
-    let mut settings =
-        Settings { threads: options.threads.unwrap_or_else(crate::solve::processors), ..Settings::default() };
-    settings.budget = Some(Duration::from_secs_f64(options.budget));
-    settings.local = prepared.local;
+    let settings = Settings {
+        threads: options.threads.unwrap_or_else(crate::solve::processors),
+        budget: Some(Duration::from_secs_f64(options.budget)),
+        ..Settings::default()
+    };
+    let mut settings = prepared.suited(settings);
     if study.network {
         settings.budget = Some(Duration::from_secs_f64(options.network_budget));
         settings.optimizer = Optimizer::Adam;

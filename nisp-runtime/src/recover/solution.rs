@@ -108,10 +108,6 @@ pub(super) struct Run {
     pub(super) prior: Option<WeightPrior>,
 }
 
-/// What the prior's part of a deviation is multiplied by. Sources are rougher than a network whose smoothness suits the
-/// states believes. Chosen on simulated motions and voltages: `cargo run --release -p nisp-equations --example calibrate`.
-const DISTRUST: f64 = 2.75;
-
 impl Solution {
     pub(super) fn new(bound: Bound, engine: Engine<f64>, outcome: Outcome<f64>, settings: &Settings, run: Run) -> Self {
         let Run { optimizer, precision, start, prior } = run;
@@ -201,11 +197,10 @@ impl Solution {
         let count = rows.len() / self.scene().heads.len().max(1);
         self.estimates(|head| {
             let range = head * count..(head + 1) * count;
-            let scaled = |part: &f64| DISTRUST * part;
+            let scaled = |part: &f64| self.settings.distrust * part;
             let by_prior: Vec<f64> = posterior.by_prior[range.clone()].iter().map(scaled).collect();
-            let pairs = posterior.deviations[range.clone()].iter().zip(&posterior.by_prior[range.clone()]);
-            let noise = pairs.map(|(all, part)| (all * all - part * part).max(0.0));
-            let deviations = noise.zip(&by_prior).map(|(noise, part)| (noise + part * part).sqrt()).collect();
+            let pairs = posterior.by_noise[range.clone()].iter().zip(&by_prior);
+            let deviations = pairs.map(|(noise, prior)| noise.hypot(*prior)).collect();
             (rows[range].to_vec(), Some([deviations, by_prior]))
         })
     }

@@ -2,8 +2,9 @@
 
 use super::dense::{self, Cholesky};
 use super::fault::{Fault, Kind};
-use super::objective::LeastSquares;
+use super::objective::{BlockKind, LeastSquares};
 use super::prior::WeightPrior;
+use std::ops::Range;
 
 /// `H = J^T J + A = L L^T` at some theta, with the rows and derivatives that it was made from.
 pub struct Curvature {
@@ -11,6 +12,8 @@ pub struct Curvature {
     /// Residuals, divided by their sigma.
     pub(crate) rows: Vec<f64>,
     pub(crate) jacobian: Vec<f64>,
+    /// Rows that are random: all but equations, which the truth meets exactly.
+    pub(crate) random: Vec<Range<usize>>,
     pub(crate) cholesky: Cholesky,
     /// Precision of the prior, by parameter.
     pub(crate) precision: Vec<f64>,
@@ -49,7 +52,9 @@ impl Curvature {
                 return Err(Fault { term: "curvature".into(), point: None, what: Kind::Factorisation });
             }
         }
-        Ok(Self { len, rows, jacobian, cholesky, precision, jitter })
+        let blocks = objective.blocks().iter();
+        let random = blocks.filter(|block| block.kind != BlockKind::Equation).map(|block| block.rows.clone()).collect();
+        Ok(Self { len, rows, jacobian, random, cholesky, precision, jitter })
     }
 
     /// Number of parameters.

@@ -93,6 +93,21 @@ pub(crate) fn transpose_times(j: &[f64], u: &[f64], out: &mut [f64]) {
     });
 }
 
+/// Adds to every `out` the squared norm of `b a`, for the rows `a` of one matrix and the matrix `b`, both row-major with `n`
+/// columns.
+pub(crate) fn add_squares_of_products(a: &[f64], b: &[f64], n: usize, out: &mut [f64]) {
+    let b = row_major(b, b.len() / n.max(1), n);
+    a.par_chunks(n * WIDTH).zip(out.par_chunks_mut(WIDTH)).for_each(|(a, out)| {
+        let a = row_major(a, out.len(), n);
+        let mut products = vec![0.0; out.len() * b.nrows()];
+        let all = MatMut::from_row_major_slice_mut(&mut products, out.len(), b.nrows());
+        matmul::matmul(all, Accum::Replace, a, b.transpose(), 1.0, Par::Seq);
+        for (out, products) in out.iter_mut().zip(products.chunks_exact(b.nrows())) {
+            *out += super::vector::dot(products, products);
+        }
+    });
+}
+
 /// `j -= q q^T j`, for `q` of `rows x k` and `j` of `rows x n`, both row-major.
 pub(crate) fn subtract_projection(q: &[f64], k: usize, j: &mut [f64], n: usize) {
     let rows = j.len() / n.max(1);

@@ -7,10 +7,13 @@ use super::vector;
 /// What is known about reported quantities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posterior {
-    /// Standard deviation of every quantity.
+    /// Standard deviation of every quantity, if equations hold as loosely as their tolerances.
     pub deviations: Vec<f64>,
+    /// The part of it that comes from the noise of measurements and the spread of beliefs. Tolerances of equations are no
+    /// noise: the truth meets equations exactly, and errors follow from its rows alone.
+    pub by_noise: Vec<f64>,
     /// The part of it that the prior vouches for: the deviation of what smoothing takes away, if the truth is as the prior
-    /// believes. What is left, in squares, is the part of the noise.
+    /// believes.
     pub by_prior: Vec<f64>,
     /// The leading directions of their covariance, largest first.
     pub directions: Vec<Direction>,
@@ -47,13 +50,23 @@ pub fn posterior(curvature: &Curvature, derivatives: &[f64], most: usize) -> Pos
             shape,
         })
         .collect();
-    // H^-1 = H^-1 J^T J H^-1 + H^-1 A H^-1: noise and prior.
+    // H^-1 = H^-1 J^T J H^-1 + H^-1 A H^-1: rows and prior.
     curvature.cholesky.solve_upper(&mut spread, count);
+    let mut by_noise = vec![0.0; count];
+    for rows in &curvature.random {
+        let jacobian = &curvature.jacobian[rows.start * len..rows.end * len];
+        dense::add_squares_of_products(&spread, jacobian, len, &mut by_noise);
+    }
     let by_prior = spread.chunks_exact(len.max(1)).map(|x| {
         let square: f64 = x.iter().zip(&curvature.precision).map(|(x, a)| a * x * x).sum();
         square.sqrt()
     });
-    Posterior { by_prior: by_prior.collect(), deviations: variances.iter().map(|v| v.sqrt()).collect(), directions }
+    Posterior {
+        deviations: variances.iter().map(|v| v.sqrt()).collect(),
+        by_noise: by_noise.into_iter().map(f64::sqrt).collect(),
+        by_prior: by_prior.collect(),
+        directions,
+    }
 }
 
 /// Largest eigenvalues of `X X^T` with their eigenvectors, for `X` row-major of `count x len`, from the smaller of
