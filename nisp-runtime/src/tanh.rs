@@ -77,7 +77,7 @@ const DOUBLE: Exponential<10> = Exponential {
     ],
 };
 
-/// e = exp(-2 a) for a >= 0, and (1 - e) / 2 as a sum of two parts.
+/// e = exp(-2 a) for a >= 0, and h = (1 - e) / 2: its value, and what rounding took from it.
 #[inline(always)]
 fn exponential<V: Simd, const TERMS: usize>(a: V, constants: &Exponential<TERMS>) -> (V, [V; 2]) {
     // Operands in this order so that a NaN passes.
@@ -90,39 +90,50 @@ fn exponential<V: Simd, const TERMS: usize>(a: V, constants: &Exponential<TERMS>
     for &c in constants.series[..TERMS - 1].iter().rev() {
         q = q.mul_add(u, V::lit(c));
     }
-    let bent = u.mul(u).mul(q);
-    let part = u.sub(bent);
-    let part_rest = u.sub(part).sub(bent);
+    let part = u.mul(u).neg_mul_add(q, u);
     let scale = V::lit(1.0).scale2(n);
     let shift = scale.neg_mul_add(V::lit(0.5), V::lit(0.5));
     let half = scale.mul_add(part, shift);
-    let half_rest = scale.mul_add(part_rest, scale.mul_sub(part, half.sub(shift)));
-    (scale.add(scale).neg_mul_add(part, scale), [half, half_rest])
+    let rest = scale.mul_sub(part, half.sub(shift));
+    // Two roundings more than a fused part has.
+    let part_rest = u.sub(part).sub(u.mul(u).mul(q));
+    let rest = if V::FUSED { rest } else { scale.mul_add(part_rest, rest) };
+    (scale.add(scale).neg_mul_add(part, scale), [half, rest])
 }
 
-/// `(tanh a, tanh' a)`.
+/// `(tanh a, tanh' a)`, of which [`derivatives`] makes `D` functions.
 ///
-/// At most 1.5 and 6 units in the last place off (3 and 6 without fused multiply-add); good down to the denormals. At
-/// infinity (1 or -1, 0); NaN gives NaN.
+/// At most 1.5 (in double precision 2.5) and 6 units in the last place off; good down to the denormals. At infinity (1 or
+/// -1, 0); NaN gives NaN.
 #[inline(always)]
-pub fn tanh_and_slope<V: Simd>(a: V) -> (V, V) {
+pub fn tanh_and_slope<V: Simd, const D: usize>(a: V) -> (V, V) {
     let size = a.abs();
-    let (e, [half, rest]) =
-        if size_of::<V::Elem>() == 4 { exponential(size, &SINGLE) } else { exponential(size, &DOUBLE) };
+    let single = size_of::<V::Elem>() == 4;
+    let (e, [half, rest]) = if single { exponential(size, &SINGLE) } else { exponential(size, &DOUBLE) };
     // With h = (1 - e) / 2: t = h / (1 - h).
     let inverse = V::lit(1.0).div(V::lit(1.0).sub(half));
     let quotient = half.mul(inverse);
     // h - q (1 - h), of which the first difference is exact.
     let error = quotient.mul_add(half, half.sub(quotient));
-    let error = quotient.mul_add(rest, error).add(rest);
+    let error = if single || is_steep::<D>() { quotient.mul_add(rest, error).add(rest) } else { error };
     let t = error.mul_add(inverse, quotient);
-    let t_rest = error.mul_sub(inverse, t.sub(quotient));
-    // Until s is small, 1 - t^2 is the more accurate of the two: t is known to more than its digits, if products are
-    // not rounded.
-    let near = t_rest.neg_mul_add(t.add(t), t.neg_mul_add(t, V::lit(1.0)));
-    let far = e.mul(inverse.mul(inverse));
-    let s = V::select(size.less(V::lit(if V::FUSED { 4.0 } else { 0.88 })), near, far);
+    // (1 - t) (1 + t), with 1 - t = e / (1 - h).
+    let less = e.mul(inverse);
+    let mut s = less.mul_add(t, less);
+    if is_steep::<D>() {
+        // Until s is small, 1 - t^2 is the more accurate of the two: t is known to more than its digits, if products are
+        // not rounded.
+        let t_rest = error.mul_sub(inverse, t.sub(quotient));
+        let near = t_rest.neg_mul_add(t.add(t), t.neg_mul_add(t, V::lit(1.0)));
+        s = V::select(size.less(V::lit(if V::FUSED { 4.0 } else { 0.88 })), near, s);
+    }
     (t.copysign(a), s)
+}
+
+/// True if a derivative among the first `D - 1` may magnify the slope's error more than a little: the fourth and fifth
+/// have zeros where they are steep. Fields of second order do without them, adjoint included.
+const fn is_steep<const D: usize>() -> bool {
+    D > 4
 }
 
 /// `tanh` and its first `D - 1` derivatives, from t = tanh a and s = tanh' a as [`tanh_and_slope`] gives them.

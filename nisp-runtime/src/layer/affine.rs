@@ -76,7 +76,7 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
                     for (i, &wi) in w.iter().enumerate() {
                         a = wi.mul_add(V::splat(*coordinates.get_unchecked(p * S + i)), a);
                     }
-                    let (t, s) = tanh::tanh_and_slope(a);
+                    let (t, s) = tanh::tanh_and_slope::<V, D>(a);
                     t.store(value.as_mut_ptr().add(p * shape.ld + u));
                     s.store(slope.as_mut_ptr().add(p * shape.ld + u));
                     let y = R::affine(&tanh::derivatives::<V, D>(t, s), &w);

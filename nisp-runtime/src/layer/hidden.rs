@@ -74,7 +74,7 @@ where
                 // SAFETY: lengths were checked above; u + LANES <= width.
                 unsafe {
                     let a: [V; K] = load_channels(argument.as_ptr().add(at), shape.ld);
-                    let (t, s) = tanh::tanh_and_slope(a[0].add(V::load(bias.as_ptr().add(u))));
+                    let (t, s) = tanh::tanh_and_slope::<V, D>(a[0].add(V::load(bias.as_ptr().add(u))));
                     t.store(argument.as_mut_ptr().add(at));
                     s.store(slope.as_mut_ptr().add(p * shape.ld + u));
                     let y = C::compose(&tanh::derivatives::<V, D>(t, s), &a);

@@ -13,29 +13,46 @@ pub(crate) const D: usize = 7;
 /// that it ever has: nearer, even a slope that is rounded correctly leaves it fewer digits.
 const AWAY: f64 = 2.0 / 3.0;
 
-/// Computes `[t, s, ...]` of every input: one row per input.
+/// Functions that a field of second order takes, with its adjoint: their slope is made in fewer steps.
+pub(crate) const FEW: usize = 4;
+
+/// Computes `[t, s, ...]` of every input: one row per input, as where all functions are wanted, then one as where the
+/// first [`FEW`] are, the others as before.
 pub(crate) struct Rows<'a, E>(pub(crate) &'a [E]);
 
 impl<E: Real> Kernel<E> for Rows<'_, E> {
     type Output = Vec<[E; D]>;
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) -> Vec<[E; D]> {
-        let mut rows = vec![[E::ZERO; D]; self.0.len()];
+        let mut rows = vec![[E::ZERO; D]; 2 * self.0.len()];
+        let (all, few) = rows.split_at_mut(self.0.len());
         let mut lanes = vec![E::ZERO; V::LANES];
-        for (inputs, rows) in self.0.chunks(V::LANES).zip(rows.chunks_mut(V::LANES)) {
+        let outputs = all.chunks_mut(V::LANES).zip(few.chunks_mut(V::LANES));
+        for (inputs, (all, few)) in self.0.chunks(V::LANES).zip(outputs) {
             lanes[..inputs.len()].copy_from_slice(inputs);
             // SAFETY: `lanes` has LANES elements.
-            let (t, s) = tanh_and_slope(unsafe { V::load(lanes.as_ptr()) });
-            let phi = derivatives::<V, D>(t, s);
-            for (n, value) in phi.into_iter().enumerate() {
-                // SAFETY: as above.
-                unsafe { value.store(lanes.as_mut_ptr()) };
-                for (row, &x) in rows.iter_mut().zip(&lanes) {
-                    row[n] = x;
-                }
-            }
+            let a = unsafe { V::load(lanes.as_ptr()) };
+            let (t, s) = tanh_and_slope::<V, D>(a);
+            let mut phi = derivatives::<V, D>(t, s);
+            put(&phi, all, &mut lanes);
+            let (t, s) = tanh_and_slope::<V, FEW>(a);
+            phi[..FEW].copy_from_slice(&derivatives::<V, FEW>(t, s));
+            put(&phi, few, &mut lanes);
         }
         rows
+    }
+}
+
+/// Writes a vector's functions to its rows, by way of `lanes`.
+#[inline(always)]
+fn put<V: Simd>(phi: &[V; D], rows: &mut [[V::Elem; D]], lanes: &mut [V::Elem]) {
+    for (n, value) in phi.iter().enumerate() {
+        assert_eq!(lanes.len(), V::LANES);
+        // SAFETY: `lanes` has LANES elements.
+        unsafe { value.store(lanes.as_mut_ptr()) };
+        for (row, &x) in rows.iter_mut().zip(&*lanes) {
+            row[n] = x;
+        }
     }
 }
 

@@ -55,7 +55,7 @@ fn single(isas: &[Isa], inputs: &[f32], largest: &[f64; D]) -> Vec<Errors> {
                 return *errors;
             }
             let mut worst = Worst::default();
-            for (got, want) in found.iter().zip(&wanted) {
+            for (got, want) in found.iter().zip(wanted.iter().chain(&wanted)) {
                 worst.add::<f32>(want, &std::array::from_fn(|n| f64::from(got[n]) - want[n]), largest);
             }
             let errors = largest_of(&worst);
@@ -70,7 +70,7 @@ fn double(isas: &[Isa], inputs: &[f64], largest: &[f64; D]) -> Vec<Errors> {
     isas.iter()
         .map(|&isa| {
             let mut worst = Worst::default();
-            for (got, want) in dispatch(isa, Rows(inputs)).iter().zip(&wanted) {
+            for (got, want) in dispatch(isa, Rows(inputs)).iter().zip(wanted.iter().chain(&wanted)) {
                 let error = std::array::from_fn(|n| (Dd::from(got[n]) - want[n]).abs().hi);
                 worst.add::<f64>(&want.map(|x| x.hi), &error, largest);
             }
