@@ -22,3 +22,4 @@ pub mod simd;
 pub mod solve;
 pub mod tanh;
 pub mod values;
+mod wide;

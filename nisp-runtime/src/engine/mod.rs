@@ -39,6 +39,7 @@ use crate::schema::TermKind;
 use crate::simd::Isa;
 use crate::solve::fault::Fault;
 use crate::solve::objective::Block;
+use crate::wide::add_rows;
 
 /// Most chunks that a step is cut into; more threads than this find no work.
 const CHUNKS: usize = 16;
@@ -302,7 +303,7 @@ impl<E: Real> Engine<E> {
             self.chunks.par_chunks_mut(2 * distance).for_each(|pair| {
                 if pair.len() > distance {
                     let (left, right) = pair.split_at_mut(distance);
-                    left[0].gradient.iter_mut().zip(right[0].gradient.iter()).for_each(|(a, &b)| *a += b);
+                    add_rows(&mut left[0].gradient, &right[0].gradient, self.layout.padded_len);
                 }
             });
             distance *= 2;

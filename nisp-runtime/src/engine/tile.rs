@@ -11,6 +11,7 @@ use crate::network::{Layout, ProductAdjoint, Weights};
 use crate::real::Real;
 use crate::residual::Points;
 use crate::simd::{Isa, dispatch};
+use crate::wide::subtract;
 
 /// Points of a tile are padded to a multiple of this, so that every vector length divides it.
 pub(crate) const POINT_LANES: usize = 16;
@@ -397,9 +398,7 @@ impl<E: Real> Network<'_, E> {
             };
             kernel.gate_adjoint(self.isa, layer);
             // z = d + (c - d) z': c takes the adjoint of the difference, d what is left of its own.
-            for (floor, &difference) in buffers.floor_bar[..len].iter_mut().zip(&buffers.difference_bar[..len]) {
-                *floor -= difference;
-            }
+            subtract(&mut buffers.floor_bar[..len], &buffers.difference_bar[..len]);
         } else {
             std::mem::swap(&mut buffers.bar, &mut buffers.seed);
             buffers.output[..len].copy_from_slice(&buffers.lifted[0][..len]);
@@ -435,7 +434,7 @@ impl Parts {
 fn split_gates<E: Real>(lifted: &mut [AlignedVec<E>], len: usize) -> (&mut [E], Option<Gate<'_, E>>) {
     match lifted {
         [first, c, d] => {
-            c[..len].iter_mut().zip(&d[..len]).for_each(|(c, &d)| *c -= d);
+            subtract(&mut c[..len], &d[..len]);
             (&mut first[..len], Some(Gate { difference: c, floor: d }))
         }
         lifted => (&mut lifted[0][..len], None),

@@ -7,6 +7,7 @@ use crate::gemm::{self, Left, Packed, Right, Write, gemm};
 use crate::layer::{Shape, row_distance};
 use crate::real::Real;
 use crate::simd::Isa;
+use crate::wide::add_rows;
 
 /// Padded weights, and hidden matrices packed for both directions.
 #[derive(Debug)]
@@ -154,9 +155,8 @@ impl<E: Real> ProductAdjoint<'_, E> {
     pub(crate) fn add(&self, isa: Isa, matrix: &Matrix, gradient: &mut [E]) {
         let Self { shape, channels, bar, input, input_ld } = *self;
         let (weights, biases) = gradient[matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
-        for row in bar.chunks(channels * shape.ld).take(shape.points) {
-            biases[..shape.width].iter_mut().zip(row).for_each(|(sum, &x)| *sum += x);
-        }
+        let distance = channels * shape.ld;
+        add_rows(&mut biases[..shape.width], &bar[..shape.points * distance], distance);
         let extents = gemm::Shape { rows: shape.width, columns: matrix.padded_row, inner: shape.points * channels };
         let right = Right::Rows { elements: input, stride: input_ld };
         gemm(isa, extents, Left::transposed(bar, shape.ld), right, weights, matrix.padded_row, Write::Add);

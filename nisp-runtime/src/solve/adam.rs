@@ -7,8 +7,8 @@ use super::method::{FAULTS_IN_A_ROW, Method, Step, Verdict};
 use super::objective::Objective;
 use super::state::State;
 use super::vector;
-use super::wide::widest;
 use crate::real::Real;
+use crate::wide::widest;
 use rayon::prelude::*;
 
 /// Settings of [`Adam`]; the default is the schedule of the paper that this project starts from.
@@ -205,7 +205,7 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Adam<E> {
         self.steps += 1;
         self.faults = 0;
         self.caution = (self.caution * 1.1).min(1.0);
-        let length = distance(&self.now.theta, &self.trial.theta);
+        let length = vector::distance(&self.now.theta, &self.trial.theta);
         let mut step = self.report(length, Verdict::Moved);
         if objective.accepted(&self.now.theta) {
             self.loss = None;
@@ -242,9 +242,4 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Adam<E> {
         (self.steps, self.faults) = (steps, faults);
         Ok(())
     }
-}
-
-/// Euclidean distance.
-fn distance<E: Real>(a: &[E], b: &[E]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| (*a - *b).to_f64().powi(2)).sum::<f64>().sqrt()
 }

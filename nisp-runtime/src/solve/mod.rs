@@ -28,4 +28,3 @@ mod record;
 pub mod state;
 mod symmetric;
 mod vector;
-mod wide;

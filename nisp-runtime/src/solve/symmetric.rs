@@ -7,7 +7,7 @@
 //! products are added in a fixed order, so that the number of threads does not change a bit.
 
 use super::vector::sum_lanes;
-use super::wide::widest;
+use crate::wide::widest;
 use rayon::prelude::*;
 use std::ops::Range;
 

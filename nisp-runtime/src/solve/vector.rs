@@ -9,15 +9,26 @@ const LANES: usize = 8;
 
 /// `a . b` in double precision.
 pub(crate) fn dot<E: Real>(a: &[E], b: &[E]) -> f64 {
+    sum_pairs(a, b, |x, y| x * y)
+}
+
+/// Euclidean distance.
+pub(crate) fn distance<E: Real>(a: &[E], b: &[E]) -> f64 {
+    sum_pairs(a, b, |x, y| (x - y) * (x - y)).sqrt()
+}
+
+/// Sum of a function of each pair.
+#[inline(always)]
+fn sum_pairs<E: Real>(a: &[E], b: &[E], of: impl Fn(f64, f64) -> f64) -> f64 {
     let mut lanes = [0.0; LANES];
     let (a_blocks, a_rest) = a.as_chunks::<LANES>();
     let (b_blocks, b_rest) = b.as_chunks::<LANES>();
     for (x, y) in a_blocks.iter().zip(b_blocks) {
         for lane in 0..LANES {
-            lanes[lane] += x[lane].to_f64() * y[lane].to_f64();
+            lanes[lane] += of(x[lane].to_f64(), y[lane].to_f64());
         }
     }
-    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| x.to_f64() * y.to_f64()).sum();
+    let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| of(x.to_f64(), y.to_f64())).sum();
     sum_lanes(&lanes) + rest
 }
 
