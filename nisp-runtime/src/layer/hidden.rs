@@ -42,7 +42,7 @@ pub struct LayerAdjoint<'a, E> {
 }
 
 /// `C` composes; `P` multiplies by the gate, and says which channels are wanted. Whether there is a gate is known to the
-/// compiler (`G` is [`Gate`] or `()`): a branch between the two rules would cost a tenth of a step.
+/// compiler (`G` is [`Gate`](super::Gate) or `()`): a branch between the two rules would cost a tenth of a step.
 pub(crate) struct LayerKernel<'a, E, G, C, P, const K: usize, const D: usize, const S: usize> {
     pub(crate) layer: Layer<'a, E>,
     pub(crate) gate: G,
