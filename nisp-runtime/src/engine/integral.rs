@@ -5,8 +5,9 @@
 
 use rayon::prelude::*;
 
+use super::buffers::Buffers;
 use super::group::{BoundGroup, BoundTerm};
-use super::tile::{Buffers, Network, Tile};
+use super::tile::{Network, Tile};
 use super::{Engine, TileRange, with_buffers};
 use crate::real::Real;
 use crate::residual::Points;

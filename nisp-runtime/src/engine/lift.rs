@@ -3,7 +3,9 @@
 //! On raw coordinates these layers are affine maps under a `tanh`, whose channels have closed forms. On
 //! features of the coordinates they are ordinary layers; the features themselves are fixed and need no adjoint.
 
-use super::tile::{Buffers, Network, Parts, Tile};
+use super::adjoint::Parts;
+use super::buffers::Buffers;
+use super::tile::{Network, Tile};
 use crate::features::Features;
 use crate::layer::{Affine, AffineAdjoint, Layer, LayerAdjoint, Shape, row_distance};
 use crate::network::{Matrix, ProductAdjoint, multiply};

@@ -3,52 +3,48 @@
 //! Work is cut into a fixed number of chunks, whatever the number of threads; each chunk sums its own gradient and the
 //! chunks are added in a fixed tree. Results are therefore bitwise the same for any number of threads.
 
+mod adjoint;
 mod assign;
+mod buffers;
 mod chamfer;
+mod chunks;
 mod fit;
 mod form;
 mod group;
 mod heads;
 mod integral;
 mod jacobian;
+mod learned;
 mod lift;
 mod objective;
 mod predict;
 mod reading;
 mod resample;
 mod tile;
+mod weigh;
 
 use std::sync::Mutex;
 
 use rayon::prelude::*;
 
+use buffers::{Buffers, Extent, with_buffers};
 pub(crate) use chamfer::Chamfer;
-pub(crate) use group::BoundTerm;
+use chunks::{Chunk, TileRange, cut, tile_points};
 pub use group::{BoundGroup, Scaling};
 use integral::{Integral, Integrals, covers, seed_integrals};
+pub(crate) use learned::{Learned, LearnedMap};
 use resample::Resampler;
 pub(crate) use resample::is_exchangeable;
-use tile::{Buffers, Extent, Network, Tile};
+use tile::{Network, Tile};
+use weigh::weigh;
 
 use crate::aligned::AlignedVec;
-use crate::layer::row_distance;
 use crate::network::{Layout, Weights};
 use crate::real::Real;
-use crate::residual::Points;
-use crate::schema::TermKind;
 use crate::simd::Isa;
 use crate::solve::fault::Fault;
 use crate::solve::objective::Block;
 use crate::wide::add_rows;
-
-/// Most chunks that a step is cut into; more threads than this find no work.
-const CHUNKS: usize = 16;
-
-/// Rows that a chunk should have at least, for its products to outweigh the addition of its gradient.
-const CHUNK_ROWS: usize = 400;
-
-/// Bytes that the rows of a tile may take together: within the second-level cache of one core.
-const TILE_BYTES: usize = 640 << 10;
 
 /// A scene bound to points and data, ready to be evaluated at any parameters.
 pub struct Engine<E: Real> {
@@ -73,53 +69,6 @@ pub struct Engine<E: Real> {
     integrals: Integrals,
     blocks: Vec<Block>,
     resampler: Option<Box<Resampler<E>>>,
-}
-
-/// A learned scalar: its slot, and the map from its parameter to its value in the engine's units.
-#[derive(Clone, Debug)]
-pub(crate) struct Learned {
-    pub(crate) slot: usize,
-    pub(crate) map: LearnedMap,
-}
-
-/// How a learned scalar follows from its parameter.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum LearnedMap {
-    /// `start * exp(theta)`: positive quantities.
-    Positive(f64),
-    /// `start + scale * theta`
-    Linear(f64, f64),
-    /// `lower + (upper - lower) / (1 + exp(-(theta + shift)))`
-    Between(f64, f64, f64),
-}
-
-impl LearnedMap {
-    /// Value and derivative.
-    pub(crate) fn at(self, theta: f64) -> (f64, f64) {
-        match self {
-            Self::Positive(start) => (start * theta.exp(), start * theta.exp()),
-            Self::Linear(start, scale) => (start + scale * theta, scale),
-            Self::Between(lower, upper, shift) => {
-                let s = 1.0 / (1.0 + (-(theta + shift)).exp());
-                (lower + (upper - lower) * s, (upper - lower) * s * (1.0 - s))
-            }
-        }
-    }
-}
-
-/// A share of a step: consecutive tiles, their gradient and their part of every term.
-struct Chunk<E: Real> {
-    tiles: Vec<TileRange>,
-    gradient: AlignedVec<E>,
-    shares: Vec<f64>,
-    fault: Option<(usize, usize)>,
-}
-
-#[derive(Clone, Copy)]
-struct TileRange {
-    group: usize,
-    first: usize,
-    count: usize,
 }
 
 impl<E: Real> Engine<E> {
@@ -323,14 +272,6 @@ impl<E: Real> Engine<E> {
     }
 }
 
-/// Lends a worker's buffers.
-fn with_buffers<E: Real, T>(buffers: &[Mutex<Buffers<E>>], work: impl FnOnce(&mut Buffers<E>) -> T) -> T {
-    let worker = rayon::current_thread_index().map_or(buffers.len() - 1, |at| at % buffers.len());
-    // A panic in another worker leaves scratch behind, nothing that could be torn.
-    let mut own = buffers[worker].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-    work(&mut own)
-}
-
 /// First term of each group, counted over all groups.
 fn first_terms<E: Real>(groups: &[BoundGroup<E>]) -> Vec<usize> {
     groups
@@ -341,105 +282,4 @@ fn first_terms<E: Real>(groups: &[BoundGroup<E>]) -> Vec<usize> {
             Some(first)
         })
         .collect()
-}
-
-/// Rows of a tile, their shares of the loss, and the seeds of the adjoint. Gives the first row that is not finite.
-fn weigh<E: Real>(
-    network: &Network<'_, E>,
-    tile: &Tile<'_, E>,
-    buffers: &mut Buffers<E>,
-    shares: &mut [f64],
-) -> Option<(usize, usize)> {
-    let stride = tile.stride();
-    let Buffers { jets, points, columns, rows, seeds, row_slopes, .. } = buffers;
-    let inputs =
-        Points { count: tile.count, stride, jets, coordinates: points, columns, scalars: network.scalars, seeds: &[] };
-    tile.group.programs.residual(network.isa, inputs, rows);
-    let mut fault = None;
-    for ((index, term), share) in tile.group.terms.iter().enumerate().zip(shares) {
-        if term.schema.kind == TermKind::Integral {
-            continue;
-        }
-        let mut judge = |sum: f64, values: &[E]| {
-            *share += sum;
-            if !sum.is_finite() && fault.is_none() {
-                let point = (0..tile.count).find(|p| values[*p..].iter().step_by(stride).any(|x| !x.is_finite()));
-                fault = Some((index, tile.first + point.unwrap_or(0)));
-            }
-        };
-        if let Some(chamfer) = &term.chamfer {
-            let (at, len) = (term.schema.first * stride, term.schema.rows * stride);
-            let (values, seeds) = (&mut rows[at..][..len], &mut seeds[at..][..len]);
-            let points = tile.first..tile.first + tile.count;
-            let scale = E::from_f64(term.factor / term.size);
-            let sum = chamfer.weigh(points.clone(), stride, scale, values);
-            seeds.fill(E::ZERO);
-            for (i, row) in values.chunks_exact(stride).enumerate() {
-                chamfer.seed(i, points.clone(), stride, |p| row[p] * scale, seeds);
-            }
-            judge(sum, values);
-            continue;
-        }
-        for row in term.schema.first..term.schema.first + term.schema.rows {
-            let values = &mut rows[row * stride..][..stride];
-            let (seeds, slopes) = (&mut seeds[row * stride..][..stride], &mut row_slopes[row * stride..][..stride]);
-            let sum = term.weigh(tile.first, tile.count, values, seeds, slopes);
-            judge(sum, values);
-        }
-    }
-    fault
-}
-
-impl<E: Real> BoundTerm<E> {
-    /// Replaces the raw rows of a tile by what counts, and gives half the sum of their squares.
-    fn weigh(&self, first: usize, count: usize, values: &mut [E], seeds: &mut [E], slopes: &mut [E]) -> f64 {
-        let mut sum = 0.0;
-        for p in 0..count {
-            let weight = self.point_weights.as_ref().map_or(E::ONE, |w| w[first + p]);
-            let (value, slope) = self.row(values[p], weight);
-            values[p] = value;
-            slopes[p] = slope;
-            seeds[p] = value * slope;
-            let value = value.to_f64();
-            sum += value * value;
-        }
-        seeds[count..].fill(E::ZERO);
-        sum / 2.0
-    }
-}
-
-/// Points of a tile: as many as keep its rows in cache, and enough tiles to share out.
-fn tile_points<E: Real>(layout: &Layout, channels: usize, points: usize) -> usize {
-    let buffers = layout.affine.len() + layout.hidden.len() + 6;
-    let bytes = channels * row_distance(layout.width) * size_of::<E>() * buffers;
-    let fit = (TILE_BYTES / bytes).clamp(4, 64);
-    let share = points.div_ceil(CHUNKS).next_multiple_of(4);
-    fit.min(share).max(4).min(points.max(1))
-}
-
-/// Cuts all tiles of all groups into chunks of about equal work.
-fn cut<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
-    let tiles: Vec<(TileRange, usize)> = groups
-        .iter()
-        .enumerate()
-        .flat_map(|(at, group)| {
-            let cost = group.sites() * group.reading.layers.channels();
-            group.tiles().map(move |(first, count)| (TileRange { group: at, first, count }, count * cost))
-        })
-        .collect();
-    let total: usize = tiles.iter().map(|(_, cost)| cost).sum();
-    let chunks = (total / CHUNK_ROWS).clamp(CHUNKS / 2, CHUNKS);
-    let mut chunks: Vec<Vec<TileRange>> = vec![Vec::new(); chunks.min(tiles.len()).max(1)];
-    let mut done = 0;
-    let count = chunks.len();
-    for (tile, cost) in tiles {
-        let at = (done * count / total.max(1)).min(count - 1);
-        chunks[at].push(tile);
-        done += cost;
-    }
-    chunks.retain(|chunk| !chunk.is_empty());
-    if chunks.is_empty() {
-        chunks.push(Vec::new());
-    }
-    chunks
 }

@@ -2,7 +2,8 @@
 
 use rayon::prelude::*;
 
-use super::tile::{Buffers, Network, Tile};
+use super::buffers::Buffers;
+use super::tile::{Network, Tile};
 use super::{Chamfer, Engine, with_buffers};
 use crate::real::Real;
 use crate::residual::Points;
