@@ -1,8 +1,9 @@
-//! A thousand random small equations, from their text to rows and channels, against dense jets.
+//! A thousand random small equations, from their text to rows and channels, against dense jets, and their adjoints against
+//! tangents.
 
 mod middle_support;
 
-use middle_support::check::check_rows;
+use middle_support::check::{check_dot_products, check_rows};
 use middle_support::{Numbers, network};
 use nisp_compiler::error::Errors;
 use nisp_compiler::model::{Model, check};
@@ -116,10 +117,13 @@ proptest! {
         let plan = plan.unwrap();
         let checked = check_rows(&model, &plan, seed);
         prop_assert!(checked.is_ok(), "{text}\n{:?}", checked);
+        let checked = check_dot_products(&model, &plan, seed);
+        prop_assert!(checked.is_ok(), "{text}\n{:?}", checked);
         for group in plan.scenes.iter().flat_map(|scene| &scene.groups) {
             let set = &plan.sets[group.hidden].set;
             if set.len() <= LARGE {
                 network::check(set, seed)?;
+                network::check_adjoints(set, seed)?;
             }
         }
     }

@@ -8,6 +8,7 @@ use super::Numbers;
 use super::jet::Jet;
 use super::models::{self, call};
 use super::oracle::World;
+use super::tangent::{compare, moving, tangent};
 
 fn world(model: &Model, numbers: &mut Numbers) -> World {
     let (coordinates, degree) = (model.coordinates.len(), 6);
@@ -143,6 +144,34 @@ pub(crate) fn check_rows(model: &Model, plan: &Plan, seed: u64) -> Result<(), St
                     }
                 }
             }
+        }
+    }
+    Ok(())
+}
+
+/// Compares `u.(J v)` with `(J^T u).v` of every group, `J` being the derivative of the rows by the jets.
+pub(crate) fn check_dot_products(model: &Model, plan: &Plan, seed: u64) -> Result<(), String> {
+    let mut numbers = Numbers(seed);
+    for scene in &plan.scenes {
+        for group in &scene.groups {
+            let inputs = Inputs::new(&world(model, &mut numbers), scene, group, &mut numbers);
+            let direction = numbers.take(inputs.jets.len());
+            let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<f64>>();
+            let tangents = |inputs: &Inputs| {
+                let rows = tangent(&group.residual, |slot, index| match slot {
+                    Slot::Jet => moving(inputs.jets[index], direction[index]),
+                    Slot::Coordinate => moving(inputs.point[index], 0.0),
+                    Slot::Parameter => moving(inputs.scalars[index], 0.0),
+                    Slot::Column => moving(inputs.columns[index], 0.0),
+                    other => panic!("rows do not read {other:?}"),
+                });
+                product(&inputs.seeds, &rows)
+            };
+            let (products, mut nudged) = (tangents(&inputs), inputs.clone());
+            nudged.jets.iter_mut().for_each(|jet| *jet *= 1.0 + 1e-9);
+            let moved = products.iter().zip(tangents(&nudged)).map(|(a, b)| (a - b).abs()).sum::<f64>();
+            // Rounding of the jets in the fourteenth digit, where the equation amplifies it.
+            compare(&products, &product(&inputs.run(&group.adjoint), &direction), 1e-5 * moved)?;
         }
     }
     Ok(())

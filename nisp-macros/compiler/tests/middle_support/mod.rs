@@ -6,6 +6,7 @@ pub(crate) mod jet;
 pub(crate) mod models;
 pub(crate) mod network;
 pub(crate) mod oracle;
+pub(crate) mod tangent;
 
 use nisp_compiler::channels::{ChannelSet, Operator};
 use nisp_compiler::rational::ratio;

@@ -8,6 +8,7 @@ use proptest::prelude::*;
 
 use super::Numbers;
 use super::jet::Jet;
+use super::tangent::{compare, moving, tangent};
 
 /// Channels of the two factors of a product, or of the argument of a composition.
 fn run(program: &Program, phi: &[f64], left: &[f64], right: &[f64]) -> Vec<f64> {
@@ -50,6 +51,44 @@ pub(crate) fn check(set: &ChannelSet, seed: u64) -> Result<(), TestCaseError> {
         let scale = bounds.apply(&positive.unwrap()).max(1e-6);
         let expected = out_jet.apply(operator);
         prop_assert!((got - expected).abs() <= 1e-12 * scale, "{operator:?}: {got} instead of {expected} ({scale})");
+    }
+    Ok(())
+}
+
+/// Compares `u.(J v)` with `(J^T u).v` of the rules of a set, `J` being the derivative of the channels that a rule gives by
+/// those that it takes.
+pub(crate) fn check_adjoints(set: &ChannelSet, seed: u64) -> Result<(), TestCaseError> {
+    let (mut numbers, all) = (Numbers(seed), vec![true; set.len()]);
+    // One more than there are orders: where the argument moves, each derivative moves by the next.
+    let phi = numbers.take(set.order() as usize + 2);
+    for rule in [channels::compose(set), channels::affine(set), channels::product(set)] {
+        let rule = rule.unwrap();
+        let wanted = rule.inputs.clone();
+        let (forward, adjoint) = rule_programs(rule, &all).unwrap();
+        // Weights are one for each coordinate, the others one for each channel.
+        let mut vector = || numbers.take(set.len().max(set.coordinates));
+        let values = [vector(), vector(), vector()];
+        let value = |slot: Slot, index: usize| match slot {
+            Slot::Phi => phi[index],
+            Slot::Argument | Slot::Left | Slot::Weight => values[0][index],
+            Slot::Right => values[1][index],
+            Slot::Seed => values[2][index],
+            other => panic!("a rule does not read {other:?}"),
+        };
+        let direction = numbers.take(wanted.len());
+        let speed = |slot: Slot, index: usize| -> f64 {
+            let of = |(at, v): (&Option<(Slot, usize)>, &f64)| match (at, slot) {
+                (None, Slot::Phi) => v * phi[index + 1],
+                (Some(at), _) if *at == (slot, index) => *v,
+                _ => 0.0,
+            };
+            wanted.iter().zip(&direction).map(of).sum()
+        };
+        let moved = tangent(&forward, |slot, index| moving(value(slot, index), speed(slot, index)));
+        let adjoints = adjoint.evaluate(value);
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).collect::<Vec<f64>>();
+        let compared = compare(&product(&values[2], &moved), &product(&adjoints, &direction), 0.0);
+        prop_assert!(compared.is_ok(), "{compared:?}");
     }
     Ok(())
 }

@@ -51,7 +51,7 @@ impl World {
     }
 }
 
-fn power(x: &Jet, exponent: f64) -> Jet {
+pub(crate) fn power(x: &Jet, exponent: f64) -> Jet {
     let mut factor = 1.0;
     let derivatives: Vec<f64> = (0..=x.degree)
         .map(|n| {
@@ -63,7 +63,7 @@ fn power(x: &Jet, exponent: f64) -> Jet {
     x.compose(&derivatives)
 }
 
-fn call(f: Function, x: &Jet) -> Jet {
+pub(crate) fn call(f: Function, x: &Jet) -> Jet {
     let (v, one) = (x.value(), Jet::affine(&vec![0.0; x.coordinates], 1.0, x.degree));
     let cycle = |values: [f64; 4]| (0..=x.degree as usize).map(|n| values[n % 4]).collect::<Vec<f64>>();
     match f {
