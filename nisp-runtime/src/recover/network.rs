@@ -19,7 +19,7 @@ use crate::solve::driver::{Outcome, Status, WarningKind};
 use crate::solve::empirical_bayes::{EmpiricalBayes, EmpiricalBayesSettings};
 use crate::solve::fault::Fault;
 use crate::solve::gauss_newton::GaussNewton;
-use crate::solve::lbfgs::Lbfgs;
+use crate::solve::lbfgs::{self, Lbfgs};
 use crate::solve::marquardt::Marquardt;
 use crate::solve::method::Method;
 use crate::solve::prior::WeightPrior;
@@ -171,20 +171,16 @@ impl<'a> Fit<'a> {
         }
     }
 
-    /// A method that goes on from a run in single precision.
+    /// A method that goes on from a run in single precision: what it has learnt of the curvature is worth hundreds of steps.
     fn method_after(
         &mut self,
         optimizer: Optimizer,
         single: &Outcome<f64>,
     ) -> Result<Box<dyn Method<f64, Engine<f64>>>, Fault> {
-        if optimizer == Optimizer::Adam {
-            let mut method = self.method(optimizer);
-            method.restore(&single.state)?;
-            return Ok(method);
-        }
-        // What was learnt of the curvature is rounding by now.
-        self.theta.clone_from(&single.theta);
-        Ok(self.method(optimizer))
+        let mut method = self.method(optimizer);
+        let state = single.state.without("loss");
+        method.restore(&if optimizer == Optimizer::Lbfgs { lbfgs::recalled(state)? } else { state })?;
+        Ok(method)
     }
 
     /// Runs in double precision, from the end of a run in single if there was one; gives the belief about parameters that

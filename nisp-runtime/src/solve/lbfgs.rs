@@ -126,6 +126,15 @@ impl<E: Real> Lbfgs<E> {
     }
 }
 
+/// A state in which all pairs are in use again that were given up because no better point was found along them: in a higher
+/// precision there may be one.
+pub(crate) fn recalled(state: State) -> Result<State, Fault> {
+    // Of a full ring, the oldest slot may hold a pair that was not taken.
+    let memory = state.vector("inverse")?.len() as u64;
+    let used = state.counter("taken")?.min(memory.saturating_sub(1));
+    Ok(state.with_counter_at("used", used))
+}
+
 impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Lbfgs<E> {
     fn name(&self) -> &'static str {
         "lbfgs"

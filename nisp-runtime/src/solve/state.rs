@@ -29,6 +29,19 @@ impl State {
         self
     }
 
+    /// The same with nothing in the vector `name`.
+    pub(crate) fn without(&self, name: &str) -> Self {
+        let mut state = self.clone();
+        state.vectors.iter_mut().filter(|(key, _)| key == name).for_each(|(_, vector)| vector.clear());
+        state
+    }
+
+    /// The same with another value of the counter `name`.
+    pub(crate) fn with_counter_at(mut self, name: &str, value: u64) -> Self {
+        self.counters.iter_mut().filter(|(key, _)| key == name).for_each(|(_, own)| *own = value);
+        self
+    }
+
     pub(crate) fn check_method(&self, method: &str) -> Result<(), Fault> {
         if self.method == method { Ok(()) } else { Err(Fault::state(format!("method {}", self.method))) }
     }
