@@ -170,8 +170,9 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
             }
             let samples = format!("{sizes}; rounding the weights to f32 changes {rounded:.1e}");
             let row = Row::new(what, samples, worst, target);
-            // An unlucky place of strong curvature: rounding of sums does a little more than that of weights.
-            let bounded = "within 20 times what the rounding of the weights to f32 changes by itself";
+            // Weights are rounded once, the sums that they are part of once more in every layer.
+            let bounded = "such a network amplifies rounding: within 20 times what rounding nothing but its weights to \
+                           f32 does to the exact derivative; give f64";
             rows.push(if factor > 1.0 { row.missing(target.max(20.0 * rounded), bounded) } else { row });
         }
     }

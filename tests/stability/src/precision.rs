@@ -3,6 +3,7 @@
 use nisp::network::Architecture;
 
 use crate::models::each_model;
+use crate::promotion;
 use crate::reference::{Model, Reference, architectures, engine};
 use crate::row::{Extent, Row};
 
@@ -42,5 +43,6 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
         }};
     }
     each_model!(one!);
+    rows.extend(promotion::rows(extent));
     rows
 }

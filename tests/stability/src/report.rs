@@ -8,6 +8,14 @@ use nisp::simd::Isa;
 
 use crate::{Extent, Item, Row};
 
+/// What is not this command's to measure.
+const ELSEWHERE: &str = "## Elsewhere
+
+A thousand random small equations a run, from their text: rows and channels through a small network agree with dense jets within
+1e-10 and 1e-12, and their adjoints with tangents (u.(Jv) = (J'u).v) within 1e-13, beside what an equation amplifies:
+`cargo test --release -p nisp-compiler --test middle_equations`. Error against time, by scene, method, width and precision:
+`equations/RESULTS.md`.";
+
 /// Runs items and describes what they found, in Markdown; says on standard error how far it is.
 pub fn report(items: &[Item], extent: Extent) -> String {
     let mut text = String::from("# Numerical stability\n\n");
@@ -41,6 +49,7 @@ pub fn report(items: &[Item], extent: Extent) -> String {
         rows.iter().for_each(|row| line(table_row(row)));
         line(String::new());
     }
+    line(ELSEWHERE.into());
     let end = text.trim_end().len();
     text.truncate(end);
     text.push('\n');
@@ -50,6 +59,7 @@ pub fn report(items: &[Item], extent: Extent) -> String {
 fn table_row(row: &Row) -> String {
     let verdict = match (row.passes(), row.holds()) {
         (true, _) => "pass".into(),
+        (false, true) if row.held.is_infinite() => format!("MISSED: {}", row.why),
         (false, true) => format!("MISSED (tests: {}): {}", number(row.held), row.why),
         (false, false) => "MISSED, and worse than tests allow".to_string(),
     };

@@ -47,6 +47,11 @@ impl Row {
         Self { held, why, ..self }
     }
 
+    /// A measured time, which tests do not judge, and what may bound it.
+    pub fn timed(self, why: &'static str) -> Self {
+        self.missing(f64::INFINITY, why)
+    }
+
     /// A check of which every sample is right or wrong.
     pub fn count(what: impl Into<String>, samples: usize, wrong: usize) -> Self {
         Self::new(what, samples.to_string(), wrong as f64, 0.0)

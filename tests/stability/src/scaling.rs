@@ -114,12 +114,15 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
         let single = worst(&changes::<f32>(problem, &moderate));
         let what = format!("loss of the {name}, f32, field over length within 1e-12 and 1e12");
         rows.push(Row::new(what, samples(&moderate), single, 1e-5));
-        let off = changes::<f32>(problem, &wild).iter().filter(|x| x.is_nan() || **x > 1e-5).count();
-        let why =
-            "fourth derivatives of a field so much longer or shorter than the body leave the range of f32; give f64";
-        let what =
-            format!("loss of the {name}, f32, field over length beyond that: refused or changed by more than 1e-5");
-        rows.push(Row::count(what, wild.len(), off).missing(wild.len() as f64, why));
+        let beyond = changes::<f32>(problem, &wild);
+        let what = |what: &str| format!("loss of the {name}, f32, field over length beyond that: {what}");
+        let off = beyond.iter().filter(|x| **x > 1e-5).count();
+        rows.push(Row::count(what("changed by more than 1e-5"), wild.len(), off));
+        let refused = beyond.iter().filter(|x| x.is_nan()).count();
+        let why = "fourth derivatives of a field so much longer or shorter than the body leave the range of f32, which \
+                   is a fault that names the term; give f64";
+        let most = wild.len() as f64;
+        rows.push(Row::count(what("refused with a fault"), wild.len(), refused).missing(most, why));
     }
     rows
 }
