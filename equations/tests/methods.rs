@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use nisp::local::Local;
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Optimizer, RecoverError, Settings, Solution, Width, recover};
@@ -84,4 +85,15 @@ fn an_unresolved_answer_says_so() {
     assert_eq!(solution.status, Status::Budget);
     let said = |words: &str| solution.warnings.iter().any(|warning| warning.message.contains(words));
     assert!(said("`psi` is not resolved"), "{:?}", solution.warnings);
+}
+
+#[test]
+fn without_time_for_the_fine_lattice_the_answer_is_said_to_be_coarse() {
+    let entry = catalogue().into_iter().find(|entry| entry.name == "membrane").unwrap();
+    let membrane = entry.prepare(&Request::default()).unwrap();
+    let local = membrane.local.map(|local| Local { cells: 18, ..local });
+    let solution = run(&membrane, &Settings { local, budget: Some(Duration::ZERO), ..Settings::default() }).unwrap();
+    assert_eq!(solution.status, Status::NotConverged);
+    let says = |what: &str| solution.warnings.iter().any(|warning| warning.message.contains(what));
+    assert!(says("before the equations were solved") && says("coarse"), "{:?}", solution.warnings);
 }

@@ -124,7 +124,8 @@ pub(crate) fn table(
         solution.loss
     ));
     for (group, points) in solution.groups() {
-        line(format!("  {:10} {points} points, channels {}", group.name, group.channels.join(" ")));
+        let points = if points == 1 { "1 point".into() } else { format!("{points} points") };
+        line(format!("  {:10} {points}, channels {}", group.name, group.channels.join(" ")));
     }
     for skipped in scene.skipped {
         line(format!("  skipped    {skipped}"));

@@ -41,7 +41,8 @@ impl Quantity {
         let unit = match PREFIXES.iter().find(|(exponent, _)| *exponent == power) {
             _ if power == 0 => text::unit(&self.unit),
             Some((_, prefix)) if PREFIXABLE.contains(&self.unit.as_str()) => format!("{prefix}{}", self.unit),
-            _ => format!("10^{{{}}} {}", power.to_string().replace('-', "−"), text::unit(&self.unit)),
+            // A plain space after a raised part is lost by some renderers.
+            _ => format!("10^{{{}}}\u{a0}{}", power.to_string().replace('-', "−"), text::unit(&self.unit)),
         };
         Shown { factor: 10f64.powi(power), label: labelled(&self.symbol(), unit.trim()) }
     }
@@ -70,7 +71,7 @@ mod tests {
         assert_eq!(label("f", "N", 0.074), "f [mN]");
         assert_eq!(label("f", "Pa", 54e3), "f [kPa]");
         assert_eq!(label("q", "m", 0.11), "q [m]");
-        assert_eq!(label("a", "m/s^2", 2e-5), "a [10^{−6} m/s^{2}]");
+        assert_eq!(label("a", "m/s^2", 2e-5), "a [10^{−6}\u{a0}m/s^{2}]");
         assert_eq!(label("nu", "", 0.3), "ν");
         assert_eq!(Quantity::new("f", "N").shown(1e-3).factor, 1e-3);
     }

@@ -19,7 +19,7 @@ const LEAST_NOISE: f64 = 1e-2;
 /// Largest change of a field in one step, in its natural sizes.
 const FARTHEST: f64 = 5.0;
 /// What error bars take, in steps.
-const BARS: f64 = 2.0;
+pub(super) const BARS: f64 = 2.0;
 /// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
 const MOST_OFF: f64 = 5.0;
 /// Relative change of the coefficients at which the answer counts as converged.
@@ -44,8 +44,22 @@ pub(super) struct End {
     /// What the last step left open; empty if nothing.
     pub(super) warnings: Vec<Warning>,
     pub(super) factor: Option<Factor>,
+    /// Seconds of the longest step.
+    pub(super) longest: f64,
     /// The state before the last step, which whoever goes on from it repeats.
     pub(super) checkpoint: state::State,
+}
+
+impl End {
+    /// Says that there was no time for the fine lattice.
+    pub(super) fn stay_coarse(&mut self) {
+        if self.status == Status::Converged {
+            self.status = Status::Budget;
+        }
+        let message =
+            "the time was too short for the fine lattice: patches have coarse edges; give more --budget".into();
+        self.warnings.push(Warning { kind: WarningKind::Unresolved, message });
+    }
 }
 
 impl Solver<'_> {
@@ -140,14 +154,14 @@ impl Solver<'_> {
                 break;
             }
         }
-        let mut warnings = self.doubts(loss, rows);
+        let mut warnings = self.doubts(loss, rows, iteration + skipped);
         if !warnings.is_empty() && status != Status::Interrupted {
             status = Status::NotConverged;
         }
         let fault = faults.pop().filter(|_| status == Status::NotConverged);
         warnings.extend(fault.map(|fault| Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) }));
         let checkpoint = good.save(stage.before, stage.lattice);
-        Ok(End { state, status, iterations: stage.before + iteration, loss, warnings, factor, checkpoint })
+        Ok(End { state, status, iterations: stage.before + iteration, loss, warnings, factor, longest, checkpoint })
     }
 
     /// One step; also what it found on its way.
@@ -187,8 +201,11 @@ impl Solver<'_> {
     }
 
     /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.
-    fn doubts(&self, loss: f64, rows: usize) -> Vec<Warning> {
+    fn doubts(&self, loss: f64, rows: usize, steps: u64) -> Vec<Warning> {
         let mut doubts = Vec::new();
+        if steps < CONVEX_STEPS {
+            doubts.push("it ended before the equations were solved: give more --budget or --iterations".to_string());
+        }
         let off = (2.0 * loss / rows.max(1) as f64).sqrt();
         if off > MOST_OFF {
             doubts.push(format!(

@@ -29,7 +29,7 @@ mod sorted;
 mod surface;
 mod testing;
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
@@ -86,6 +86,10 @@ pub enum LocalError {
 /// Cells of the coarser lattice at least.
 const FEWEST: usize = 16;
 
+/// What the fine lattice takes before its first answer, in steps on the coarse one: places of all points, the state taken
+/// over, a step.
+const FINER: f64 = 10.0;
+
 /// A solved problem on its lattices.
 pub(crate) struct LocalSolution {
     heads: Heads,
@@ -139,7 +143,10 @@ pub(crate) fn solve(
         Some(state) => solver.restore(state).map_err(LocalError::Fault)?,
     };
     let mut end = solver.run(place, first_is_coarse, &mut stage)?;
-    if first_is_coarse && end.status != Status::Interrupted && !stage.is_spent(end.iterations) {
+    let goes_on = end.status != Status::Interrupted && end.iterations < limits.iterations;
+    if first_is_coarse && goes_on && !stage.has_time(FINER * end.longest) {
+        end.stay_coarse();
+    } else if first_is_coarse && goes_on {
         let mut fine = Solver::new(bound, settings, settings.cells)?;
         let place = fine.taken_over(&solver.heads, &end.state)?;
         (stage.before, stage.lattice) = (end.iterations, 1);
@@ -148,8 +155,9 @@ pub(crate) fn solve(
     }
     // Of what is no solution, the spread about it says nothing.
     let solved = matches!(end.status, Status::Converged | Status::Budget);
-    let deviations = if solved { solver.deviations(&end.state).unwrap_or_default() } else { Vec::new() };
-    let End { state, status, iterations, loss, warnings, factor, checkpoint } = end;
+    let has_time = end.status == Status::Converged || stage.has_time(course::BARS * end.longest);
+    let deviations = if solved && has_time { solver.deviations(&end.state).unwrap_or_default() } else { Vec::new() };
+    let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     Ok(LocalSolution {
         heads: solver.heads,
         theta: state.theta,
@@ -181,9 +189,10 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// True where steps or time are spent after so many steps in all.
-    fn is_spent(&self, iterations: u64) -> bool {
-        iterations >= self.limits.iterations || self.limits.budget.is_some_and(|budget| self.start.elapsed() >= budget)
+    /// True where so many seconds are left.
+    fn has_time(&self, seconds: f64) -> bool {
+        let enough = |budget: Duration| self.start.elapsed().as_secs_f64() + seconds < budget.as_secs_f64();
+        self.limits.budget.is_none_or(enough)
     }
 }
 
