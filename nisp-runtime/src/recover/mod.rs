@@ -132,9 +132,11 @@ fn solve(
     monitor: &mut Monitor<'_>,
 ) -> Result<Solution, RecoverError> {
     let start = Instant::now();
-    let architecture = layers::suited(&problem.bound(settings.architecture.inputs)?, settings.architecture);
+    let bound = problem.bound(settings.architecture.inputs)?;
+    let architecture = layers::suited(&bound, settings.architecture);
+    // Natural sizes depend on the inputs.
+    let bound = if architecture == settings.architecture { bound } else { problem.bound(architecture.inputs)? };
     let settings = &Settings { architecture, ..settings.clone() };
-    let bound = problem.bound(architecture.inputs)?;
     let fingerprint = checkpoint::fingerprint(problem, settings);
     if checkpoint.is_some_and(|checkpoint| checkpoint.fingerprint != fingerprint) {
         return Err(CheckpointError::Other.into());
