@@ -41,7 +41,7 @@ const fn polynomials() -> [[i64; TERMS]; MAX_DERIVATIVES] {
 struct Exponential<const TERMS: usize> {
     /// ln(2) / 2 in two parts; the first has so few bits that its product with any exponent is exact.
     half_ln2: [f64; 2],
-    /// Past this argument exp(-2 a) is less than half of the least denormal.
+    /// Past this argument 4 exp(-2 a) is less than half of the least denormal.
     largest: f64,
     /// Minimax coefficients of Q in `(1 - exp(-2 u)) / 2 = u - u^2 Q(u)` for |u| <= ln(2)/4, lowest power first: relative
     /// errors 2^-26 and 2^-55.
@@ -50,7 +50,7 @@ struct Exponential<const TERMS: usize> {
 
 const SINGLE: Exponential<5> = Exponential {
     half_ln2: [0.346_679_687_5, -1.060_972_200_273_452_9e-4],
-    largest: 52.0,
+    largest: 53.0,
     series: [
         0.999_999_962_984_245_6,
         -0.666_661_736_737_256_5,
@@ -62,7 +62,7 @@ const SINGLE: Exponential<5> = Exponential {
 
 const DOUBLE: Exponential<10> = Exponential {
     half_ln2: [0.346_573_590_184_561_9, 9.541_074_646_352_939e-11],
-    largest: 373.0,
+    largest: 374.0,
     series: [
         1.000_000_000_000_001,
         -0.666_666_666_666_663_5,
@@ -77,9 +77,20 @@ const DOUBLE: Exponential<10> = Exponential {
     ],
 };
 
-/// e = exp(-2 a) for a >= 0, and h = (1 - e) / 2: its value, and what rounding took from it.
+/// e = exp(-2 a) for a >= 0, in parts of which each use takes the best.
+struct Decay<V> {
+    /// e = mantissa 2^power.
+    mantissa: V,
+    power: V,
+    /// 2^power
+    scale: V,
+    /// h = (1 - e) / 2, and what rounding took from it.
+    half: V,
+    rest: V,
+}
+
 #[inline(always)]
-fn exponential<V: Simd, const TERMS: usize>(a: V, constants: &Exponential<TERMS>) -> (V, [V; 2]) {
+fn decay<V: Simd, const TERMS: usize>(a: V, constants: &Exponential<TERMS>) -> Decay<V> {
     // Operands in this order so that a NaN passes.
     let a = V::lit(constants.largest).min(a);
     // exp(-2 a) = 2^n exp(-2 u)
@@ -98,35 +109,40 @@ fn exponential<V: Simd, const TERMS: usize>(a: V, constants: &Exponential<TERMS>
     // Two roundings more than a fused part has.
     let part_rest = u.sub(part).sub(u.mul(u).mul(q));
     let rest = if V::FUSED { rest } else { scale.mul_add(part_rest, rest) };
-    (scale.add(scale).neg_mul_add(part, scale), [half, rest])
+    Decay { mantissa: part.neg_mul_add(V::lit(2.0), V::lit(1.0)), power: n, scale, half, rest }
 }
 
 /// `(tanh a, tanh' a)`, of which [`derivatives`] makes `D` functions.
 ///
-/// At most 1.5 (in double precision 2.5) and 6 units in the last place off; good down to the denormals. At infinity (1 or
+/// At most 1.5 (in double precision 2) and 6 units in the last place off; good down to the denormals. At infinity (1 or
 /// -1, 0); NaN gives NaN.
 #[inline(always)]
 pub fn tanh_and_slope<V: Simd, const D: usize>(a: V) -> (V, V) {
     let size = a.abs();
     let single = size_of::<V::Elem>() == 4;
-    let (e, [half, rest]) = if single { exponential(size, &SINGLE) } else { exponential(size, &DOUBLE) };
+    let decay = if single { decay(size, &SINGLE) } else { decay(size, &DOUBLE) };
+    let Decay { mantissa, power, scale, half, rest } = decay;
     // With h = (1 - e) / 2: t = h / (1 - h).
     let inverse = V::lit(1.0).div(V::lit(1.0).sub(half));
     let quotient = half.mul(inverse);
     // h - q (1 - h), of which the first difference is exact.
-    let error = quotient.mul_add(half, half.sub(quotient));
+    let difference = half.sub(quotient);
+    let error =
+        if is_steep::<D>() { exact_mul_add(quotient, half, difference) } else { quotient.mul_add(half, difference) };
     let error = if single || is_steep::<D>() { quotient.mul_add(rest, error).add(rest) } else { error };
     let t = error.mul_add(inverse, quotient);
-    // (1 - t) (1 + t), with 1 - t = e / (1 - h).
-    let less = e.mul(inverse);
-    let mut s = less.mul_add(t, less);
-    if is_steep::<D>() {
-        // Until s is small, 1 - t^2 is the more accurate of the two: t is known to more than its digits, if products are
-        // not rounded.
+    let s = if is_steep::<D>() {
+        // Until s is small, 1 - t^2 is the more accurate: t is known to more than its digits.
         let t_rest = error.mul_sub(inverse, t.sub(quotient));
-        let near = t_rest.neg_mul_add(t.add(t), t.neg_mul_add(t, V::lit(1.0)));
-        s = V::select(size.less(V::lit(if V::FUSED { 4.0 } else { 0.88 })), near, s);
-    }
+        let near = t_rest.neg_mul_add(t.add(t), exact_mul_add(t.neg(), t, V::lit(1.0)));
+        // 4 e / (1 + e)^2, by 1 + t = 2 / (1 + e): t is known better than the inverse.
+        let sum = t.add(V::lit(1.0));
+        V::select(size.less(V::lit(4.0)), near, mantissa.mul(sum.mul(sum)).scale2(power))
+    } else {
+        // (1 - t) (1 + t), with 1 - t = e / (1 - h).
+        let less = scale.mul(mantissa).mul(inverse);
+        less.mul_add(t, less)
+    };
     (t.copysign(a), s)
 }
 
@@ -134,6 +150,25 @@ pub fn tanh_and_slope<V: Simd, const D: usize>(a: V) -> (V, V) {
 /// have zeros where they are steep. Fields of second order do without them, adjoint included.
 const fn is_steep<const D: usize>() -> bool {
     D > 4
+}
+
+/// `a b + c` of numbers whose sum is much smaller than they are, and the product not rounded.
+#[inline(always)]
+fn exact_mul_add<V: Simd>(a: V, b: V, c: V) -> V {
+    if V::FUSED {
+        return a.mul_add(b, c);
+    }
+    // Factors in halves, whose products are exact (Dekker 1971).
+    let half_of_the_bits = if size_of::<V::Elem>() == 4 { 4097.0 } else { 134_217_729.0 };
+    let halves = |x: V| {
+        let shifted = x.mul(V::lit(half_of_the_bits));
+        let high = shifted.sub(shifted.sub(x));
+        (high, x.sub(high))
+    };
+    let ((a_high, a_low), (b_high, b_low)) = (halves(a), halves(b));
+    let product = a.mul(b);
+    let rest = a_high.mul(b_high).sub(product).add(a_high.mul(b_low)).add(a_low.mul(b_high)).add(a_low.mul(b_low));
+    product.add(c).add(rest)
 }
 
 /// `tanh` and its first `D - 1` derivatives, from t = tanh a and s = tanh' a as [`tanh_and_slope`] gives them.
@@ -151,7 +186,13 @@ pub fn derivatives<V: Simd, const D: usize>(t: V, s: V) -> [V; D] {
             })*
         };
     }
-    each!(1 times s, 2 times ts, 3 times s, 4 times ts, 5 times s, 6 times ts, 7 times s, 8 times ts, 9 times s);
+    each!(1 times s, 2 times ts, 3 times s, 4 times ts, 6 times ts, 7 times s, 8 times ts, 9 times s);
+    if D > 5 {
+        // s (120 s^2 - 120 s + 16) from the middle of the parabola, which is the same for s and 1 - s = t^2: the smaller is
+        // known better.
+        let from_middle = s.min(t.mul(t)).sub(V::lit(0.5));
+        phi[5] = from_middle.mul(V::lit(120.0)).mul_sub(from_middle, V::lit(14.0)).mul(s);
+    }
     phi
 }
 

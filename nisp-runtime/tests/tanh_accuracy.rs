@@ -10,8 +10,8 @@ use tanh_errors::{D, Rows, Worst, largest_ratios, reference_double, reference_si
 
 fn check(worst: &Worst, isa: Isa, elem: &str, tanh: f64) {
     println!("{elem} {}: {:.2?} near zeros {:.2?}", isa.name(), worst.ulps, worst.near_zeros);
-    // Six derivatives are promised. Without fused multiply-add, roundings add up to twice as much.
-    let (tanh, bound) = if isa == Isa::SCALAR { (2.0 * tanh, 16.0) } else { (tanh, 8.0) };
+    // Six derivatives are promised.
+    let bound = 8.0;
     assert!(worst.ulps[0] <= tanh, "tanh off by {} ulp", worst.ulps[0]);
     for n in 1..=6 {
         assert!(worst.ulps[n] <= bound, "derivative {n} off by {} ulp", worst.ulps[n]);

@@ -153,18 +153,7 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
             let whats =
                 ["tanh", "derivatives 1 to 6, away from zeros", "derivatives 1 to 6, near zeros, over their size"];
             for (what, (worst, target)) in whats.iter().zip([(value, tanh), (derivatives, 8.0), (near, 8.0)]) {
-                let row = Row::new(format!("{what}, {element}, {name}, ulp"), &samples, worst, target);
-                // Roundings add up to twice as much.
-                let unfused = *isa == Isa::SCALAR;
-                let why = "the scalar path has no fused multiply-add";
-                let near = what.contains("near") && element == "f64";
-                let denormal = "two units of a denormal slope times the largest coefficient, past a = 350";
-                rows.push(match (unfused, near) {
-                    (true, _) => row.missing(2.0 * target, why),
-                    // Nowhere among the samples of the fast part.
-                    (false, true) => row.missing(9.0, denormal),
-                    (false, false) => row,
-                });
+                rows.push(Row::new(format!("{what}, {element}, {name}, ulp"), &samples, worst, target));
             }
         }
     }
