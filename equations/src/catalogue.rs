@@ -144,8 +144,6 @@ pub struct Prepared {
     pub rival: Option<Box<dyn System>>,
     /// Local functions, where they suit the scene better than a network.
     pub local: Option<Local>,
-    /// [`Settings::distrust`] that was found for the scene on simulated data; none where nobody looked.
-    pub distrust: Option<f64>,
     /// The body whose surface was seen, where the data are a cloud.
     pub contact: Option<Contact>,
 }
@@ -153,7 +151,7 @@ pub struct Prepared {
 impl Prepared {
     /// Settings with what suits the scene.
     pub fn suited(&self, settings: Settings) -> Settings {
-        Settings { local: self.local, distrust: self.distrust.unwrap_or(settings.distrust), ..settings }
+        Settings { local: self.local, ..settings }
     }
 
     /// What the classical rivals answer at times `at`, where `truth` is true; nothing where none knows this scene. They

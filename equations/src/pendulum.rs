@@ -33,7 +33,6 @@ const SERIES: Series = Series {
         "data/pendulum/run_21_truth.csv",
         "data/pendulum/run_23_truth.csv",
     ],
-    distrust: &[("recover", 2.75)],
     every: 4,
     rival,
 };

@@ -81,7 +81,6 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         warnings: Vec::new(),
         rival: None,
         local: None,
-        distrust: None,
         contact: None,
     })
 }

@@ -22,7 +22,6 @@ const SERIES: Series = Series {
     truth: include_bytes!("../../data/rlc/rlc_exponential.csv"),
     columns: &[("v", "v_V")],
     truths: &["data/rlc/rlc_exponential.csv"],
-    distrust: &[("recover", 0.75)],
     every: 3,
     rival,
 };

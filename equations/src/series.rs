@@ -52,8 +52,6 @@ pub struct Series {
     pub columns: &'static [(&'static str, &'static str)],
     /// Paths of truths in the repository, from which fresh noisy copies can be made.
     pub truths: &'static [&'static str],
-    /// By scene, [`nisp::Settings::distrust`] as found on simulated motions or voltages: `--example calibrate`.
-    pub distrust: &'static [(&'static str, f64)],
     /// Rows of a truth for each measurement.
     pub every: usize,
     /// The system that classical rivals solve for a scene of this name, where they know how.
@@ -154,7 +152,6 @@ impl Series {
         }
         let truth =
             truth.map(|truth| Truth::read(truth, schema, Some([first, last]), Headers::default())).transpose()?;
-        let distrust = self.distrust.iter().find(|(scene, _)| *scene == schema.name).map(|&(_, distrust)| distrust);
         let source = table.path().display().to_string();
         let rival =
             (self.rival)(schema.name, Given { start: first, parameter: &|name| parameter(schema, request, name) });
@@ -168,7 +165,6 @@ impl Series {
             warnings: Vec::new(),
             rival,
             local: None,
-            distrust,
             contact: None,
         })
     }

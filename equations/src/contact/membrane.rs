@@ -143,7 +143,6 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         warnings: observed.cloud.warnings,
         rival: None,
         local,
-        distrust: None,
         contact: Some(contact),
     })
 }

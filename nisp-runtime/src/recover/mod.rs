@@ -3,6 +3,7 @@
 //! [`recover`] chooses how rows are weighted and which method minimises them, runs it within a budget, and reads the
 //! answer back in the user's units.
 
+mod bars;
 mod checkpoint;
 mod course;
 mod layers;
@@ -13,6 +14,7 @@ mod promotion;
 mod resolution;
 mod settings;
 mod solution;
+mod swing;
 mod undetermined;
 pub(crate) mod weigh;
 

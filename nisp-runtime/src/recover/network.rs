@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::bars::Distrust;
 use super::course::Course;
 use super::noise::{self, Noise};
 use super::promotion::Promotion;
@@ -80,7 +81,7 @@ pub(super) fn solve(
         Width::Auto if !course.is_promoted() => Width::F32,
         chosen => chosen,
     };
-    let run = Run { optimizer, precision, start, prior };
+    let run = Run { optimizer, precision, start, prior, distrust: Distrust::under(&noise) };
     Ok(Solution::new(bound, engine, outcome, settings, run))
 }
 

@@ -30,6 +30,14 @@ impl Noise {
         self.columns.iter().all(|c| is_exact(c.deviation, c.spread))
     }
 
+    /// Share of the data's variance that is noise, the mean over observed columns: 0 for exact data. One, the worst, where
+    /// nothing can be judged.
+    pub(super) fn share(&self) -> f64 {
+        let shares = self.columns.iter().map(|c| (c.deviation / c.spread.max(c.deviation)).powi(2));
+        let sum: f64 = shares.map(|share| if share.is_nan() { 0.0 } else { share }).sum();
+        if self.columns.is_empty() { 1.0 } else { sum / self.columns.len() as f64 }
+    }
+
     /// Noise of a column of a group.
     pub(crate) fn of(&self, group: usize, column: usize) -> Option<ColumnNoise> {
         self.columns.iter().find(|c| (c.group, c.column) == (group, column)).copied()
@@ -64,7 +72,7 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
 }
 
 /// Values in the order of their only coordinate.
-fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
+pub(super) fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| coordinates[a].total_cmp(&coordinates[b]));
     order.into_iter().map(|at| values[at]).collect()

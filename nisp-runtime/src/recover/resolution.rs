@@ -1,8 +1,9 @@
 //! Where the answer does not fit: data that the network does not follow or follows too closely, and places where an
 //! equation fails.
 
-use super::noise::Noise;
+use super::noise::{ColumnNoise, Noise, in_order, is_exact};
 use super::place::place;
+use super::swing::{self, Swing};
 use super::weigh::observed;
 use crate::engine::Engine;
 use crate::problem::Bound;
@@ -38,8 +39,12 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
                     let outward = bound.system.outward(&term.unit);
                     observed(noise, bound, at, number).and_then(|column| {
                         let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
-                        let said = misfit(rms, column.deviation, column.spread)?;
-                        let (rms, sigma, unit) = (rms * outward, column.deviation * outward, term.unit.text);
+                        let unit = term.unit.text;
+                        let Some(said) = misfit(rms, column.deviation, column.spread) else {
+                            let swing = swing(&bound.coordinates[at], own, column)?;
+                            return Some(smoothed_away(term.name, swing, outward, unit));
+                        };
+                        let (rms, sigma) = (rms * outward, column.deviation * outward);
                         Some(format!("`{}` {said} (rms {rms:.2e} {unit}, noise {sigma:.2e} {unit})", term.name))
                     })
                 }
@@ -67,7 +72,7 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
 
 /// What a misfit says, where it is not that of noise.
 fn misfit(rms: f64, noise: f64, spread: f64) -> Option<&'static str> {
-    let exact = super::noise::is_exact(noise, spread);
+    let exact = is_exact(noise, spread);
     if exact && rms > COARSE * spread {
         Some("is not resolved, though its data are all but exact: give more time, a wider network or another seed")
     } else if !exact && rms > LOOSE * noise {
@@ -81,6 +86,21 @@ fn misfit(rms: f64, noise: f64, spread: f64) -> Option<&'static str> {
     } else {
         None
     }
+}
+
+/// An oscillation in what is left of a noisy record over time.
+fn swing(times: &[f64], residuals: &[f64], noise: ColumnNoise) -> Option<Swing> {
+    let is_record = times.len() == residuals.len() && !is_exact(noise.deviation, noise.spread);
+    is_record.then(|| swing::strongest(&in_order(times, residuals))).flatten()
+}
+
+fn smoothed_away(name: &str, swing: Swing, outward: f64, unit: &str) -> String {
+    format!(
+        "`{name}` is not resolved: what is left of its data goes up and down {} times over the record by {:.2e} {unit}, which \
+         noise does not; the source misses that, and its error bars do not know of it; give another seed or a wider network",
+        swing.periods,
+        swing.amplitude * outward,
+    )
 }
 
 /// The worst point and its residual beside `size`, where few points have most of the sum of squares. Rows come one after

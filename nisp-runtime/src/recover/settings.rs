@@ -22,9 +22,6 @@ pub struct Settings {
     /// How many times longer than that of the equations the gradient of the data is at first, at least, for Adam: data are
     /// regressed first, and the source is solved for then (paper, section 3.2).
     pub data_first: f64,
-    /// What the prior's part of error bars is multiplied by: how much rougher the sources of a scene are than a network
-    /// whose smoothness suits its states believes. To be chosen on simulated data of the scene, never on its truth.
-    pub distrust: f64,
     /// Seed of the initial weights.
     pub seed: u64,
     /// Wall time, from the call to the answer.
@@ -44,7 +41,6 @@ impl Default for Settings {
             local: None,
             resampling: None,
             data_first: 50.0,
-            distrust: 2.75,
             seed: 0,
             budget: Some(Duration::from_secs(10)),
             iterations: None,

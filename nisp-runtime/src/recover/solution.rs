@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::bars::{Bars, Distrust};
 use super::{Checkpoint, Optimizer, Settings, Width};
 use crate::engine::{Engine, Learned};
 use crate::local::LocalSolution;
@@ -11,7 +12,7 @@ use crate::simd::Isa;
 use crate::solve::curvature::Curvature;
 use crate::solve::driver::{Outcome, Status, Warning};
 use crate::solve::objective::LeastSquares;
-use crate::solve::posterior::{Posterior, posterior};
+use crate::solve::posterior::posterior;
 use crate::solve::prior::WeightPrior;
 
 /// A solved problem.
@@ -48,6 +49,7 @@ struct Network {
     engine: Engine<f64>,
     theta: Vec<f64>,
     prior: Option<WeightPrior>,
+    distrust: Distrust,
 }
 
 /// A head at some points.
@@ -106,11 +108,12 @@ pub(super) struct Run {
     pub(super) precision: Width,
     pub(super) start: Instant,
     pub(super) prior: Option<WeightPrior>,
+    pub(super) distrust: Distrust,
 }
 
 impl Solution {
     pub(super) fn new(bound: Bound, engine: Engine<f64>, outcome: Outcome<f64>, settings: &Settings, run: Run) -> Self {
-        let Run { optimizer, precision, start, prior } = run;
+        let Run { optimizer, precision, start, prior, distrust } = run;
         Self {
             status: outcome.status,
             loss: outcome.loss,
@@ -122,7 +125,7 @@ impl Solution {
             settings: settings.clone(),
             checkpoint: Checkpoint::new(&bound.problem, settings, outcome.state),
             bound,
-            carrier: Carrier::Network(Box::new(Network { engine, theta: outcome.theta, prior })),
+            carrier: Carrier::Network(Box::new(Network { engine, theta: outcome.theta, prior, distrust })),
         }
     }
 
@@ -193,14 +196,11 @@ impl Solution {
             }
             return estimates;
         }
-        let Some((rows, posterior)) = self.posterior(points) else { return self.evaluate(points) };
+        let Some((rows, bars)) = self.bars(points) else { return self.evaluate(points) };
         let count = rows.len() / self.scene().heads.len().max(1);
         self.estimates(|head| {
             let range = head * count..(head + 1) * count;
-            let scaled = |part: &f64| self.settings.distrust * part;
-            let by_prior: Vec<f64> = posterior.by_prior[range.clone()].iter().map(scaled).collect();
-            let pairs = posterior.by_noise[range.clone()].iter().zip(&by_prior);
-            let deviations = pairs.map(|(noise, prior)| noise.hypot(*prior)).collect();
+            let [deviations, by_prior] = [&bars.deviations, &bars.by_prior].map(|part| part[range.clone()].to_vec());
             (rows[range].to_vec(), Some([deviations, by_prior]))
         })
     }
@@ -219,16 +219,16 @@ impl Solution {
             .collect()
     }
 
-    /// Values of all heads at points, and their posterior, in the engine's units.
-    fn posterior(&mut self, points: &[f64]) -> Option<(Vec<f64>, Posterior)> {
+    /// Values of all heads at points, and their error bars, in the engine's units.
+    fn bars(&mut self, points: &[f64]) -> Option<(Vec<f64>, Bars)> {
         let Carrier::Network(network) = &mut self.carrier else { return None };
-        let Network { engine, theta, prior } = &mut **network;
+        let Network { engine, theta, prior, distrust } = &mut **network;
         let curvature = Curvature::at(engine, theta, prior.as_ref()?).ok()?;
         let mut readout: Engine<f64> = self.bound.readout(self.settings.architecture, points);
         let rows = readout.row_count();
         let (mut values, mut derivatives) = (vec![0.0; rows], vec![0.0; rows * theta.len()]);
         readout.jacobian(theta, &mut values, &mut derivatives).ok()?;
-        Some((values, posterior(&curvature, &derivatives, 3)))
+        Some((values, distrust.bars(&posterior(&curvature, &derivatives))))
     }
 
     /// Learned scalars.
@@ -259,7 +259,7 @@ impl Solution {
     pub fn terms(&mut self) -> Vec<TermReport> {
         let mut reports = Vec::new();
         let Carrier::Network(network) = &mut self.carrier else { return reports };
-        let Network { engine, theta, prior } = &mut **network;
+        let Network { engine, theta, prior, .. } = &mut **network;
         for group in 0..engine.groups.len() {
             let rows = engine.raw_rows(group, theta);
             let bound = &engine.groups[group];
@@ -306,7 +306,7 @@ impl Network {
             let curvature = curvature.as_ref()?;
             let mut direction = vec![0.0; self.theta.len()];
             direction[first + i] = slope;
-            Some(posterior(curvature, &direction, 1).deviations[0])
+            self.distrust.bars(&posterior(curvature, &direction)).deviations.first().copied()
         };
         values.map(|(i, (value, slope))| (value, deviation(i, slope))).collect()
     }

@@ -13,7 +13,7 @@ use crate::schema::TermKind;
 use crate::solve::curvature::Curvature;
 use crate::solve::driver::{Warning, WarningKind};
 use crate::solve::objective::LeastSquares;
-use crate::solve::posterior::{Direction, posterior};
+use crate::solve::posterior::{Direction, directions};
 use crate::solve::prior::WeightPrior;
 
 /// Points that directions are looked at, at most.
@@ -96,7 +96,7 @@ impl View<'_> {
         let of_head = values.chunks_exact(points).zip(derivatives.chunks_exact(points * len)).enumerate();
         of_head
             .filter_map(|(head, (values, derivatives))| {
-                let direction = posterior(&curvature, derivatives, 1).directions.pop()?;
+                let direction = directions(&curvature, derivatives, 1).pop()?;
                 let size = values.iter().map(|x| x * x).sum::<f64>().sqrt();
                 let is_open = direction.share > SHARE && direction.deviation > DEVIATION * size;
                 is_open.then_some(Open { head, direction })

@@ -15,8 +15,6 @@ pub struct Posterior {
     /// The part of it that the prior vouches for: the deviation of what smoothing takes away, if the truth is as the prior
     /// believes.
     pub by_prior: Vec<f64>,
-    /// The leading directions of their covariance, largest first.
-    pub directions: Vec<Direction>,
 }
 
 /// A pattern over the reported quantities that may be added to them at little cost in loss.
@@ -34,22 +32,12 @@ pub struct Direction {
 }
 
 /// The posterior of quantities whose derivatives by the parameters are the rows of `derivatives` (row-major,
-/// quantities x parameters), with at most `most` directions.
-pub fn posterior(curvature: &Curvature, derivatives: &[f64], most: usize) -> Posterior {
+/// quantities x parameters).
+pub fn posterior(curvature: &Curvature, derivatives: &[f64]) -> Posterior {
     let len = curvature.parameters();
     let mut spread = derivatives.to_vec();
     let variances = curvature.variances(&mut spread);
     let count = variances.len();
-    let total: f64 = variances.iter().sum();
-    let directions = leading(&spread, count, len, most)
-        .into_iter()
-        .map(|(variance, shape)| Direction {
-            deviation: variance.sqrt(),
-            share: variance / total,
-            learned: prior_variance(curvature, derivatives, &shape).map(|prior| 1.0 - variance / prior),
-            shape,
-        })
-        .collect();
     // H^-1 = H^-1 J^T J H^-1 + H^-1 A H^-1: rows and prior.
     curvature.cholesky.solve_upper(&mut spread, count);
     let mut by_noise = vec![0.0; count];
@@ -65,8 +53,23 @@ pub fn posterior(curvature: &Curvature, derivatives: &[f64], most: usize) -> Pos
         deviations: variances.iter().map(|v| v.sqrt()).collect(),
         by_noise: by_noise.into_iter().map(f64::sqrt).collect(),
         by_prior: by_prior.collect(),
-        directions,
     }
+}
+
+/// The leading directions of the covariance of quantities given as for [`posterior`], largest first and `most` at most.
+pub fn directions(curvature: &Curvature, derivatives: &[f64], most: usize) -> Vec<Direction> {
+    let mut spread = derivatives.to_vec();
+    let variances = curvature.variances(&mut spread);
+    let total: f64 = variances.iter().sum();
+    let leading = leading(&spread, variances.len(), curvature.parameters(), most).into_iter();
+    leading
+        .map(|(variance, shape)| Direction {
+            deviation: variance.sqrt(),
+            share: variance / total,
+            learned: prior_variance(curvature, derivatives, &shape).map(|prior| 1.0 - variance / prior),
+            shape,
+        })
+        .collect()
 }
 
 /// Largest eigenvalues of `X X^T` with their eigenvectors, for `X` row-major of `count x len`, from the smaller of

@@ -1,0 +1,69 @@
+//! Whether what an answer leaves of data over time is noise: noise has no rhythm.
+//!
+//! The sum of squares hardly feels an oscillation that was smoothed away, because it spreads over all samples; the
+//! periodogram has it in one place.
+
+use std::f64::consts::TAU;
+
+/// An oscillation that noise would not show.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Swing {
+    /// Periods over the record.
+    pub(super) periods: usize,
+    pub(super) amplitude: f64,
+}
+
+/// Frequencies that are looked at, at most: what is smoothed away is slow beside the sampling.
+const MOST: usize = 200;
+
+/// Chance of taking noise for a swing.
+const CHANCE: f64 = 1e-3;
+
+/// The strongest oscillation of values that are evenly spaced, or nearly so, if it stands out of noise (Fisher 1929, Tests of
+/// significance in harmonic analysis: ordinates of the periodogram over the variance are exponential numbers).
+pub(super) fn strongest(values: &[f64]) -> Option<Swing> {
+    let count = values.len() as f64;
+    let variance = values.iter().map(|x| x * x).sum::<f64>() / count;
+    let frequencies = (values.len().saturating_sub(1) / 2).min(MOST);
+    let square = |periods: usize| {
+        let turn = TAU * periods as f64 / count;
+        let parts = values.iter().enumerate().map(|(at, x)| {
+            let (sine, cosine) = (turn * at as f64).sin_cos();
+            (x * cosine, x * sine)
+        });
+        let (re, im) = parts.fold((0.0, 0.0), |(re, im), (a, b)| (re + a, im + b));
+        re * re + im * im
+    };
+    let (square, periods) = (1..=frequencies)
+        .map(|k| (square(k), k))
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .filter(|(square, _)| *square > 0.0)?;
+    let chance = frequencies as f64 * (-square / (count * variance)).exp();
+    (chance < CHANCE).then(|| Swing { periods, amplitude: 2.0 * square.sqrt() / count })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::normal;
+    use rand::{SeedableRng, rngs::StdRng};
+
+    #[test]
+    fn noise_has_no_rhythm_and_a_weak_sine_has() {
+        let mut random = StdRng::seed_from_u64(3);
+        let mut noise: Vec<f64> = (0..400).map(|_| normal(&mut random)).collect();
+        assert_eq!(strongest(&noise), None);
+        // A tenth more variance than noise has: nothing that the sum of squares would tell.
+        noise.iter_mut().enumerate().for_each(|(i, x)| *x += 0.45 * (TAU * 7.0 * i as f64 / 400.0).cos());
+        let found = strongest(&noise).unwrap();
+        assert_eq!(found.periods, 7);
+        assert!((found.amplitude - 0.45).abs() < 0.25, "{found:?}");
+    }
+
+    #[test]
+    fn nothing_has_no_rhythm_either() {
+        assert_eq!(strongest(&[]), None);
+        assert_eq!(strongest(&[1.0]), None);
+        assert_eq!(strongest(&[0.0; 30]), None);
+    }
+}
