@@ -1,12 +1,14 @@
 //! Every method takes every equation, in every precision that it works in.
 
+use std::f64::consts::TAU;
 use std::time::Duration;
 
 use nisp::local::Local;
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Optimizer, RecoverError, Settings, Solution, Width, recover};
-use nisp_equations::{Prepared, Request, catalogue};
+use nisp_data::Table;
+use nisp_equations::{Prepared, Request, catalogue, noisy_copy};
 
 fn prepared(name: &str) -> Prepared {
     let entry = catalogue().into_iter().find(|entry| entry.name == name).unwrap();
@@ -85,6 +87,24 @@ fn an_unresolved_answer_says_so() {
     assert_eq!(solution.status, Status::Budget);
     let said = |words: &str| solution.warnings.iter().any(|warning| warning.message.contains(words));
     assert!(said("`psi` is not resolved"), "{:?}", solution.warnings);
+}
+
+#[test]
+fn a_rhythm_as_weak_as_the_noise_is_not_missed_in_silence() {
+    let entry = catalogue().into_iter().find(|entry| entry.name == "rlc").unwrap();
+    let times: Vec<f64> = (0..400).map(|i| 0.005 * f64::from(i)).collect();
+    let hum: Vec<f64> = times.iter().map(|t| 0.02 * (TAU * 12.5 * t).sin()).collect();
+    let mut truth = Table::empty();
+    truth.push("t", "s", &times).unwrap();
+    truth.push("v", "V", &hum).unwrap();
+    let copy = noisy_copy(&truth, entry.scene(None).unwrap().schema, 1, 0.02, 1).unwrap();
+    let request = Request { parameters: vec![("f0".into(), 0.0)], ..Request::default() };
+    let circuit = entry.series().unwrap().bind(&entry, &request, &copy, None).unwrap();
+    // Two units a layer do not follow 25 periods.
+    let settings = Settings { architecture: narrow(2), iterations: Some(30), budget: None, ..Settings::default() };
+    let solution = run(&circuit, &settings).unwrap();
+    let says = |what: &str| solution.warnings.iter().any(|warning| warning.message.contains(what));
+    assert!(says("up and down 25 times") && !says("misfit"), "{:?}", solution.warnings);
 }
 
 #[test]
