@@ -10,7 +10,7 @@ use std::path::Path;
 use std::time::Duration;
 
 use nisp::network::{Architecture, Inputs};
-use nisp::solve::driver::Flow;
+use nisp::solve::driver::{Flow, Status};
 use nisp::{Optimizer, Settings, recover};
 use nisp_equations::rivals::mean_abs_error;
 use nisp_equations::{Prepared, Request, catalogue, yardsticks};
@@ -33,8 +33,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         for noise in LADDER {
             let samples = series.copies(&entry, &Request::default(), &repository, noise, seed, runs)?;
             println!("\n{}, noise {noise}, copies: {}", entry.name, samples.len());
-            for (name, settings) in variants(budget).into_iter().filter(|(name, _)| name.starts_with(wanted)) {
-                println!("  {name:26} {}", judge(&samples, &settings)?);
+            for (name, settings, seeds) in variants(budget).into_iter().filter(|(name, ..)| name.starts_with(wanted)) {
+                println!("  {name:26} {}", judge(&samples, &settings, seeds)?);
             }
             for yardstick in yardsticks(&samples) {
                 println!("  {:26} error {:.2e}", yardstick.name, yardstick.error);
@@ -44,49 +44,62 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-/// The default, and what becomes of it without one of its parts.
-fn variants(budget: Duration) -> Vec<(&'static str, Settings)> {
+/// The default, and what becomes of it without one of its parts, or of the mean over so many seeds of initial weights.
+fn variants(budget: Duration) -> Vec<(&'static str, Settings, u64)> {
     let whole = Settings { budget: Some(budget), ..Settings::default() };
     let inputs = |inputs| Architecture { inputs, ..whole.architecture };
     let size =
         |width, layers| Architecture { inputs: whole.architecture.inputs, ..Architecture::modified(width, layers) };
     vec![
-        ("as it is", whole.clone()),
-        ("without logarithm of time", Settings { architecture: inputs(Inputs::Coordinates), ..whole.clone() }),
-        ("without evidence", Settings { optimizer: Optimizer::Marquardt, ..whole.clone() }),
-        ("half as wide", Settings { architecture: size(8, 2), ..whole.clone() }),
-        ("half again as wide", Settings { architecture: size(24, 2), ..whole }),
+        ("as it is", whole.clone(), 1),
+        ("without logarithm of time", Settings { architecture: inputs(Inputs::Coordinates), ..whole.clone() }, 1),
+        ("without evidence", Settings { optimizer: Optimizer::Marquardt, ..whole.clone() }, 1),
+        ("half as wide", Settings { architecture: size(8, 2), ..whole.clone() }, 1),
+        ("half again as wide", Settings { architecture: size(24, 2), ..whole.clone() }, 1),
+        ("mean of three seeds", whole, 3),
     ]
 }
 
 /// Means over samples, as a line.
-fn judge(samples: &[Prepared], settings: &Settings) -> Result<String, Box<dyn Error>> {
+fn judge(samples: &[Prepared], settings: &Settings, seeds: u64) -> Result<String, Box<dyn Error>> {
     let (mut error, mut seconds, mut converged) = (0.0, 0.0, 0);
     let mut cover: Vec<(&'static str, f64)> = Vec::new();
     for sample in samples {
-        let mut solution = recover(&sample.problem, &sample.suited(settings.clone()), &mut |_| Flow::Continue)?;
-        seconds += solution.wall_s;
-        converged += usize::from(solution.status == nisp::solve::driver::Status::Converged);
         let Some(truth) = &sample.truth else { continue };
-        for estimate in solution.evaluate_with_errors(&truth.points) {
-            let Some(real) = truth.of(estimate.name) else { continue };
-            if estimate.source {
-                error += mean_abs_error(&estimate.values, real);
+        let mut members = Vec::new();
+        for seed in 0..seeds {
+            let settings = sample.suited(Settings { seed, ..settings.clone() });
+            let mut solution = recover(&sample.problem, &settings, &mut |_| Flow::Continue)?;
+            seconds += solution.wall_s;
+            converged += usize::from(solution.status == Status::Converged);
+            members.push(solution.evaluate_with_errors(&truth.points));
+        }
+        for (at, head) in members[0].iter().enumerate() {
+            let Some(real) = truth.of(head.name) else { continue };
+            let values = mean(members.iter().map(|member| &member[at].values));
+            if head.source {
+                error += mean_abs_error(&values, real);
             }
-            let within = |deviations: &Vec<f64>| {
-                let pairs = estimate.values.iter().zip(real).zip(deviations);
-                pairs.filter(|((x, real), deviation)| (*x - *real).abs() <= 2.0 * **deviation).count()
-            };
-            let share = estimate.deviations.as_ref().map_or(0, within) as f64 / real.len() as f64;
-            match cover.iter_mut().find(|(name, _)| *name == estimate.name) {
+            let deviations = mean(members.iter().filter_map(|member| member[at].deviations.as_ref()));
+            let pairs = values.iter().zip(real).zip(&deviations);
+            let within = pairs.filter(|((x, real), deviation)| (*x - *real).abs() <= 2.0 * **deviation).count();
+            let share = within as f64 / real.len() as f64;
+            match cover.iter_mut().find(|(name, _)| *name == head.name) {
                 Some((_, sum)) => *sum += share,
-                None => cover.push((estimate.name, share)),
+                None => cover.push((head.name, share)),
             }
         }
     }
     let count = samples.len() as f64;
     let cover: Vec<String> = cover.iter().map(|(name, sum)| format!("{name} {:.3}", sum / count)).collect();
     let (error, seconds) = (error / count, seconds / count);
-    let all = samples.len();
+    let all = samples.len() * seeds as usize;
     Ok(format!("error {error:.2e}  cover {}  {seconds:.1} s, {converged} of {all} converged", cover.join(", ")))
+}
+
+/// Point by point; nothing of nothing.
+fn mean<'a>(members: impl Iterator<Item = &'a Vec<f64>> + Clone) -> Vec<f64> {
+    let count = members.clone().count() as f64;
+    let points = members.clone().map(Vec::len).min().unwrap_or(0);
+    (0..points).map(|at| members.clone().map(|values| values[at]).sum::<f64>() / count).collect()
 }
