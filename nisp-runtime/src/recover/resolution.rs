@@ -97,7 +97,7 @@ fn swing(times: &[f64], residuals: &[f64], noise: ColumnNoise) -> Option<Swing> 
 fn smoothed_away(name: &str, swing: Swing, outward: f64, unit: &str) -> String {
     format!(
         "`{name}` is not resolved: what is left of its data goes up and down {} times over the record by {:.2e} {unit}, which \
-         noise does not; the source misses that, and its error bars do not know of it; give another seed or a wider network",
+         noise does not; the source misses that, and its error bars do not know of it; give another seed",
         swing.periods,
         swing.amplitude * outward,
     )
