@@ -96,6 +96,9 @@ pub(crate) fn transpose_times(j: &[f64], u: &[f64], out: &mut [f64]) {
 /// Adds to every `out` the squared norm of `b a`, for the rows `a` of one matrix and the matrix `b`, both row-major with `n`
 /// columns.
 pub(crate) fn add_squares_of_products(a: &[f64], b: &[f64], n: usize, out: &mut [f64]) {
+    if b.is_empty() {
+        return;
+    }
     let b = row_major(b, b.len() / n.max(1), n);
     a.par_chunks(n * WIDTH).zip(out.par_chunks_mut(WIDTH)).for_each(|(a, out)| {
         let a = row_major(a, out.len(), n);
@@ -301,6 +304,22 @@ mod tests {
                 assert!((general[at] - expected[at]).abs() <= 1e-14 * rows as f64, "{rows} {n} {at}");
             }
         }
+    }
+
+    #[test]
+    fn squares_of_products_are_those_of_their_definition_and_none_without_rows() {
+        let n = 3;
+        for rows in [0, 1, 4] {
+            let (a, b) = (wavy(WIDTH + 2, n), wavy(rows, n));
+            let mut out = vec![1.0; WIDTH + 2];
+            add_squares_of_products(&a, &b, n, &mut out);
+            for (a, out) in a.chunks_exact(n).zip(out) {
+                let product = |b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+                let expected: f64 = 1.0 + b.chunks_exact(n).map(|b| product(b).powi(2)).sum::<f64>();
+                assert!((out - expected).abs() < 1e-13 * expected, "{rows}: {out} {expected}");
+            }
+        }
+        add_squares_of_products(&[], &[], 0, &mut []);
     }
 
     #[test]
