@@ -147,7 +147,23 @@ fn stagnation_is_said_with_a_remedy() {
     let outcome = run(&mut method, &mut Function::new(1, wall), Limits::default(), &mut |_| Flow::Continue);
     assert_eq!(outcome.status, Status::NotConverged);
     assert_eq!(outcome.warnings[0].kind, WarningKind::Stagnation);
-    assert!(outcome.iterations < 5000);
+    assert!(outcome.iterations < 2000);
+}
+
+#[test]
+fn a_plateau_of_a_rate_that_falls_is_no_stagnation() {
+    // Steps of half a unit cannot come nearer to the kink than they are long, for 2000 of them: then the rate is a tenth.
+    let settings = AdamSettings { rate: 0.5, decay: 0.1, decay_steps: 2000, ..AdamSettings::default() };
+    let wall = |x: &[f64]| (1.0 + x[0].abs(), vec![x[0].signum()]);
+    let run_to = |iterations| {
+        let mut method = Adam::new(vec![0.2], settings);
+        let limits = Limits { iterations, ..Limits::default() };
+        run(&mut method, &mut Function::new(1, wall), limits, &mut |_| Flow::Continue)
+    };
+    let outcome = run_to(7000);
+    assert_eq!(outcome.status, Status::Budget, "{:?}", outcome.warnings);
+    let plateau = run_to(2000);
+    assert!(outcome.loss - 1.0 < 0.2 * (plateau.loss - 1.0), "{} {}", outcome.loss, plateau.loss);
 }
 
 #[test]

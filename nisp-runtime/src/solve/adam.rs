@@ -214,6 +214,10 @@ impl<E: Real, O: Objective<E> + ?Sized> Method<E, O> for Adam<E> {
         Ok(step)
     }
 
+    fn period(&self) -> Option<u64> {
+        (self.settings.decay < 1.0).then_some(self.settings.decay_steps)
+    }
+
     fn save(&self) -> State {
         State::new("adam")
             .with("theta", &self.now.theta)

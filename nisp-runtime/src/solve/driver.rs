@@ -21,7 +21,7 @@ pub struct Limits {
     /// Loss at which the answer counts as converged, however far the minimum is: for exact data, whose minimum is zero.
     pub floor: f64,
     /// Steps without an improvement of the best loss by more than `tolerance` after which the method is given up; ten
-    /// times as many for methods without a model of curvature.
+    /// times as many for methods without a model of curvature, and two periods of a schedule at least.
     pub patience: u64,
 }
 
@@ -123,7 +123,7 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
     limits: Limits,
     monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
 ) -> Outcome<E> {
-    let judge = Judge::new(limits, E::NAME, E::EPSILON.to_f64());
+    let judge = Judge::new(limits, method.period(), E::NAME, E::EPSILON.to_f64());
     let record = Record::new(method.theta());
     go(method, objective, limits, monitor, record, judge)
 }
@@ -140,7 +140,7 @@ pub fn resume<E: Real, O: Objective<E> + ?Sized, M: Method<E, O> + ?Sized>(
     limits: Limits,
     monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
 ) -> Result<Outcome<E>, Fault> {
-    let mut judge = Judge::new(limits, E::NAME, E::EPSILON.to_f64());
+    let mut judge = Judge::new(limits, method.period(), E::NAME, E::EPSILON.to_f64());
     judge.restore(state)?;
     let record = Record::restore(state, method.theta().len())?;
     method.restore(state)?;

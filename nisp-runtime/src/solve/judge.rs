@@ -22,6 +22,8 @@ const LONG_WINDOW: usize = 200;
 /// What has been seen so far.
 pub(crate) struct Judge {
     limits: Limits,
+    /// Steps between the changes of the method's schedule, if it has one.
+    period: Option<u64>,
     precision: &'static str,
     epsilon: f64,
     /// Losses of the last steps, in a ring.
@@ -38,9 +40,10 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    pub(crate) fn new(limits: Limits, precision: &'static str, epsilon: f64) -> Self {
+    pub(crate) fn new(limits: Limits, period: Option<u64>, precision: &'static str, epsilon: f64) -> Self {
         Self {
             limits,
+            period,
             precision,
             epsilon,
             losses: Vec::new(),
@@ -110,8 +113,14 @@ impl Judge {
         } else {
             self.since_best += 1;
         }
+        if self.since_best > self.patience(step) { self.give_up() } else { Judgement::GoOn }
+    }
+
+    /// Steps without progress after which there will be none. Steps of a constant rate end on a plateau whose height is the
+    /// rate's: that says nothing until the schedule has lowered it, and lowered it again.
+    fn patience(&self, step: &Step) -> u64 {
         let patience = self.limits.patience.saturating_mul(if step.decrement.is_some() { 1 } else { 10 });
-        if self.since_best > patience { self.give_up() } else { Judgement::GoOn }
+        self.period.map_or(patience, |period| patience.max(period.saturating_mul(2)))
     }
 
     /// Adds itself to the state of the method.

@@ -27,6 +27,11 @@ pub trait Method<E: Real, O: ?Sized> {
         None
     }
 
+    /// Steps after which a schedule has changed the method's steps, whatever they found; none without a schedule.
+    fn period(&self) -> Option<u64> {
+        None
+    }
+
     /// The whole state, for a checkpoint.
     fn save(&self) -> State;
 
