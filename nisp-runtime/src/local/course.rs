@@ -109,7 +109,9 @@ impl Solver<'_> {
         while factor.is_none() || stage.before + iteration < stage.limits.iterations {
             let began = stage.start.elapsed().as_secs_f64();
             let budget = stage.limits.budget.map_or(f64::INFINITY, |budget| budget.as_secs_f64());
-            let wanted = if coarse { longest } else { (1.0 + BARS) * longest };
+            // Nobody wants error bars of what is no solution yet.
+            let solved = !coarse && iteration + skipped >= CONVEX_STEPS;
+            let wanted = if solved { (1.0 + BARS) * longest } else { longest };
             if began + wanted > budget && factor.is_some() {
                 break;
             }
