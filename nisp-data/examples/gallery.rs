@@ -82,16 +82,22 @@ fn membrane(data: &Path) -> Result<Picture, DataError> {
 
 /// Made-up numbers of about the size that solvers reach.
 fn frontier() -> Result<Picture, DataError> {
-    let series = |name: &str, points: &[[f64; 2]]| Series { name: name.into(), points: points.to_vec(), joined: true };
+    let series = |family, name: &str, points: &[[f64; 2]]| Series {
+        name: name.into(),
+        family,
+        points: points.to_vec(),
+        joined: true,
+    };
     log_log(&LogLog {
         title: "Double pendulum, no noise".into(),
         subtitle: "made-up numbers".into(),
         x: Quantity::new("wall time", "s"),
         y: Quantity::new("mean |error of f|", "N"),
         series: vec![
-            series("self-scaled Broyden", &[[0.3, 9e-4], [1.0, 1e-4], [3.0, 7e-6], [10.0, 8e-7]]),
-            series("Levenberg-Marquardt", &[[0.3, 4e-4], [1.0, 2e-4], [3.0, 6e-5], [10.0, 3e-5]]),
-            series("Adam", &[[3.0, 8e-4], [30.0, 5e-4], [110.0, 3e-4]]),
+            series(0, "self-scaled Broyden", &[[0.3, 9e-4], [1.0, 1e-4], [3.0, 7e-6], [10.0, 8e-7]]),
+            series(1, "Levenberg-Marquardt", &[[0.3, 4e-4], [1.0, 2e-4], [3.0, 6e-5], [10.0, 3e-5]]),
+            series(2, "Adam f32", &[[3.0, 1e-3], [30.0, 7e-4]]),
+            series(2, "Adam", &[[3.0, 8e-4], [30.0, 5e-4], [110.0, 3e-4]]),
         ],
         marks: vec![
             Mark::Horizontal("f = 0".into(), 7.4e-4),

@@ -45,10 +45,10 @@ fn nonsense_is_refused() {
         marks: vec![],
     };
     assert!(log_log(&empty).is_err());
-    let series = vec![Series { name: "a".into(), points: vec![[0.0, 1.0]], joined: true }];
+    let series = vec![Series { name: "a".into(), family: 0, points: vec![[0.0, 1.0]], joined: true }];
     assert!(log_log(&LogLog { series, ..empty.clone() }).is_err());
     let one = LogLog {
-        series: vec![Series { name: "a".into(), points: vec![[1.0, 1.0]], joined: false }],
+        series: vec![Series { name: "a".into(), family: 0, points: vec![[1.0, 1.0]], joined: false }],
         marks: vec![Mark::Horizontal("b".into(), 1.0), Mark::Vertical("c".into(), 1.0)],
         ..empty
     };

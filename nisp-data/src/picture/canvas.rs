@@ -127,7 +127,7 @@ impl Canvas {
 
     /// Many dots of one kind, as one element: zero-length strokes with round ends.
     pub(super) fn dots(&mut self, points: &[[f64; 2]], radius: f64, colour: &str) {
-        if points.is_empty() {
+        if points.is_empty() || radius <= 0.0 {
             return;
         }
         let mut d = String::with_capacity(points.len() * 16);

@@ -17,12 +17,12 @@ pub(super) enum Swatch<'a> {
     LineDot {
         stroke: Stroke<'a>,
         radius: f64,
+        /// Share of the radius that is white inside.
+        inside: f64,
     },
 }
 
 const SWATCH: f64 = 28.0;
-/// Radius of the white inside of a hollow point, beside its own.
-pub(super) const HOLLOW: f64 = 0.5;
 const ROW: f64 = 1.55 * TICK;
 
 /// Breaks the entries into rows of at most `width`.
@@ -76,12 +76,10 @@ fn draw_swatch(canvas: &mut Canvas, [x, y]: [f64; 2], swatch: &Swatch<'_>) {
             canvas.line(ends.0, ends.1, stroke);
         }
         Swatch::Dot { colour, radius } => canvas.dots(&[[x + 0.5 * SWATCH, y]], radius, colour),
-        Swatch::LineDot { stroke, radius } => {
+        Swatch::LineDot { stroke, radius, inside } => {
             canvas.line(ends.0, ends.1, stroke);
             canvas.dots(&[[x + 0.5 * SWATCH, y]], radius, stroke.colour);
-            if !stroke.dash.is_empty() {
-                canvas.dots(&[[x + 0.5 * SWATCH, y]], HOLLOW * radius, "#ffffff");
-            }
+            canvas.dots(&[[x + 0.5 * SWATCH, y]], inside * radius, "#ffffff");
         }
     }
 }

@@ -30,6 +30,8 @@ pub struct LogLog {
 pub struct Series {
     /// Its name in the legend.
     pub name: String,
+    /// Series of one family share a colour.
+    pub family: usize,
     /// Positions, both coordinates above zero.
     pub points: Vec<[f64; 2]>,
     /// Whether a line joins the points, in their order.
@@ -63,8 +65,13 @@ pub fn log_log(plot: &LogLog) -> Result<Picture, DataError> {
     let mut canvas = Canvas::new();
     let mut top = MARGIN;
     top += heading::draw(&mut canvas, [left, top], WIDTH - left - MARGIN, &plot.title, &plot.subtitle);
-    let entries: Vec<_> =
-        plot.series.iter().enumerate().map(|(k, series)| (swatch(k, series.joined), series.name.clone())).collect();
+    let looks = looks(&plot.series);
+    let entries: Vec<_> = plot
+        .series
+        .iter()
+        .zip(&looks)
+        .map(|(series, look)| (look.swatch(series.joined), series.name.clone()))
+        .collect();
     legend::draw(&mut canvas, [left, top], WIDTH - left - MARGIN, &entries);
     top += legend::height(&entries, WIDTH - left - MARGIN) + GAP;
     let x = Scale::logarithmic(x_range.0, x_range.1, 8.0);
@@ -74,17 +81,14 @@ pub fn log_log(plot: &LogLog) -> Result<Picture, DataError> {
     let area = Panel { frame: Frame { left, top, width, height: HEIGHT }, x, y };
     area.draw_grid(&mut canvas);
     draw_marks(&mut canvas, &area, plot, &rows);
-    for (index, series) in plot.series.iter().enumerate() {
+    for (series, look) in plot.series.iter().zip(&looks) {
         let points: Vec<[f64; 2]> = series.points.iter().map(|&point| area.at(point)).collect();
-        let stroke = stroke(index);
         if series.joined {
-            canvas.polyline(&points, stroke);
+            canvas.polyline(&points, look.stroke);
         }
         canvas.dots(&points, RADIUS + 1.5, "#ffffff");
-        canvas.dots(&points, RADIUS, stroke.colour);
-        if !stroke.dash.is_empty() {
-            canvas.dots(&points, legend::HOLLOW * RADIUS, "#ffffff");
-        }
+        canvas.dots(&points, RADIUS, look.stroke.colour);
+        canvas.dots(&points, look.inside * RADIUS, "#ffffff");
     }
     area.draw_frame(&mut canvas, true, true);
     area.draw_x_label(&mut canvas, &plot.x.label());
@@ -92,17 +96,34 @@ pub fn log_log(plot: &LogLog) -> Result<Picture, DataError> {
     Ok(canvas.finish(WIDTH, top + HEIGHT + x_axis_height() + 0.5 * MARGIN, &plot.title))
 }
 
-/// Colours in turn; the second time round lines are dotted and points hollow.
-fn stroke(index: usize) -> Stroke<'static> {
-    let dash = if index < PALETTE.len() { "" } else { "2 4" };
-    Stroke { colour: PALETTE[index % PALETTE.len()], width: 2.0, dash }
+/// How a series is drawn.
+#[derive(Clone, Copy)]
+struct Look {
+    stroke: Stroke<'static>,
+    /// Share of a point that is white inside.
+    inside: f64,
 }
 
-fn swatch(index: usize, joined: bool) -> Swatch<'static> {
-    match joined {
-        true => Swatch::LineDot { stroke: stroke(index), radius: RADIUS },
-        false => Swatch::Dot { colour: stroke(index).colour, radius: RADIUS },
+impl Look {
+    fn swatch(self, joined: bool) -> Swatch<'static> {
+        let Self { stroke, inside } = self;
+        match joined {
+            true => Swatch::LineDot { stroke, radius: RADIUS, inside },
+            false => Swatch::Dot { colour: stroke.colour, radius: RADIUS },
+        }
     }
+}
+
+/// A colour for each family; within one, solid lines with filled points, then dashed and dotted ones with ever smaller rims.
+fn looks(all: &[Series]) -> Vec<Look> {
+    let colours: Vec<&str> = PALETTE.into_iter().chain([INK]).collect();
+    let look = |index: usize| {
+        let family = all[index].family;
+        let before = all[..index].iter().filter(|other| other.family == family).count();
+        let (dash, inside) = [("", 0.0), ("8 4", 0.45), ("2 4", 0.7)][before % 3];
+        Look { stroke: Stroke { colour: colours[family % colours.len()], width: 2.0, dash }, inside }
+    };
+    (0..all.len()).map(look).collect()
 }
 
 fn ranges(plot: &LogLog) -> Result<[(f64, f64); 2], DataError> {
