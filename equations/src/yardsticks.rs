@@ -2,6 +2,8 @@
 
 use std::time::Instant;
 
+use nisp_data::nearest::intersection_over_union;
+
 use crate::catalogue::Prepared;
 use crate::rivals::{mean_abs_error, zero_error};
 
@@ -12,6 +14,8 @@ pub struct Yardstick {
     pub name: String,
     /// Mean absolute error of the source in its declared unit: the mean over samples.
     pub error: f64,
+    /// Intersection over union of the touched points, where the source is the pressure of a contact: the mean over samples.
+    pub overlap: Option<f64>,
     /// Seconds a sample.
     pub seconds: f64,
 }
@@ -19,28 +23,49 @@ pub struct Yardstick {
 /// The yardsticks of samples whose truth is known.
 pub fn yardsticks(samples: &[Prepared]) -> Vec<Yardstick> {
     let mut found: Vec<Yardstick> = Vec::new();
-    let mut add = |name: String, error: f64, seconds: f64| match found.iter_mut().find(|own| own.name == name) {
-        Some(own) => (own.error, own.seconds) = (own.error + error, own.seconds + seconds),
-        None => found.push(Yardstick { name, error, seconds }),
+    let mut add = |new: Yardstick| match found.iter_mut().find(|own| own.name == new.name) {
+        Some(own) => {
+            own.error += new.error;
+            own.overlap = own.overlap.zip(new.overlap).map(|(own, new)| own + new);
+            own.seconds += new.seconds;
+        }
+        None => found.push(new),
     };
     for sample in samples {
         let heads = sample.problem.scene().schema.heads;
         for head in heads.iter().filter(|head| head.source) {
             let known = sample.truth.as_ref().and_then(|truth| Some((&truth.points, truth.of(head.name)?)));
             let Some((at, truth)) = known else { continue };
-            add(format!("{} = 0", head.name), zero_error(truth), 0.0);
-            for answer in sample.contest(at, truth) {
-                add(answer.name.into(), mean_abs_error(&answer.source, truth), answer.wall_s);
-            }
             let contact = sample.contact.as_ref().filter(|contact| contact.pressure == Some(head.name));
+            let overlap = |pressure: &[f64]| {
+                let (rule, real) = contact.and_then(|contact| Some((contact.rule, contact.truth.as_ref()?)))?;
+                intersection_over_union(&rule.mask(pressure), &real.mask).ok()
+            };
+            let nothing = overlap(&vec![0.0; truth.len()]);
+            add(Yardstick {
+                name: format!("{} = 0", head.name),
+                error: zero_error(truth),
+                overlap: nothing,
+                seconds: 0.0,
+            });
+            for answer in sample.contest(at, truth) {
+                let error = mean_abs_error(&answer.source, truth);
+                add(Yardstick { name: answer.name.into(), error, overlap: None, seconds: answer.wall_s });
+            }
             if let Some(way) = contact.and_then(|contact| contact.rival.as_ref()) {
                 let start = Instant::now();
                 let pressure = (way.pressure)(at);
-                add(way.name.into(), mean_abs_error(&pressure, truth), start.elapsed().as_secs_f64());
+                let seconds = start.elapsed().as_secs_f64();
+                let error = mean_abs_error(&pressure, truth);
+                add(Yardstick { name: way.name.into(), error, overlap: overlap(&pressure), seconds });
             }
         }
     }
     let count = samples.len() as f64;
-    found.iter_mut().for_each(|own| (own.error, own.seconds) = (own.error / count, own.seconds / count));
+    for own in &mut found {
+        own.error /= count;
+        own.overlap = own.overlap.map(|sum| sum / count);
+        own.seconds /= count;
+    }
     found
 }

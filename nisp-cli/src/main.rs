@@ -8,6 +8,7 @@ mod explain;
 mod frontier;
 mod interrupt;
 mod list;
+mod measure;
 mod report;
 mod results;
 mod score;

@@ -205,7 +205,15 @@ fn the_frontier_is_a_table_and_a_plot_with_rivals() {
     let line = "frontier rlc --budgets 0.05 --widths 4,6 --optimizers lbfgs,lm --noise 0.01 --repository";
     let ran = place.run(&format!("{line} {repository} --out out"));
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
-    for row in ["| lbfgs f32 | 4 |", "| lbfgs | 6 |", "| lm | 6 |", "| f = 0 |", "| collocation |", "seeds from 2026"] {
+    for row in [
+        "| lbfgs f32 |",
+        "| lbfgs |",
+        "| lm |",
+        "| 0.05 s, width 6 |",
+        "| f = 0 |",
+        "| collocation |",
+        "seeds from 2026",
+    ] {
         assert!(ran.stdout.contains(row), "{row}: {}", ran.stdout);
     }
     assert!(!ran.stdout.contains("lm f32"));

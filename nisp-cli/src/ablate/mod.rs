@@ -18,8 +18,8 @@ use nisp_equations::{Prepared, Request};
 
 use crate::args::{count, seconds, size};
 use crate::interrupt;
-use crate::score::Found;
-use study::{Data, Measure, Study, Variation, studies};
+use crate::measure::Means;
+use study::{Data, Study, Variation, studies};
 
 /// What to compare, and how long.
 #[derive(clap::Args)]
@@ -69,22 +69,21 @@ fn table(study: &Study, options: &Options) -> Result<String, String> {
     }
     let _ = writeln!(text, " seconds | paper |\n|---|---|---|{}", "---|".repeat(study.measures.len()));
     for variation in &study.variations {
-        let (means, seconds) = means(study, variation, options)?;
+        let means = means(study, variation, options)?;
         let _ = write!(text, "| {} |", variation.name);
-        for (measure, mean) in study.measures.iter().zip(means) {
-            let _ = write!(text, " {} |", mean.map_or_else(|| "-".into(), |mean| measure.shown(mean)));
+        for (measure, mean) in study.measures.iter().zip(means.values()) {
+            let _ = write!(text, " {} |", measure.shown(mean));
         }
-        let _ = writeln!(text, " {seconds:.1} | {} |", variation.paper);
+        let _ = writeln!(text, " {:.1} | {} |", means.seconds(), variation.paper);
     }
     text.push('\n');
     Ok(text)
 }
 
-/// Means of the measures over those samples that have them, and of the wall times.
-fn means(study: &Study, variation: &Variation, options: &Options) -> Result<(Vec<Option<f64>>, f64), String> {
+/// What a variation reaches over the samples.
+fn means<'a>(study: &'a Study, variation: &Variation, options: &Options) -> Result<Means<'a>, String> {
     let samples = samples(study, variation, options)?;
-    let mut found = vec![Vec::new(); study.measures.len()];
-    let mut seconds = 0.0;
+    let mut means = Means::new(study.measures);
     for (at, prepared) in samples.iter().enumerate() {
         if interrupt::asked() {
             return Err("interrupted".into());
@@ -95,14 +94,9 @@ fn means(study: &Study, variation: &Variation, options: &Options) -> Result<(Vec
         let settings = settings(study, variation, prepared, options);
         let go_on = &mut |_: nisp::Report<'_>| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
         let mut solution = recover(&prepared.problem, &settings, go_on).map_err(|error| error.to_string())?;
-        seconds += solution.wall_s / samples.len() as f64;
-        let answer = Found::of(&mut solution, prepared);
-        for (values, measure) in found.iter_mut().zip(study.measures) {
-            values.extend(measure.of(&answer));
-        }
+        means.add(&mut solution, prepared);
     }
-    let mean = |values: &Vec<f64>| (!values.is_empty()).then(|| values.iter().sum::<f64>() / values.len() as f64);
-    Ok((found.iter().map(mean).collect(), seconds))
+    Ok(means)
 }
 
 /// Settings of a variation for a sample.
@@ -149,40 +143,4 @@ fn samples(study: &Study, variation: &Variation, options: &Options) -> Result<Ve
         }
     };
     prepared.map_err(|error| format!("{error}; the samples are the repository's: name its folder with --repository"))
-}
-
-impl Measure {
-    /// Head of its column.
-    fn title(self) -> String {
-        match self {
-            Self::Error(name, unit) => format!("mean error of {name} [{unit}]"),
-            Self::Overlap => "IoU".into(),
-            Self::Distance => "patch Chamfer [mm^2]".into(),
-            Self::Force => "error of the force [N]".into(),
-            Self::Learned(name, truth) => format!("error of {name} [%], true {truth}"),
-        }
-    }
-
-    fn shown(self, value: f64) -> String {
-        match self {
-            Self::Error(..) => format!("{value:.2e}"),
-            Self::Overlap | Self::Force => format!("{value:.3}"),
-            Self::Distance | Self::Learned(..) => format!("{value:.2}"),
-        }
-    }
-
-    /// Its value in an answer, if it has one.
-    fn of(self, found: &Found) -> Option<f64> {
-        let against = || found.contact.as_ref()?.against.as_ref();
-        match self {
-            Self::Error(name, _) => found.scores.iter().find(|score| score.name == name).map(|score| score.mean_abs),
-            Self::Overlap => against().map(|against| against.iou),
-            Self::Distance => against()?.patch_chamfer_mm2,
-            Self::Force => against().map(|against| against.force_error),
-            Self::Learned(name, truth) => {
-                let learned = found.learned.iter().find(|learned| learned.name == name);
-                learned.map(|learned| 100.0 * (learned.value / truth - 1.0).abs())
-            }
-        }
-    }
 }

@@ -4,6 +4,8 @@ use nisp::Settings;
 use nisp::local::{Local, Patches};
 use nisp::network::{Architecture, Fourier, Inputs, Kind};
 
+use crate::measure::Measure;
+
 /// Variations of one setting.
 pub(super) struct Study {
     pub(super) name: &'static str,
@@ -26,18 +28,6 @@ pub(super) enum Data {
     Copies { noise: f64, seed: u64 },
     /// Samples of the repository.
     Samples { folder: &'static str, names: &'static [&'static str], truth: &'static str },
-}
-
-/// What is measured of an answer, against the truth.
-#[derive(Clone, Copy)]
-pub(super) enum Measure {
-    /// Mean absolute error of a head, in a unit.
-    Error(&'static str, &'static str),
-    Overlap,
-    Distance,
-    Force,
-    /// Relative error of a learned parameter whose true value is given.
-    Learned(&'static str, f64),
 }
 
 /// One setting changed.
@@ -212,8 +202,19 @@ fn noise() -> Study {
     }
 }
 
+/// A scene, and one without in-plane equilibrium, which the paper's equations lack.
+fn with_and_without(scene: &'static str, without: &'static str) -> Vec<Variation> {
+    let of = |(cloud, name, scene)| Variation { scene: Some(scene), cloud: Some(cloud), ..vary(name, "-", |_| ()) };
+    let all = [
+        (0, "exact cloud", scene),
+        (0, "exact cloud, without", without),
+        (2, "1 mm", scene),
+        (2, "1 mm, without (the paper's equations)", without),
+    ];
+    all.map(of).into()
+}
+
 fn inplane() -> Study {
-    let of = |cloud, name, scene| Variation { scene, cloud: Some(cloud), ..vary(name, "-", |_| ()) };
     Study {
         name: "inplane",
         title: "In-plane equilibrium, contact",
@@ -222,17 +223,11 @@ fn inplane() -> Study {
         parameters: &[],
         network: false,
         measures: &[Measure::Overlap, Measure::Force],
-        variations: vec![
-            of(0, "exact cloud", None),
-            of(0, "exact cloud, without", Some("contact_no_inplane")),
-            of(2, "1 mm", None),
-            of(2, "1 mm, without (the paper's equations)", Some("contact_no_inplane")),
-        ],
+        variations: with_and_without("contact", "contact_no_inplane"),
     }
 }
 
 fn identify() -> Study {
-    let of = |cloud, name, scene| Variation { scene: Some(scene), cloud: Some(cloud), ..vary(name, "-", |_| ()) };
     Study {
         name: "identify",
         title: "In-plane equilibrium, identification",
@@ -241,12 +236,7 @@ fn identify() -> Study {
         parameters: &[("E", START)],
         network: false,
         measures: &[Measure::Learned("E", MODULUS)],
-        variations: vec![
-            of(0, "exact cloud", "identify"),
-            of(0, "exact cloud, without", "identify_no_inplane"),
-            of(2, "1 mm", "identify"),
-            of(2, "1 mm, without (the paper's equations)", "identify_no_inplane"),
-        ],
+        variations: with_and_without("identify", "identify_no_inplane"),
     }
 }
 

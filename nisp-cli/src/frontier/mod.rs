@@ -1,7 +1,7 @@
 //! `nisp frontier`: error of the source against time, by method, width and precision, beside the classical rivals.
 //!
 //! Every figure of a scene over time is a mean over fresh noisy copies of the repository's truths, so that settings chosen
-//! on the copies in the repository are not judged on them. Other scenes are solved from their example's data.
+//! on the copies in the repository are not judged on them. Other scenes are solved from a sample with a truth.
 
 mod report;
 mod trial;
@@ -16,6 +16,7 @@ use nisp_equations::{Entry, PrepareError, Prepared, Request, yardsticks};
 
 use crate::args::{count, number, optimizers, precisions, seconds, size};
 use crate::interrupt;
+use crate::measure::Measure;
 use report::{Figures, Point};
 use trial::Trial;
 
@@ -31,7 +32,13 @@ pub(crate) struct Options {
     /// Standard deviation of the noise on every measured quantity of a scene over time, in its declared unit [default: 0].
     #[arg(long, value_name = "SIGMA", value_parser = number, allow_negative_numbers = true)]
     noise: Option<f64>,
-    /// Which of the example's clouds, counted from 0.
+    /// TOML file of a sample whose contact was seen as clouds [default: the equation's example].
+    #[arg(long, value_name = "FILE", requires = "truth")]
+    sample: Option<PathBuf>,
+    /// CSV of that sample's truth.
+    #[arg(long, value_name = "FILE", requires = "sample")]
+    truth: Option<PathBuf>,
+    /// Which of the sample's clouds, counted from 0.
     #[arg(long, value_name = "K", allow_negative_numbers = true)]
     cloud: Option<usize>,
     /// Methods, separated by commas.
@@ -41,6 +48,9 @@ pub(crate) struct Options {
     /// Widths of the network, separated by commas.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "8,16,32", value_parser = size)]
     widths: Vec<usize>,
+    /// Its layers.
+    #[arg(long, value_name = "N", default_value_t = 2, value_parser = size)]
+    layers: usize,
     /// Element types, separated by commas; a method that needs f64 is tried in it only.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "f32,auto,f64", value_parser = precisions())]
     precisions: Vec<String>,
@@ -59,7 +69,7 @@ pub(crate) struct Options {
     /// The repository, whose truths are read.
     #[arg(long, value_name = "DIR", default_value = ".")]
     repository: PathBuf,
-    /// Folder for frontier.csv and frontier.svg.
+    /// Folder for frontier.csv and frontier.svg, and of a contact frontier_patch.svg.
     #[arg(long, value_name = "DIR", default_value = "nisp-out")]
     out: PathBuf,
 }
@@ -69,11 +79,13 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
     let entry = crate::entry(&options.equation)?;
     let samples = samples(&entry, options, true)?;
     let local = samples_for_local_functions(&entry, options)?;
+    let measures = measures(&samples[0])?;
     let trials = trials(options, !local.is_empty());
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::listen()?;
     let total: f64 = options.budgets.iter().sum::<f64>() * (trials.len() * samples.len()) as f64;
-    if std::io::stderr().is_terminal() {
+    let terminal = std::io::stderr().is_terminal();
+    if terminal {
         eprintln!("{} runs, {total:.0} s at most", trials.len() * samples.len() * options.budgets.len());
     }
     let mut points = Vec::new();
@@ -82,34 +94,70 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
             if interrupt::asked() {
                 return Err("interrupted; nothing was written".into());
             }
-            let (error, seconds) = trial.over(if trial.local { &local } else { &samples }, budget)?;
-            points.push(Point { trial: trial.clone(), budget, error, seconds });
+            if terminal {
+                eprint!("\r{} {}, {budget} s\x1b[K", trial.name(), trial.width());
+            }
+            let outcome = trial.over(if trial.local { &local } else { &samples }, &measures, budget)?;
+            points.push(Point { trial: trial.clone(), budget, outcome });
         }
     }
+    if terminal {
+        eprint!("\r\x1b[K");
+    }
     let figures = Figures {
+        about: about(&entry, &samples, options),
+        measures,
+        budgets: options.budgets.clone(),
+        widths: options.widths.clone(),
         points,
         rivals: yardsticks(&samples),
-        samples: samples.len(),
-        noise: entry.series().map(|_| options.noise.unwrap_or(0.0)),
     };
-    let title = format!("{}: error of the source against wall time", entry.name);
-    let subtitle = figures.about(options.seed);
-    let heads = samples[0].problem.scene().schema.heads;
+    let mut files = vec![("frontier.csv", report::csv(&figures).into())];
+    for (file, measure) in [("frontier.svg", figures.measures[0]), ("frontier_patch.svg", Measure::Distance)] {
+        let title = format!("{}: {} against wall time", entry.name, measure.quantity().0);
+        let plot = report::plot(&figures, measure, title).map_err(|error| error.to_string())?;
+        files.extend(plot.map(|plot| (file, plot.svg().into())));
+    }
+    out.write(&files).map_err(|error| error.to_string())?;
+    crate::print(&report::tables(&figures))?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// On what it is measured.
+fn about(entry: &Entry, samples: &[Prepared], options: &Options) -> String {
+    let runs = if samples.len() == 1 { "1 run".into() } else { format!("{} runs", samples.len()) };
+    let data = match (entry.series(), options.noise.unwrap_or(0.0)) {
+        (None, _) => samples[0].source.clone(),
+        (_, 0.0) => format!("{runs}, exact measurements"),
+        (_, noise) => format!("{runs}, noise {noise}, seeds from {}", options.seed),
+    };
+    match &options.widths[..] {
+        [width] => format!("{data}; networks of {} x {width}", options.layers),
+        _ => format!("{data}; networks of {} layers", options.layers),
+    }
+}
+
+/// What a scene is judged by: the error of its source, and of a contact the patch as well.
+fn measures(sample: &Prepared) -> Result<Vec<Measure>, String> {
+    let heads = sample.problem.scene().schema.heads;
     // A forward problem has no source: what it is judged by is its field.
     let head = heads.iter().find(|head| head.source).unwrap_or(&heads[0]);
-    let (name, unit) = (head.name, head.unit.text);
-    let plot = report::plot(&figures, title, subtitle.clone(), name, unit).map_err(|error| error.to_string())?;
-    let files = [("frontier.csv", report::csv(&figures, unit).into()), ("frontier.svg", plot.svg().into())];
-    out.write(&files).map_err(|error| error.to_string())?;
-    crate::print(&report::table(&figures, &subtitle, name, unit, &options.budgets))?;
-    Ok(ExitCode::SUCCESS)
+    if sample.truth.as_ref().and_then(|truth| truth.of(head.name)).is_none() {
+        return Err(format!("the truth has no `{}`, so there is no error of it", head.name));
+    }
+    let mut measures = vec![Measure::Error(head.name, head.unit.text)];
+    if sample.contact.as_ref().is_some_and(|contact| contact.truth.is_some()) {
+        measures.extend([Measure::Overlap, Measure::Distance]);
+    }
+    Ok(measures)
 }
 
 /// Everything to be tried, in the order of the table.
 fn trials(options: &Options, local: bool) -> Vec<Trial> {
     let threads = options.threads.unwrap_or_else(crate::solve::processors);
+    let (layers, seed) = (options.layers, options.seed);
     let network =
-        |optimizer, precision, width| Trial { local: false, optimizer, precision, width, threads, seed: options.seed };
+        |optimizer, precision, width| Trial { local: false, optimizer, precision, width, layers, threads, seed };
     let mut trials = Vec::new();
     if local {
         trials.push(Trial { local: true, ..network(Optimizer::Auto, Width::F64, 0) });
@@ -123,17 +171,24 @@ fn trials(options: &Options, local: bool) -> Vec<Trial> {
     trials
 }
 
-/// Fresh copies of the truths of a scene over time, or the example of another, bound to the scene.
+/// Fresh copies of the truths of a scene over time, or a sample of another, bound to the scene.
 fn samples(entry: &Entry, options: &Options, network: bool) -> Result<Vec<Prepared>, String> {
-    let request = Request { scene: options.scene.clone(), cloud: options.cloud, network, ..Request::default() };
+    let request = Request {
+        scene: options.scene.clone(),
+        sample: options.sample.clone(),
+        truth: options.truth.clone(),
+        cloud: options.cloud,
+        network,
+        ..Request::default()
+    };
     let Some(series) = entry.series() else {
         if options.noise.is_some() {
             return Err(format!("`{}` has no measurements over time to add noise to; leave --noise out", entry.name));
         }
         return Ok(vec![entry.prepare(&request).map_err(|error| error.to_string())?]);
     };
-    if options.cloud.is_some() {
-        return Err(format!("`{}` has no clouds; leave --cloud out", entry.name));
+    if options.cloud.is_some() || options.sample.is_some() {
+        return Err(format!("`{}` has no clouds; leave --sample and --cloud out", entry.name));
     }
     let noise = options.noise.unwrap_or(0.0);
     series.copies(entry, &request, &options.repository, noise, options.seed, options.runs).map_err(
