@@ -4,7 +4,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use super::document::comment;
-use super::{Names, camel, ident, raw, unit_text};
+use super::{Names, ident, raw, unit_text};
 use crate::model::{Column, Group, Model, Name, Part, Term, TermKind};
 use crate::plan::GroupPlan;
 
@@ -34,7 +34,7 @@ pub(super) fn of(model: &Model, group: &GroupPlan) -> Option<Data> {
     if fields.definitions.is_empty() {
         return None;
     }
-    let name = format_ident!("{}Data", camel(&declared.name.text));
+    let name = format_ident!("{}", declared.data_name());
     let definition = define(&name, declared, &fields.definitions);
     Some(Data { name, definition, columns, clouds, partners })
 }

@@ -126,16 +126,6 @@ fn docs(lines: &[String]) -> Vec<TokenStream> {
     lines.iter().map(|line| quote!(#[doc = #line])).collect()
 }
 
-/// `soft_bubble` as `SoftBubble`.
-fn camel(name: &str) -> String {
-    name.split(|c: char| !c.is_alphanumeric())
-        .map(|word| {
-            let mut letters = word.chars();
-            letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-        })
-        .collect()
-}
-
 /// The type that holds the residual programs of a group in a scene. Its number keeps a group of the user's apart from one
 /// that the compiler adds.
 fn residuals_type(model: &Model, scene: &Scene, group: &GroupPlan) -> Ident {

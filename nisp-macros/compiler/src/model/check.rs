@@ -6,7 +6,7 @@ use super::check_group::{self, GroupNames};
 use super::elaborate::Elaborator;
 use super::scope::Meaning;
 use super::value::Reads;
-use super::{Definition, Hard, Model, Name, check_scene, declare, lint};
+use super::{Definition, Group, Hard, Model, Name, check_scene, declare, lint};
 use crate::error::{Checked, Errors, catalogue};
 use crate::syntax::{self, Item, Module, print_text};
 
@@ -62,6 +62,11 @@ fn groups(module: &Module, elaborator: &mut Elaborator<'_>, model: &mut Model) -
             elaborator.errors.push(group.name.span, catalogue::group_declared_twice(&group.name.text));
         }
         let (checked, found) = check_group::check(group, elaborator, &model.fields);
+        let alike = |other: &&Group| other.name.text != checked.name.text && other.data_name() == checked.data_name();
+        if let Some(other) = model.groups.iter().find(alike) {
+            let message = catalogue::groups_alike(&checked.name.text, &other.name.text, &checked.data_name());
+            elaborator.errors.push(checked.name.span, message);
+        }
         model.groups.push(checked);
         names.push(found);
     }

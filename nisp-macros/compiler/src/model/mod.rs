@@ -199,6 +199,16 @@ impl Group {
     pub fn is_internal(&self) -> bool {
         self.name.text.starts_with('(')
     }
+
+    /// Name of the struct of what belongs to its points: that of `soft_bubble` is `SoftBubbleData`.
+    pub(crate) fn data_name(&self) -> String {
+        let word = |word: &str| {
+            let mut letters = word.chars();
+            letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+        };
+        let words: String = self.name.text.split(|c: char| !c.is_alphanumeric()).map(word).collect();
+        format!("{words}Data")
+    }
 }
 
 /// One condition of a group.

@@ -44,6 +44,16 @@ pub(crate) fn group_declared_twice(name: &str) -> String {
     help(format!("there are two groups `{}`", shorten(name)), "put all terms of a group into one block")
 }
 
+pub(crate) fn groups_alike(name: &str, other: &str, data: &str) -> String {
+    help(
+        format!("`{}` and `{}` differ too little", shorten(name), shorten(other)),
+        format!(
+            "what belongs to their points would be called `{}` for both: give one of them another name",
+            shorten(data)
+        ),
+    )
+}
+
 pub(crate) fn scene_declared_twice(name: &str) -> String {
     format!("there are two scenes `{}`", shorten(name))
 }
