@@ -74,6 +74,15 @@ fn a_budget_is_kept_with_the_best_iterate() {
 }
 
 #[test]
+fn a_budget_that_is_spent_before_the_start_allows_one_step() {
+    let mut method = Broyden::new(vec![-1.2, 1.0], Update::Bfgs);
+    let limits = Limits { budget: Some(Duration::ZERO), ..Limits::default() };
+    let outcome = run(&mut method, &mut rosenbrock(2), limits, &mut |_| Flow::Continue);
+    assert_eq!((outcome.status, outcome.iterations), (Status::Budget, 1));
+    assert!(outcome.loss.is_finite());
+}
+
+#[test]
 fn steps_are_limited_and_a_monitor_may_stop() {
     let limits = Limits { iterations: 7, ..Limits::default() };
     let mut method = Broyden::new(vec![-1.2, 1.0], Update::Bfgs);

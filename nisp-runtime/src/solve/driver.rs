@@ -12,7 +12,7 @@ use std::time::{Duration, Instant};
 /// When to stop.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limits {
-    /// Wall time.
+    /// Wall time; one step is taken even where it is spent.
     pub budget: Option<Duration>,
     /// Steps.
     pub iterations: u64,
@@ -159,10 +159,13 @@ fn go<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
 ) -> Outcome<E> {
     let start = Instant::now();
     let mut clock = Clock::new(limits.budget);
+    let mut moved = false;
     let status = loop {
-        if record.iterations >= limits.iterations || clock.is_spent(start.elapsed()) {
+        // Without a step there would be nothing to say of the iterate, not even its loss.
+        if record.iterations >= limits.iterations || moved && clock.is_spent(start.elapsed()) {
             break Status::Budget;
         }
+        moved = true;
         let step = match method.step(objective) {
             Ok(step) => step,
             Err(fault) => {
