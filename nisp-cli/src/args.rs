@@ -75,7 +75,8 @@ pub(crate) struct Options {
     #[arg(long, value_name = "FILE", help_heading = DATA)]
     pub(crate) config: Option<PathBuf>,
     /// Seed of the initial weights.
-    #[arg(long, value_name = "N", default_value_t = 0, allow_negative_numbers = true, help_heading = METHOD)]
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, allow_negative_numbers = true,
+          help_heading = METHOD)]
     pub(crate) seed: u64,
     /// Element type of the network; auto is f32 as long as that helps, with methods that work in it, and then f64.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = precisions(), help_heading = METHOD)]
@@ -214,6 +215,11 @@ const WIDEST: usize = 4096;
 pub(crate) fn size(text: &str) -> Result<usize, String> {
     let number = text.parse::<usize>().ok().filter(|number| (1..=WIDEST).contains(number));
     number.ok_or_else(|| format!("give a whole number of at least 1 and at most {WIDEST}"))
+}
+
+/// Any seed.
+pub(crate) fn seed(text: &str) -> Result<u64, String> {
+    text.parse().map_err(|_| format!("give a whole number from 0 to {}", u64::MAX))
 }
 
 /// A time above zero.

@@ -16,7 +16,10 @@ const SHARE: f64 = 0.02;
 /// The checkpoint of a folder.
 pub(crate) fn read(folder: &Path) -> Result<Checkpoint, String> {
     let path = folder.join(NAME);
-    let bytes = std::fs::read(&path).map_err(|error| format!("--resume {}: {NAME}: {error}", folder.display()))?;
+    let bytes = std::fs::read(&path).map_err(|error| {
+        let advice = "name the folder of a run with --checkpoint, or of one that Ctrl-C ended";
+        format!("--resume {}: {NAME}: {error}; {advice}", folder.display())
+    })?;
     Checkpoint::from_bytes(&bytes).map_err(|error| format!("{}: {error}", path.display()))
 }
 

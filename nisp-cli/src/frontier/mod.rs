@@ -14,7 +14,7 @@ use nisp::{Optimizer, Width};
 use nisp_data::OutDir;
 use nisp_equations::{Entry, PrepareError, Prepared, Request, yardsticks};
 
-use crate::args::{count, number, optimizers, precisions, seconds, size};
+use crate::args::{count, number, optimizers, precisions, seconds, seed, size};
 use crate::interrupt;
 use crate::measure::Measure;
 use report::{Figures, Point};
@@ -61,7 +61,7 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = count)]
     runs: usize,
     /// Seed of the noise (one more for each truth) and of the initial weights.
-    #[arg(long, value_name = "N", default_value_t = 2026)]
+    #[arg(long, value_name = "N", default_value_t = 2026, value_parser = seed, allow_negative_numbers = true)]
     seed: u64,
     /// Threads [default: one per processor].
     #[arg(long, value_name = "N", value_parser = count)]
