@@ -13,6 +13,8 @@ import math
 import sys
 import time
 
+from ours import rates_of_ours
+
 try:
     import jax
     import jax.numpy as jnp
@@ -120,18 +122,8 @@ def rate(operator, theta, points):
     return len(points) / best
 
 
-def ours(path):
-    """Gradient rates of generated code, by operator and width, from the Rust benchmark's table."""
-    rates = {}
-    for line in open(path, encoding="utf-8"):
-        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-        if len(cells) > 5 and cells[1].isdigit():
-            rates[cells[0], int(cells[1])] = float(cells[4])
-    return rates
-
-
 def main():
-    generated = ours(sys.argv[1]) if len(sys.argv) > 1 else {}
+    generated = rates_of_ours(sys.argv)
     print(f"jax {jax.__version__}, {jax.devices()[0]}, f64, {POINTS} points\n")
     print("| operator | width | nested grad, points/s | jet, points/s | generated over nested | generated over jet |")
     print("|---|---|---|---|---|---|")

@@ -13,6 +13,8 @@ import os
 import sys
 import time
 
+from ours import rates_of_ours
+
 os.environ["DDE_BACKEND"] = "jax"
 try:
     import deepxde as dde
@@ -85,18 +87,8 @@ def rate(inputs, outputs, residuals, width):
     return POINTS / best
 
 
-def ours(path):
-    """Gradient rates of generated code, by operator and width, from the Rust benchmark's table."""
-    rates = {}
-    for line in open(path, encoding="utf-8"):
-        cells = [cell.strip() for cell in line.strip().strip("|").split("|")]
-        if len(cells) > 5 and cells[1].isdigit():
-            rates[cells[0], int(cells[1])] = float(cells[4])
-    return rates
-
-
 def main():
-    generated = ours(sys.argv[1]) if len(sys.argv) > 1 else {}
+    generated = rates_of_ours(sys.argv)
     print(f"DeepXDE {dde.__version__} on JAX, f64, {POINTS} points\n")
     print("| operator | width | steps, points/s | generated over DeepXDE |\n|---|---|---|---|")
     for name, inputs, outputs, residuals in OPERATORS:
