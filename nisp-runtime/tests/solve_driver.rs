@@ -187,3 +187,25 @@ fn a_lasting_fault_is_reported_with_the_best_iterate() {
     assert_eq!(outcome.warnings.len(), 1, "said once");
     assert!(outcome.loss.is_finite() && outcome.loss < 10.0);
 }
+
+#[test]
+fn who_stops_at_the_last_step_of_a_run_has_come_to_its_end() {
+    let quick = || Marquardt::new(vec![0.5; 4], WeightPrior::default());
+    let lost = || Adam::new(vec![0.5], AdamSettings { rate: 0.0, ..AdamSettings::default() });
+    let parabola = || Function::new(1, |x: &[f64]| (x[0] * x[0], vec![2.0 * x[0]]));
+    let limits = Limits { patience: 2, ..Limits::default() };
+    let mut states = Vec::new();
+    let converged = run(&mut quick(), &mut remainder(), limits, &mut |progress| {
+        states.push((progress.checkpoint)());
+        Flow::Continue
+    });
+    let resumed = resume(&mut quick(), &mut remainder(), &states[states.len() - 1], limits, &mut |_| Flow::Continue);
+    assert_eq!(converged.status, Status::Converged);
+    let resumed = resumed.unwrap();
+    assert_eq!((resumed.status, resumed.iterations), (Status::Converged, converged.iterations));
+    assert_eq!(resumed.state, converged.state);
+    let given_up = run(&mut lost(), &mut parabola(), limits, &mut |_| Flow::Continue);
+    let resumed = resume(&mut lost(), &mut parabola(), &given_up.state, limits, &mut |_| Flow::Continue).unwrap();
+    assert_eq!((resumed.status, resumed.iterations), (Status::NotConverged, given_up.iterations));
+    assert_eq!(resumed.warnings, given_up.warnings);
+}

@@ -13,7 +13,7 @@ use crate::problem::Problem;
 use crate::solve::state::State;
 
 /// Begins every checkpoint; the number is that of the layout.
-const MAGIC: &[u8] = b"nisp checkpoint 1\n";
+const MAGIC: &[u8] = b"nisp checkpoint 2\n";
 
 /// The state of a solver and the problem it belongs to.
 #[derive(Debug, Clone, PartialEq)]

@@ -3,7 +3,7 @@
 use super::checkpoint::{Checkpoint, CheckpointError};
 use super::{Monitor, RecoverError, Report};
 use crate::real::Real;
-use crate::solve::driver::{self, Flow, Limits, Outcome, Progress};
+use crate::solve::driver::{Limits, Outcome, Progress, Run};
 use crate::solve::method::Method;
 use crate::solve::objective::Objective;
 use crate::solve::state::State;
@@ -20,16 +20,24 @@ pub(super) struct Course<'a, 'm> {
     /// Where to go on from; else from the start.
     pub(super) from: Option<&'a State>,
     pub(super) monitor: &'a mut Monitor<'m>,
-    /// Steps and seconds in single precision before those in double.
+    /// In double precision after single.
+    single: Option<Single>,
+}
+
+/// Steps and seconds in single precision before those in double.
+#[derive(Clone, Copy, Default)]
+struct Single {
     steps: u64,
     seconds: f64,
 }
 
 impl<'a, 'm> Course<'a, 'm> {
     pub(super) fn new(fingerprint: u64, limits: Limits, from: Option<&'a State>, monitor: &'a mut Monitor<'m>) -> Self {
-        let steps = from.and_then(|state| state.counter(SINGLE_STEPS).ok()).unwrap_or(0);
+        let single =
+            from.and_then(|state| state.counter(SINGLE_STEPS).ok()).map(|steps| Single { steps, seconds: 0.0 });
+        let steps = single.map_or(0, |single| single.steps);
         let limits = Limits { iterations: limits.iterations.saturating_sub(steps), ..limits };
-        Self { fingerprint, limits, from, monitor, steps, seconds: 0.0 }
+        Self { fingerprint, limits, from, monitor, single }
     }
 
     /// The method whose state it goes on from.
@@ -39,12 +47,12 @@ impl<'a, 'm> Course<'a, 'm> {
 
     /// True in double precision after single.
     pub(super) fn is_promoted(&self) -> bool {
-        self.steps > 0
+        self.single.is_some()
     }
 
     /// Turns to double precision after a run in single.
     pub(super) fn promote(&mut self, single: &Outcome<f64>) {
-        (self.steps, self.seconds) = (single.iterations, single.wall_s);
+        self.single = Some(Single { steps: single.iterations, seconds: single.wall_s });
         let spent = std::time::Duration::from_secs_f64(single.wall_s);
         self.limits.budget = self.limits.budget.map(|budget| budget.saturating_sub(spent));
         self.limits.iterations = self.limits.iterations.saturating_sub(single.iterations);
@@ -57,35 +65,39 @@ impl<'a, 'm> Course<'a, 'm> {
         method: &mut M,
         objective: &mut O,
     ) -> Result<Outcome<E>, RecoverError> {
-        self.run_until(method, objective, &mut |_| false)
+        self.run_until(method, objective, &mut |_, _| false)
     }
 
-    /// Runs a method, until `done` says so at the latest; such a run counts as interrupted.
+    /// Runs a method, until `done` says so of steps and iterate at the latest; such a run counts as interrupted.
     pub(super) fn run_until<E: Real, O: Objective<E> + ?Sized, M: Method<E, O> + ?Sized>(
         &mut self,
         method: &mut M,
         objective: &mut O,
-        done: &mut dyn FnMut(&Progress<'_, E>) -> bool,
+        done: &mut dyn FnMut(u64, &[E]) -> bool,
     ) -> Result<Outcome<E>, RecoverError> {
-        let Self { fingerprint, limits, from, monitor, steps, seconds } = self;
-        let marked = |state: State| if *steps > 0 { state.with_counter(SINGLE_STEPS, *steps) } else { state };
+        let Self { fingerprint, limits, from, monitor, single } = self;
+        let marked = |state: State| match *single {
+            Some(single) => state.with_counter(SINGLE_STEPS, single.steps),
+            None => state,
+        };
+        let Single { steps, seconds } = single.unwrap_or_default();
         let monitor = &mut |progress: &Progress<'_, E>| {
             let report = Report {
-                iteration: *steps + progress.iteration,
-                elapsed_s: *seconds + progress.elapsed.as_secs_f64(),
+                iteration: steps + progress.iteration,
+                elapsed_s: seconds + progress.elapsed.as_secs_f64(),
                 loss: progress.best_loss,
                 checkpoint: &|| Checkpoint { fingerprint: *fingerprint, state: marked((progress.checkpoint)()) },
             };
-            if monitor(report) == Flow::Stop || done(progress) { Flow::Stop } else { Flow::Continue }
+            monitor(report)
         };
-        let outcome = match from {
-            None => driver::run(method, objective, *limits, monitor),
+        let run = match from {
+            None => Run::new(method, *limits),
             // What carries the right fingerprint and still does not fit was not written by us.
-            Some(state) => driver::resume(method, objective, state, *limits, monitor)
-                .map_err(|_| RecoverError::from(CheckpointError::Damaged))?,
+            Some(state) => Run::restored(method, objective, state, *limits).map_err(|_| CheckpointError::Damaged)?,
         };
+        let outcome = run.go(method, objective, monitor, done);
         let state = marked(outcome.state);
-        let iterations = *steps + outcome.iterations;
-        Ok(Outcome { state, iterations, wall_s: *seconds + outcome.wall_s, ..outcome })
+        let iterations = steps + outcome.iterations;
+        Ok(Outcome { state, iterations, wall_s: seconds + outcome.wall_s, ..outcome })
     }
 }

@@ -239,7 +239,7 @@ impl<'a> Fit<'a> {
         let outcome = match promotion {
             None => course.run(&mut *method, &mut engine)?,
             Some(promotion) => {
-                course.run_until(&mut *method, &mut engine, &mut |progress| promotion.is_due(progress))?
+                course.run_until(&mut *method, &mut engine, &mut |steps, theta| promotion.is_due(steps, theta))?
             }
         };
         Ok(widened(outcome))

@@ -8,7 +8,6 @@ use crate::engine::Engine;
 use crate::network::Architecture;
 use crate::problem::{BindError, Bound};
 use crate::recover::weigh;
-use crate::solve::driver::Progress;
 use crate::solve::objective::Objective;
 
 /// Steps between two looks, which cost as much as three or four of them.
@@ -39,14 +38,14 @@ impl Promotion {
         Ok(Self { single, double, narrow: vec![0.0; len], wide: vec![0.0; len], theta: vec![0.0; len], due: false })
     }
 
-    /// Looks, if it is time to; true from when on single precision helps no more.
-    pub(super) fn is_due(&mut self, progress: &Progress<'_, f32>) -> bool {
-        if progress.iteration.is_multiple_of(EVERY) {
-            self.theta.iter_mut().zip(progress.theta).for_each(|(wide, narrow)| *wide = f64::from(*narrow));
+    /// Looks after so many steps, if it is time to; true from when on single precision helps no more.
+    pub(super) fn is_due(&mut self, steps: u64, theta: &[f32]) -> bool {
+        if steps > 0 && steps.is_multiple_of(EVERY) {
+            self.theta.iter_mut().zip(theta).for_each(|(wide, narrow)| *wide = f64::from(*narrow));
             // Clouds are assigned anew, as they were for the step.
-            self.single.accepted(progress.theta);
+            self.single.accepted(theta);
             self.double.accepted(&self.theta);
-            let known = self.single.loss_and_gradient(progress.theta, &mut self.narrow).is_ok()
+            let known = self.single.loss_and_gradient(theta, &mut self.narrow).is_ok()
                 && self.double.loss_and_gradient(&self.theta, &mut self.wide).is_ok();
             let square = |x: f64| x * x;
             let length: f64 = self.wide.iter().copied().map(square).sum();

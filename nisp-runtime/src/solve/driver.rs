@@ -123,9 +123,7 @@ pub fn run<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
     limits: Limits,
     monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
 ) -> Outcome<E> {
-    let judge = Judge::new(limits, method.period(), E::NAME, E::EPSILON.to_f64());
-    let record = Record::new(method.theta());
-    go(method, objective, limits, monitor, record, judge)
+    Run::new(method, limits).go(method, objective, monitor, &mut |_, _| false)
 }
 
 /// Goes on from a state that a run with the same method, objective and settings has left: every later iterate has the same
@@ -140,65 +138,96 @@ pub fn resume<E: Real, O: Objective<E> + ?Sized, M: Method<E, O> + ?Sized>(
     limits: Limits,
     monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
 ) -> Result<Outcome<E>, Fault> {
-    let mut judge = Judge::new(limits, method.period(), E::NAME, E::EPSILON.to_f64());
-    judge.restore(state)?;
-    let record = Record::restore(state, method.theta().len())?;
-    method.restore(state)?;
-    // What is frozen during a step is that of the last accepted iterate.
-    objective.accepted(method.theta());
-    Ok(go(method, objective, limits, monitor, record, judge))
+    Ok(Run::restored(method, objective, state, limits)?.go(method, objective, monitor, &mut |_, _| false))
 }
 
-fn go<E: Real, O: ?Sized, M: Method<E, O> + ?Sized>(
-    method: &mut M,
-    objective: &mut O,
+/// A run between two steps.
+pub(crate) struct Run<E> {
     limits: Limits,
-    monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
-    mut record: Record<E>,
-    mut judge: Judge,
-) -> Outcome<E> {
-    let start = Instant::now();
-    let mut clock = Clock::new(limits.budget);
-    let mut moved = false;
-    let status = loop {
-        // Without a step there would be nothing to say of the iterate, not even its loss.
-        if record.iterations >= limits.iterations || moved && clock.is_spent(start.elapsed()) {
-            break Status::Budget;
-        }
-        moved = true;
-        let step = match method.step(objective) {
-            Ok(step) => step,
-            Err(fault) => {
-                record.warn_of(fault);
-                break Status::NotConverged;
+    record: Record<E>,
+    judge: Judge,
+}
+
+impl<E: Real> Run<E> {
+    /// At the start of `method`.
+    pub(crate) fn new<O: ?Sized, M: Method<E, O> + ?Sized>(method: &M, limits: Limits) -> Self {
+        let judge = Judge::new(limits, method.period(), E::NAME, E::EPSILON.to_f64());
+        Self { limits, record: Record::new(method.theta()), judge }
+    }
+
+    /// Where a saved run stopped.
+    pub(crate) fn restored<O: Objective<E> + ?Sized, M: Method<E, O> + ?Sized>(
+        method: &mut M,
+        objective: &mut O,
+        state: &State,
+        limits: Limits,
+    ) -> Result<Self, Fault> {
+        let mut judge = Judge::new(limits, method.period(), E::NAME, E::EPSILON.to_f64());
+        judge.restore(state)?;
+        let record = Record::restore(state, method.theta().len())?;
+        method.restore(state)?;
+        // What is frozen during a step is that of the last accepted iterate.
+        objective.accepted(method.theta());
+        Ok(Self { limits, record, judge })
+    }
+
+    /// Takes steps until the end. `done` sees the number of steps and the iterate before each step, and may end the run too;
+    /// what it answers must follow from them alone, so that it answers the same to whoever goes on from here.
+    pub(crate) fn go<O: ?Sized, M: Method<E, O> + ?Sized>(
+        self,
+        method: &mut M,
+        objective: &mut O,
+        monitor: &mut dyn FnMut(&Progress<'_, E>) -> Flow,
+        done: &mut dyn FnMut(u64, &[E]) -> bool,
+    ) -> Outcome<E> {
+        let Self { limits, mut record, mut judge } = self;
+        let start = Instant::now();
+        let mut clock = Clock::new(limits.budget);
+        let mut moved = false;
+        let status = loop {
+            // The last step may have been the last of a run that stopped there before it could say so.
+            match judge.judgement() {
+                Judgement::GoOn => {}
+                Judgement::Converged => break Status::Converged,
+                Judgement::GiveUp => {
+                    record.warnings.push(judge.warning());
+                    break Status::NotConverged;
+                }
+            }
+            // Without a step there would be nothing to say of the iterate, not even its loss.
+            if record.iterations >= limits.iterations || moved && clock.is_spent(start.elapsed()) {
+                break Status::Budget;
+            }
+            if done(record.iterations, method.theta()) {
+                break Status::Interrupted;
+            }
+            moved = true;
+            let step = match method.step(objective) {
+                Ok(step) => step,
+                Err(fault) => {
+                    record.warn_of(fault);
+                    break Status::NotConverged;
+                }
+            };
+            record.add(&step, method.theta());
+            let elapsed = start.elapsed();
+            clock.tick(elapsed);
+            judge.judge(&step);
+            let progress = Progress {
+                iteration: record.iterations,
+                elapsed,
+                step: &step,
+                best_loss: record.loss,
+                theta: method.theta(),
+                checkpoint: &|| judge.save(record.save(method.save())),
+            };
+            if monitor(&progress) == Flow::Stop {
+                break Status::Interrupted;
             }
         };
-        record.add(&step, method.theta());
-        let elapsed = start.elapsed();
-        clock.tick(elapsed);
-        let judgement = judge.judge(&step);
-        let progress = Progress {
-            iteration: record.iterations,
-            elapsed,
-            step: &step,
-            best_loss: record.loss,
-            theta: method.theta(),
-            checkpoint: &|| judge.save(record.save(method.save())),
-        };
-        if monitor(&progress) == Flow::Stop {
-            break Status::Interrupted;
-        }
-        match judgement {
-            Judgement::GoOn => {}
-            Judgement::Converged => break Status::Converged,
-            Judgement::GiveUp(warning) => {
-                record.warnings.push(warning);
-                break Status::NotConverged;
-            }
-        }
-    };
-    let state = judge.save(record.save(method.save()));
-    record.finish(status, start.elapsed(), state)
+        let state = judge.save(record.save(method.save()));
+        record.finish(status, start.elapsed(), state)
+    }
 }
 
 /// Foresees the end of the next step, so that a budget is kept.

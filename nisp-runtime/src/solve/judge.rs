@@ -5,11 +5,12 @@ use super::fault::Fault;
 use super::method::{Step, Verdict};
 use super::state::State;
 
-/// What to do after a step.
+/// What to do after a step; the numbers are those of saved states.
+#[derive(Clone, Copy)]
 pub(crate) enum Judgement {
-    GoOn,
-    Converged,
-    GiveUp(Warning),
+    GoOn = 0,
+    Converged = 1,
+    GiveUp = 2,
 }
 
 /// Steps that must agree before a run counts as converged.
@@ -37,6 +38,8 @@ pub(crate) struct Judge {
     since_best: u64,
     /// Refused or exhausted steps in a row.
     stuck: u64,
+    /// Of the last step.
+    judgement: Judgement,
 }
 
 impl Judge {
@@ -54,24 +57,35 @@ impl Judge {
             best: f64::INFINITY,
             since_best: 0,
             stuck: 0,
+            judgement: Judgement::GoOn,
         }
     }
 
-    pub(crate) fn judge(&mut self, step: &Step) -> Judgement {
-        match step.verdict {
+    /// What to do next.
+    pub(crate) fn judgement(&self) -> Judgement {
+        self.judgement
+    }
+
+    pub(crate) fn judge(&mut self, step: &Step) {
+        self.judgement = match step.verdict {
             Verdict::Changed => self.forget(),
-            Verdict::Exhausted => return self.exhausted(step),
-            Verdict::Faulty(_) | Verdict::Refused => self.stuck += 1,
-            Verdict::Moved => return self.moved(step),
-        }
-        if self.stuck > self.limits.patience { self.give_up() } else { Judgement::GoOn }
+            Verdict::Exhausted => self.exhausted(step),
+            Verdict::Faulty(_) | Verdict::Refused => self.refused(),
+            Verdict::Moved => self.moved(step),
+        };
     }
 
     /// The function has changed: what was seen is of no use.
-    fn forget(&mut self) {
+    fn forget(&mut self) -> Judgement {
         (self.seen, self.agreeing, self.since_best, self.stuck) = (0, 0, 0, 0);
         self.best = f64::INFINITY;
         (self.first_gradient, self.decrement) = (None, None);
+        Judgement::GoOn
+    }
+
+    fn refused(&mut self) -> Judgement {
+        self.stuck += 1;
+        if self.stuck > self.limits.patience { Judgement::GiveUp } else { Judgement::GoOn }
     }
 
     /// The method sees no way on: that is convergence where rounding is all that is left.
@@ -85,7 +99,7 @@ impl Judge {
         } else if self.stuck < 3 {
             Judgement::GoOn
         } else {
-            self.give_up()
+            Judgement::GiveUp
         }
     }
 
@@ -113,7 +127,7 @@ impl Judge {
         } else {
             self.since_best += 1;
         }
-        if self.since_best > self.patience(step) { self.give_up() } else { Judgement::GoOn }
+        if self.since_best > self.patience(step) { Judgement::GiveUp } else { Judgement::GoOn }
     }
 
     /// Steps without progress after which there will be none. Steps of a constant rate end on a plateau whose height is the
@@ -134,6 +148,7 @@ impl Judge {
             .with_counter("agreeing", self.agreeing)
             .with_counter("since best", self.since_best)
             .with_counter("stuck", self.stuck)
+            .with_counter("judgement", self.judgement as u64)
     }
 
     /// Goes on from a saved state.
@@ -147,10 +162,17 @@ impl Judge {
         self.agreeing = state.counter("agreeing")?;
         self.since_best = state.counter("since best")?;
         self.stuck = state.counter("stuck")?;
+        self.judgement = match state.counter("judgement")? {
+            0 => Judgement::GoOn,
+            1 => Judgement::Converged,
+            2 => Judgement::GiveUp,
+            _ => return Err(Fault::state("judgement")),
+        };
         Ok(())
     }
 
-    fn give_up(&self) -> Judgement {
+    /// Why it gives up.
+    pub(crate) fn warning(&self) -> Warning {
         let (kind, message) = if self.precision == "f32" {
             let message = "the loss no longer falls: the accuracy of f32 is reached; go on in f64";
             (WarningKind::SinglePrecision, message)
@@ -159,7 +181,7 @@ impl Judge {
                 a wider network, or weights of the terms closer to each other";
             (WarningKind::Stagnation, message)
         };
-        Judgement::GiveUp(Warning { kind, message: message.into() })
+        Warning { kind, message: message.into() }
     }
 }
 

@@ -1,14 +1,14 @@
-//! The same bits on any number of threads and after any stop; the same numbers to rounding on any instruction set.
+//! The same bits on any number of threads and after any stop (see `stopping`); the same numbers to rounding on any instruction
+//! set.
 
 use nisp::network::Architecture;
 use nisp::simd::Isa;
-use nisp::solve::driver::Flow;
-use nisp::{Optimizer, Precision, Problem, Settings, Width, recover, resume};
-use nisp_equations::{Request, catalogue};
+use nisp::{Precision, Problem};
 
 use crate::models::each_model;
 use crate::reference::{Model, Reference};
 use crate::row::{Extent, Row};
+use crate::stopping;
 
 /// Loss, then gradient.
 fn evaluate<E: Precision>(
@@ -51,27 +51,6 @@ fn by_isa<E: Precision, M: Model>(model: &M, network: Architecture, isas: [Isa; 
     (apart / norm(&mut a[1..].iter().copied()), differing(&a, &b))
 }
 
-/// Runs that differ by a bit from one that did not stop, stopped halfway and gone on on another number of threads.
-fn by_stopping(optimizer: Optimizer, steps: u64) -> usize {
-    let entry = catalogue().into_iter().find(|entry| entry.name == "pendulum").expect("an entry");
-    let problem = entry.prepare(&Request::default()).expect("the repository's example").problem;
-    let settings = |iterations, threads| Settings {
-        optimizer,
-        precision: Width::F64,
-        architecture: Architecture { width: 6, ..Settings::default().architecture },
-        budget: None,
-        iterations: Some(iterations),
-        threads,
-        ..Settings::default()
-    };
-    let go_on = &mut |_: nisp::Report<'_>| Flow::Continue;
-    let straight = recover(&problem, &settings(steps, 1), go_on);
-    let first = recover(&problem, &settings(steps / 2, 2), go_on);
-    let (Ok(straight), Ok(first)) = (straight, first) else { return 1 };
-    let Ok(second) = resume(&problem, &settings(steps, 3), &first.checkpoint, go_on) else { return 1 };
-    usize::from(second.checkpoint.to_bytes() != straight.checkpoint.to_bytes())
-}
-
 pub(crate) fn rows(extent: Extent) -> Vec<Row> {
     let networks = extent.pick(
         vec![Architecture::modified(12, 2)],
@@ -110,12 +89,6 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
         rows.push(Row::new(format!("gradients on {pair}, f64"), &samples, f64_worst, 1e-12));
         rows.push(Row::new(format!("gradients on {pair}, f32"), &samples, f32_worst, 1e-5));
     }
-    let steps = extent.pick(8, 60);
-    let wrong = Optimizer::ALL.into_iter().map(|optimizer| by_stopping(optimizer, steps)).sum();
-    rows.push(Row::count(
-        "stopped halfway and resumed: methods whose state differs by a bit",
-        Optimizer::ALL.len(),
-        wrong,
-    ));
+    rows.extend(stopping::rows(extent));
     rows
 }

@@ -20,6 +20,7 @@ mod row;
 mod saturation;
 mod scaling;
 mod soak;
+mod stopping;
 mod tangents;
 mod tanh;
 mod wide;
