@@ -167,7 +167,7 @@ impl Solver<'_> {
     }
 
     /// One step; also what it found on its way.
-    fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, Found), LocalError> {
+    pub(super) fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, Found), LocalError> {
         let regress = iteration == 0;
         self.find_feet(&state.theta, &state.learned);
         let noise = if regress { state.noise } else { self.noise(state.used) };
@@ -239,7 +239,7 @@ impl Solver<'_> {
 }
 
 /// The loss before a step, from so many rows, what the step gained, and the factorised matrix.
-struct Found {
+pub(super) struct Found {
     loss: f64,
     gain: f64,
     rows: usize,

@@ -23,6 +23,7 @@ mod phase;
 mod place;
 mod prior;
 mod refuse;
+mod resolved;
 mod sites;
 mod solver;
 mod sorted;
@@ -157,6 +158,9 @@ pub(crate) fn solve(
     let solved = matches!(end.status, Status::Converged | Status::Budget);
     let has_time = end.status == Status::Converged || stage.has_time(course::BARS * end.longest);
     let deviations = if solved && has_time { solver.deviations(&end.state).unwrap_or_default() } else { Vec::new() };
+    if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
+        end.warnings.extend(solver.unresolved(&end.state, settings.cells));
+    }
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     Ok(LocalSolution {
         heads: solver.heads,
