@@ -116,7 +116,7 @@ fn ratio(name: &str, optimizer: Optimizer, width: usize) -> Row {
         solution.precision()
     );
     Row::new(what, samples, time(&both) / time(&alone), 0.6)
-        .timed("a step in f32 takes more than half of one in f64, or the run turned to f64 on its way")
+        .timed("a step in f32 takes half the time but leads less far, or the run turned to f64 on its way")
 }
 
 /// Methods that need double precision, of which one is run in single, or not refused in words.
