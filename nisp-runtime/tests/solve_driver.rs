@@ -160,6 +160,17 @@ fn stagnation_is_said_with_a_remedy() {
 }
 
 #[test]
+fn a_rate_that_has_yet_to_fall_does_not_converge() {
+    // Around the minimum the gradient is small again and again, and the loss no lower than before.
+    let settings = AdamSettings { rate: 0.01, decay: 0.1, decay_steps: 2000, ..AdamSettings::default() };
+    let bowl = |x: &[f64]| (1.0 + x[0] * x[0], vec![2.0 * x[0]]);
+    let mut method = Adam::new(vec![0.5], settings);
+    let outcome = run(&mut method, &mut Function::new(1, bowl), Limits::default(), &mut |_| Flow::Continue);
+    assert_eq!(outcome.status, Status::Converged);
+    assert!(outcome.iterations > 2000, "{}", outcome.iterations);
+}
+
+#[test]
 fn a_plateau_of_a_rate_that_falls_is_no_stagnation() {
     // Steps of half a unit cannot come nearer to the kink than they are long, for 2000 of them: then the rate is a tenth.
     let settings = AdamSettings { rate: 0.5, decay: 0.1, decay_steps: 2000, ..AdamSettings::default() };

@@ -16,7 +16,7 @@ use crate::network::initialise;
 use crate::problem::{BindError, Bound};
 use crate::solve::adam::{Adam, AdamSettings};
 use crate::solve::broyden::{Broyden, Update};
-use crate::solve::driver::{Outcome, Status, WarningKind};
+use crate::solve::driver::{Outcome, Status, Warning, WarningKind};
 use crate::solve::empirical_bayes::{EmpiricalBayes, EmpiricalBayesSettings};
 use crate::solve::fault::Fault;
 use crate::solve::gauss_newton::GaussNewton;
@@ -71,10 +71,15 @@ pub(super) fn solve(
         if !optimizer.counts_noise() {
             weigh::by_noise(&mut engine, &bound, &noise);
         }
-        let architecture = settings.architecture;
-        let theta = &outcome.theta;
-        let mut view = View { bound: &bound, engine: &mut engine, theta, prior, architecture };
-        outcome.warnings.extend(view.warnings());
+        if has_time_for_curvature(settings, start, parameters, rows) {
+            let architecture = settings.architecture;
+            let theta = &outcome.theta;
+            let mut view = View { bound: &bound, engine: &mut engine, theta, prior, architecture };
+            outcome.warnings.extend(view.warnings());
+        } else {
+            let message = "no time was left to look for what the data do not determine; give a larger budget".into();
+            outcome.warnings.push(Warning { kind: WarningKind::Undetermined, message });
+        }
     }
     let precision = match precision {
         // It may have ended before double precision was called for.
@@ -83,6 +88,15 @@ pub(super) fn solve(
     };
     let run = Run { optimizer, precision, start, prior, distrust: Distrust::under(&noise) };
     Ok(Solution::new(bound, engine, outcome, settings, run))
+}
+
+/// True where a curvature keeps the run within a twentieth of its budget.
+fn has_time_for_curvature(settings: &Settings, start: Instant, parameters: usize, rows: usize) -> bool {
+    /// Operations a second that any machine reaches.
+    const RATE: f64 = 2e10;
+    let (parameters, rows) = (parameters as f64, rows as f64);
+    let seconds = (rows + parameters / 3.0) * parameters * parameters / RATE;
+    settings.budget.is_none_or(|budget| start.elapsed().as_secs_f64() + seconds <= 1.05 * budget.as_secs_f64())
 }
 
 /// A problem and the network that is fitted to it.

@@ -112,7 +112,11 @@ impl Judge {
         let earlier = std::mem::replace(&mut self.losses[self.seen % window], step.loss);
         self.seen += 1;
         let first_gradient = *self.first_gradient.get_or_insert(step.gradient_norm);
-        let flat = self.seen > window && earlier - step.loss <= tolerance * step.loss;
+        let flat = match self.period {
+            // At a constant rate the loss goes up and down.
+            Some(period) => self.since_best >= period,
+            None => self.seen > window && earlier - step.loss <= tolerance * step.loss,
+        };
         let close = match step.decrement {
             Some(decrement) => decrement <= tolerance * step.loss,
             // Without curvature, a gradient that has all but vanished must do.
