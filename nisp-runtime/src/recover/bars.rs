@@ -18,7 +18,7 @@ impl Distrust {
     /// states, which are smoother than the source that drives them. Line through what covers 95 % of simulated circuits and
     /// pendulums from noise of a thousandth of the signal to several times the signal (`equations/examples/calibrate.rs`).
     pub(super) fn under(noise: &Noise) -> Self {
-        Self(0.5 + 2.25 * noise.share())
+        Self(0.5 + 2.75 * noise.share())
     }
 
     /// The bars of quantities with this posterior.
@@ -44,10 +44,10 @@ mod tests {
         };
         let exact = bars(&[(0.0, 1.0)]);
         assert_eq!((exact.by_prior[0], exact.deviations[0]), (2.0, 13.0_f64.sqrt()));
-        // Shares of four ninths and of nothing: two ninths, which is one.
-        assert!((bars(&[(2.0, 3.0), (0.0, 2.0)]).by_prior[0] - 4.0).abs() < 1e-12);
+        // Shares of four elevenths and of nothing: two elevenths, which is one.
+        assert!((bars(&[((4.0_f64 / 11.0).sqrt(), 1.0), (0.0, 2.0)]).by_prior[0] - 4.0).abs() < 1e-12);
         // Values that do not vary, and none at all.
         assert_eq!(bars(&[(0.0, 0.0)]).by_prior[0], 2.0);
-        assert_eq!(bars(&[]).by_prior[0], 11.0);
+        assert_eq!(bars(&[]).by_prior[0], 13.0);
     }
 }
