@@ -5,7 +5,6 @@ use super::lattice::{Exponents, Lattice, NONE, Span};
 use crate::engine::Scaling;
 use crate::functions::{sigmoid, softplus};
 use crate::problem::Bound;
-use crate::schema;
 
 /// Heads as functions of one vector of coefficients, head after head, each `offset + scale * sum(coefficient * spline)`.
 #[derive(Clone, Debug)]
@@ -40,7 +39,7 @@ impl Heads {
             }
         });
         let limits: Vec<_> = limits.collect();
-        let scale = (0..schema.heads.len()).map(|head| head_scale(bound, head)).collect();
+        let scale = (0..schema.heads.len()).map(|head| bound.head_scale(head)).collect();
         let offset = offset.iter().zip(&limits).map(|(&o, limit)| limit.map_or(o, |(_, bound)| bound)).collect();
         Self { lattices, first, offset, scale, bound: limits }
     }
@@ -115,11 +114,4 @@ impl Heads {
         debug_assert!((softplus(raw) - inside).abs() <= 1e-9 * inside.max(1.0));
         (raw, sign / (scale * sigmoid(raw)), (distance - inside) * scale * sign)
     }
-}
-
-/// Natural size of a head: what its transformation multiplies with, or the network's scale.
-fn head_scale(bound: &Bound, head: usize) -> f64 {
-    let schema = bound.problem.scene().schema;
-    let slot = schema.scalars.iter().position(|scalar| scalar.origin == schema::Origin::HeadScale(head));
-    slot.map_or(bound.scaling.scale[head], |slot| bound.scalars[slot])
 }

@@ -129,10 +129,19 @@ pub(crate) struct Bound {
 impl Problem {
     /// Checks what is bound and expresses it in the engine's units.
     pub(crate) fn bound(&self, inputs: Inputs) -> Result<Bound, BindError> {
-        let schema = self.scene.schema;
+        self.check_parameters()?;
         let problem = self.clone().with_beliefs();
-        let bindings = problem.bindings()?;
-        for (scalar, value) in schema.scalars.iter().zip(&self.scalars) {
+        let system = problem.system(&problem.bindings()?);
+        let bound = Bound::in_units(problem, system, inputs)?;
+        match bound.wider_system() {
+            Some(system) => Bound::in_units(bound.problem, system, inputs),
+            None => Ok(bound),
+        }
+    }
+
+    /// That all parameters that need a value have one, and a finite one.
+    fn check_parameters(&self) -> Result<(), BindError> {
+        for (scalar, value) in self.scene.schema.scalars.iter().zip(&self.scalars) {
             let own = matches!(scalar.origin, Origin::HeadScale(_) | Origin::SideScale { .. });
             match value {
                 None if !own => {
@@ -144,38 +153,11 @@ impl Problem {
                 _ => {}
             }
         }
-        let system = self.system(&bindings);
-        let coordinates: Vec<Vec<f64>> =
-            bindings.iter().map(|b| inward_points(schema, &system, &b.points.coordinates)).collect();
-        let partners: Vec<Vec<f64>> =
-            bindings.iter().map(|b| inward_points(schema, &system, &b.points.partners)).collect();
-        let columns: Vec<Vec<Vec<f64>>> =
-            bindings.iter().zip(schema.groups).map(|(b, group)| inward_columns(group, &system, b)).collect();
-        let clouds: Vec<Vec<Vec<f64>>> =
-            bindings.iter().zip(schema.groups).map(|(b, group)| inward_clouds(group, &system, b)).collect();
-        let mut scalars: Vec<f64> = schema
-            .scalars
-            .iter()
-            .zip(&self.scalars)
-            .map(|(scalar, value)| value.map_or(1.0, |value| value / system.size(&scalar.unit)))
-            .collect();
-        let Scales { scaling, mut sizes } = scales(
-            &self.scene,
-            &mut scalars,
-            Data { coordinates: &coordinates, partners: &partners, columns: &columns, clouds: &clouds },
-            inputs,
-        );
-        for (sizes, group) in sizes.iter_mut().zip(schema.groups) {
-            for (size, term) in sizes.iter_mut().zip(group.terms) {
-                *size = term.within.map_or(*size, |within| within / system.size(&term.unit));
-            }
-        }
-        let learned = learned(schema, &system, &scalars);
-        Ok(Bound { problem, system, scaling, scalars, learned, sizes, coordinates, partners, columns, clouds })
+        Ok(())
     }
 
     /// What is bound to each group, checked for lengths and finite numbers.
-    fn bindings(&self) -> Result<Vec<&Binding>, BindError> {
+    pub(super) fn bindings(&self) -> Result<Vec<&Binding>, BindError> {
         let inputs = self.scene.schema.coordinates.len();
         let mut bindings = Vec::new();
         for (group, binding) in self.scene.schema.groups.iter().zip(&self.groups) {
@@ -217,28 +199,6 @@ impl Problem {
             bindings.push(binding);
         }
         Ok(bindings)
-    }
-
-    /// A system of units in which what is bound is of the order of one.
-    fn system(&self, bindings: &[&Binding]) -> UnitSystem {
-        let schema = self.scene.schema;
-        let inputs = schema.coordinates.len();
-        let mut quantities: Vec<(&schema::Unit, f64)> = Vec::new();
-        for (i, coordinate) in schema.coordinates.iter().enumerate() {
-            let values = bindings.iter().flat_map(|b| b.points.coordinates.iter().skip(i).step_by(inputs));
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
-            quantities.push((&coordinate.unit, (high - low) / 2.0 * coordinate.unit.factor));
-        }
-        for (scalar, value) in schema.scalars.iter().zip(&self.scalars) {
-            quantities.push((&scalar.unit, value.unwrap_or(0.0)));
-        }
-        for (group, binding) in schema.groups.iter().zip(bindings) {
-            for (column, values) in group.columns.iter().zip(&binding.columns) {
-                let square: f64 = values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64;
-                quantities.push((&column.unit, square.sqrt() * column.unit.factor));
-            }
-        }
-        UnitSystem::fitting(quantities)
     }
 }
 
@@ -295,6 +255,39 @@ fn learned(schema: &schema::Scene, system: &UnitSystem, scalars: &[f64]) -> Vec<
 const MOST_PARAMETERS: usize = 100_000_000;
 
 impl Bound {
+    /// The problem in this system of units.
+    fn in_units(problem: Problem, system: UnitSystem, inputs: Inputs) -> Result<Self, BindError> {
+        let schema = problem.scene.schema;
+        let bindings = problem.bindings()?;
+        let coordinates: Vec<Vec<f64>> =
+            bindings.iter().map(|b| inward_points(schema, &system, &b.points.coordinates)).collect();
+        let partners: Vec<Vec<f64>> =
+            bindings.iter().map(|b| inward_points(schema, &system, &b.points.partners)).collect();
+        let columns: Vec<Vec<Vec<f64>>> =
+            bindings.iter().zip(schema.groups).map(|(b, group)| inward_columns(group, &system, b)).collect();
+        let clouds: Vec<Vec<Vec<f64>>> =
+            bindings.iter().zip(schema.groups).map(|(b, group)| inward_clouds(group, &system, b)).collect();
+        let mut scalars: Vec<f64> = schema
+            .scalars
+            .iter()
+            .zip(&problem.scalars)
+            .map(|(scalar, value)| value.map_or(1.0, |value| value / system.size(&scalar.unit)))
+            .collect();
+        let Scales { scaling, mut sizes } = scales(
+            &problem.scene,
+            &mut scalars,
+            Data { coordinates: &coordinates, partners: &partners, columns: &columns, clouds: &clouds },
+            inputs,
+        );
+        for (sizes, group) in sizes.iter_mut().zip(schema.groups) {
+            for (size, term) in sizes.iter_mut().zip(group.terms) {
+                *size = term.within.map_or(*size, |within| within / system.size(&term.unit));
+            }
+        }
+        let learned = learned(schema, &system, &scalars);
+        Ok(Self { problem, system, scaling, scalars, learned, sizes, coordinates, partners, columns, clouds })
+    }
+
     /// The engine of this problem in precision `E`, for a network of the given shape.
     pub(crate) fn engine<E: Precision>(&self, architecture: Architecture) -> Result<Engine<E>, BindError> {
         self.engine_on(Isa::detect(), architecture)
@@ -365,6 +358,13 @@ impl Bound {
     pub(crate) fn weights(&self, group: usize, measure: Option<&schema::Unit>) -> Vec<f64> {
         let inward = measure.map_or(1.0, |measure| self.system.inward(measure));
         self.raw_weights(group).iter().map(|weight| weight * inward).collect()
+    }
+
+    /// Natural size of a head: what its transformation multiplies with, or the network's scale.
+    pub(crate) fn head_scale(&self, head: usize) -> f64 {
+        let mut slots = self.problem.scene.schema.scalars.iter();
+        let slot = slots.position(|scalar| scalar.origin == Origin::HeadScale(head));
+        slot.map_or(self.scaling.scale[head], |slot| self.scalars[slot])
     }
 
     /// The direction along which a term's cloud is off, if it is known.

@@ -5,6 +5,7 @@ mod bind;
 mod evaluate;
 mod scale;
 mod system;
+mod units;
 
 pub use bind::BindError;
 pub(crate) use bind::Bound;

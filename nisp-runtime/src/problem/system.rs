@@ -20,7 +20,7 @@ impl UnitSystem {
 
     /// The system in which quantities of the given sizes (in SI, with their units) come closest to one, by least
     /// squares over their logarithms. Sizes that are zero or not finite say nothing.
-    pub fn fitting<'a>(quantities: impl IntoIterator<Item = (&'a Unit, f64)>) -> Self {
+    pub fn fitting(quantities: impl IntoIterator<Item = (Unit, f64)>) -> Self {
         let mut normal = SMatrix::<f64, 7, 7>::identity() * 1e-9;
         let mut right = SVector::<f64, 7>::zeros();
         for (unit, size) in quantities {
@@ -65,7 +65,7 @@ mod tests {
     fn nanometres_and_gigapascals_become_ones() {
         let length = unit([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let pressure = unit([-1.0, 1.0, -2.0, 0.0, 0.0, 0.0, 0.0]);
-        let system = UnitSystem::fitting([(&length, 1e-9), (&pressure, 1e9)]);
+        let system = UnitSystem::fitting([(length, 1e-9), (pressure, 1e9)]);
         assert!((system.size(&length) / 1e-9 - 1.0).abs() < 1e-5);
         assert!((system.size(&pressure) / 1e9 - 1.0).abs() < 1e-5);
     }
@@ -74,7 +74,7 @@ mod tests {
     fn a_dimension_that_nothing_speaks_of_stays_si() {
         let length = unit([1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
         let current = unit([0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0]);
-        let system = UnitSystem::fitting([(&length, 0.0), (&length, f64::NAN), (&length, 3.0)]);
+        let system = UnitSystem::fitting([(length, 0.0), (length, f64::NAN), (length, 3.0)]);
         assert_eq!(system.size(&current), 1.0);
     }
 }
