@@ -60,7 +60,7 @@ pub struct Series {
 
 impl Series {
     /// The repository's truths as if measured anew, `count` times from the first on and then from the beginning: number k
-    /// with noise of seed `seed + k`.
+    /// with noise of seed `seed + k`. Without noise every truth comes once at most.
     ///
     /// # Errors
     /// No such files in the folder `repository`, or a scene that the entry does not have.
@@ -79,6 +79,7 @@ impl Series {
             let copy = noisy_copy(&truth, schema, self.every, noise, seed.wrapping_add(index as u64))?;
             self.bind(entry, request, &copy, Some(&truth))
         };
+        let count = if noise == 0.0 { count.min(self.truths.len()) } else { count };
         self.truths.iter().cycle().take(count).enumerate().map(copy).collect()
     }
 

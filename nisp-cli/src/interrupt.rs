@@ -18,6 +18,11 @@ pub(crate) fn listen() -> Result<(), String> {
     heard.map_err(|error| format!("cannot listen for Ctrl-C: {error}"))
 }
 
+/// An error where the user has asked to stop: what was cut short is no measurement.
+pub(crate) fn check() -> Result<(), String> {
+    if asked() { Err("interrupted; nothing was written".into()) } else { Ok(()) }
+}
+
 /// Whether the user has asked to stop.
 pub(crate) fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)

@@ -214,6 +214,8 @@ pub struct Term {
     pub rows: usize,
     /// What its rows read of the heads, by index in [`Group::jets`].
     pub jets: &'static [usize],
+    /// Of an observation, the column that each row compares with, by index in [`Group::columns`].
+    pub columns: &'static [usize],
 }
 
 /// How a term's rows are meant.

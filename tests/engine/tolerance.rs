@@ -38,3 +38,26 @@ fn rows_are_divided_by_what_they_may_be_off_by() {
     assert_eq!(blocks[1].kind, BlockKind::Observation);
     assert_eq!(blocks[2].kind, BlockKind::ObservationOfUnknownNoise);
 }
+
+nisp::pde! {
+    mod sheet {
+        coordinates: x [m], y [m];
+        fields: u: vector [m];
+        sources: f: vector [N/m^3];
+        parameters: E [Pa];
+        on inside { balance: E * laplacian(u) == f; }
+        on marks { columns: level [m]; observe height: u_x + u_y ~ level; observe u; }
+        scene recover { }
+    }
+}
+
+/// Noise is judged by columns, and belongs to the observations that compare with them.
+#[test]
+fn observations_know_their_columns() {
+    let columns = |scene: nisp::SceneRef, group: usize| -> Vec<Vec<usize>> {
+        scene.schema.groups[group].terms.iter().map(|term| term.columns.to_vec()).collect()
+    };
+    assert_eq!(columns(scene::<beam::recover::Scene>(), 1), [[0], [1]]);
+    assert_eq!(columns(scene::<sheet::recover::Scene>(), 1), [vec![0], vec![1, 2]]);
+    assert_eq!(columns(scene::<sheet::recover::Scene>(), 0), [[0; 0]]);
+}

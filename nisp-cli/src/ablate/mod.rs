@@ -85,15 +85,13 @@ fn means<'a>(study: &'a Study, variation: &Variation, options: &Options) -> Resu
     let samples = samples(study, variation, options)?;
     let mut means = Means::new(study.measures);
     for (at, prepared) in samples.iter().enumerate() {
-        if interrupt::asked() {
-            return Err("interrupted".into());
-        }
         if std::io::stderr().is_terminal() {
             eprint!("\r{}: {}, sample {} of {}\x1b[K", study.name, variation.name, at + 1, samples.len());
         }
         let settings = settings(study, variation, prepared, options);
         let go_on = &mut |_: nisp::Report<'_>| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
         let mut solution = recover(&prepared.problem, &settings, go_on).map_err(|error| error.to_string())?;
+        interrupt::check()?;
         means.add(&mut solution, prepared);
     }
     Ok(means)

@@ -57,7 +57,7 @@ pub(crate) struct Options {
     /// Budgets in seconds, separated by commas; each is a run of its own.
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "0.3,1,3", value_parser = seconds)]
     budgets: Vec<f64>,
-    /// How many of the repository's truths, from the first on.
+    /// How many copies of the repository's truths, from the first on; of exact ones, one each at most.
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = count)]
     runs: usize,
     /// Seed of the noise (one more for each truth) and of the initial weights.
@@ -91,9 +91,6 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
     let mut points = Vec::new();
     for trial in trials {
         for &budget in &options.budgets {
-            if interrupt::asked() {
-                return Err("interrupted; nothing was written".into());
-            }
             if terminal {
                 eprint!("\r{} {}, {budget} s\x1b[K", trial.name(), trial.width());
             }

@@ -188,7 +188,8 @@ pub(crate) fn plot(figures: &Figures, measure: Measure, title: String) -> Result
     };
     let mut marks = Vec::new();
     if index == 0 {
-        marks.extend(figures.rivals.iter().map(|rival| Mark::Horizontal(rival.name.clone(), rival.error)));
+        let drawn = figures.rivals.iter().filter(|rival| rival.error > 0.0 && rival.error.is_finite());
+        marks.extend(drawn.map(|rival| Mark::Horizontal(rival.name.clone(), rival.error)));
         let slowest = figures.rivals.iter().map(|rival| rival.seconds).fold(0.0, f64::max);
         if slowest > LEAST_TIME * first {
             marks.push(Mark::Vertical("slowest rival".into(), slowest));

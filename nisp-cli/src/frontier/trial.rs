@@ -84,6 +84,7 @@ impl Trial {
                 Err(error @ (RecoverError::Bind(_) | RecoverError::Threads { .. })) => return Err(error.to_string()),
                 Err(error) => return Ok(Outcome::Refused(error.to_string())),
             };
+            interrupt::check()?;
             gave_up |= solution.status == Status::NotConverged;
             means.add(&mut solution, sample);
         }

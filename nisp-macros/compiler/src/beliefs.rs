@@ -54,7 +54,7 @@ fn belief(at: usize, parameter: &Parameter, spread: f64) -> Term {
     let row = Node::Add(vec![Rc::new(Node::Parameter(at)), Rc::new(given)]);
     Term {
         name: parameter.name.clone(),
-        kind: TermKind::Observation(vec![Rc::new(row)]),
+        kind: TermKind::Observation { rows: vec![Rc::new(row)], columns: vec![at] },
         loss: Loss::Square,
         weight: 1.0,
         within: Some(spread),

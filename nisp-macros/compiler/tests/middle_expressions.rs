@@ -51,7 +51,7 @@ proptest! {
         m.parameter("e", NONE);
         m.group("g", 1, vec![
             ("r", TermKind::Residual(rows)),
-            ("o", TermKind::Observation(vec![sub(&observed, &column(0))])),
+            ("o", TermKind::Observation { rows: vec![sub(&observed, &column(0))], columns: vec![0] }),
         ]);
         let scene = m.scene();
         scene.learned = vec![true, true];

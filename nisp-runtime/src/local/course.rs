@@ -51,13 +51,14 @@ pub(super) struct End {
 }
 
 impl End {
-    /// Says that there was no time for the fine lattice.
+    /// Says that there was no time or no step for the fine lattice.
     pub(super) fn stay_coarse(&mut self) {
         if self.status == Status::Converged {
             self.status = Status::Budget;
         }
         let message =
-            "the time was too short for the fine lattice: patches have coarse edges; give more --budget".into();
+            "nothing was left for the fine lattice: patches have coarse edges; give more --budget or --iterations"
+                .into();
         self.warnings.push(Warning { kind: WarningKind::Unresolved, message });
     }
 }

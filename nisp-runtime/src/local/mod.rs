@@ -144,10 +144,10 @@ pub(crate) fn solve(
         Some(state) => solver.restore(state).map_err(LocalError::Fault)?,
     };
     let mut end = solver.run(place, first_is_coarse, &mut stage)?;
-    let goes_on = end.status != Status::Interrupted && end.iterations < limits.iterations;
-    if first_is_coarse && goes_on && !stage.has_time(FINER * end.longest) {
+    let goes_on = end.iterations < limits.iterations && stage.has_time(FINER * end.longest);
+    if first_is_coarse && end.status != Status::Interrupted && !goes_on {
         end.stay_coarse();
-    } else if first_is_coarse && goes_on {
+    } else if first_is_coarse && end.status != Status::Interrupted {
         let mut fine = Solver::new(bound, settings, settings.cells)?;
         let place = fine.taken_over(&solver.heads, &end.state)?;
         (stage.before, stage.lattice) = (end.iterations, 1);

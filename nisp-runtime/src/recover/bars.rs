@@ -32,15 +32,15 @@ impl Distrust {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recover::noise::ColumnNoise;
+    use crate::recover::noise::ObservationNoise;
 
     #[test]
     fn noise_that_hides_the_signal_doubts_the_prior_most() {
-        let bars = |columns: &[(f64, f64)]| {
-            let columns =
-                columns.iter().map(|&(deviation, spread)| ColumnNoise { group: 0, column: 0, deviation, spread });
-            let posterior = Posterior { deviations: vec![5.0], by_noise: vec![3.0], by_prior: vec![4.0] };
-            Distrust::under(&Noise { columns: columns.collect() }).bars(&posterior)
+        let bars = |levels: &[(f64, f64)]| {
+            let observations =
+                levels.iter().map(|&(deviation, spread)| ObservationNoise { group: 0, term: 0, deviation, spread });
+            let posterior = Posterior { by_noise: vec![3.0], by_prior: vec![4.0] };
+            Distrust::under(&Noise { observations: observations.collect() }).bars(&posterior)
         };
         let exact = bars(&[(0.0, 1.0)]);
         assert_eq!((exact.by_prior[0], exact.deviations[0]), (2.0, 13.0_f64.sqrt()));

@@ -7,6 +7,7 @@ use crate::solve::driver::{Limits, Outcome, Progress, Run};
 use crate::solve::method::Method;
 use crate::solve::objective::Objective;
 use crate::solve::state::State;
+use std::time::Instant;
 
 /// Counter of a state that was reached in double precision after so many steps in single.
 const SINGLE_STEPS: &str = "single steps";
@@ -15,29 +16,34 @@ const SINGLE_STEPS: &str = "single steps";
 pub(super) struct Course<'a, 'm> {
     /// Of problem and settings.
     pub(super) fingerprint: u64,
-    /// What is left.
+    /// Steps that are left, and the budget from the start on.
     pub(super) limits: Limits,
+    /// Preparations and trials of methods count.
+    start: Instant,
     /// Where to go on from; else from the start.
     pub(super) from: Option<&'a State>,
     pub(super) monitor: &'a mut Monitor<'m>,
-    /// In double precision after single.
-    single: Option<Single>,
-}
-
-/// Steps and seconds in single precision before those in double.
-#[derive(Clone, Copy, Default)]
-struct Single {
-    steps: u64,
-    seconds: f64,
+    /// Steps in single precision before those in double.
+    single: Option<u64>,
 }
 
 impl<'a, 'm> Course<'a, 'm> {
-    pub(super) fn new(fingerprint: u64, limits: Limits, from: Option<&'a State>, monitor: &'a mut Monitor<'m>) -> Self {
-        let single =
-            from.and_then(|state| state.counter(SINGLE_STEPS).ok()).map(|steps| Single { steps, seconds: 0.0 });
-        let steps = single.map_or(0, |single| single.steps);
-        let limits = Limits { iterations: limits.iterations.saturating_sub(steps), ..limits };
-        Self { fingerprint, limits, from, monitor, single }
+    pub(super) fn new(
+        fingerprint: u64,
+        limits: Limits,
+        start: Instant,
+        from: Option<&'a State>,
+        monitor: &'a mut Monitor<'m>,
+    ) -> Self {
+        let single = from.and_then(|state| state.counter(SINGLE_STEPS).ok());
+        let limits = Limits { iterations: limits.iterations.saturating_sub(single.unwrap_or(0)), ..limits };
+        Self { fingerprint, limits, start, from, monitor, single }
+    }
+
+    /// Steps and time that are left.
+    pub(super) fn left(&self) -> Limits {
+        let budget = self.limits.budget.map(|budget| budget.saturating_sub(self.start.elapsed()));
+        Limits { budget, ..self.limits }
     }
 
     /// The method whose state it goes on from.
@@ -50,11 +56,14 @@ impl<'a, 'm> Course<'a, 'm> {
         self.single.is_some()
     }
 
+    /// True if a run in single precision has not taken all steps.
+    pub(super) fn has_steps_after(&self, single: &Outcome<f64>) -> bool {
+        single.iterations < self.limits.iterations
+    }
+
     /// Turns to double precision after a run in single.
     pub(super) fn promote(&mut self, single: &Outcome<f64>) {
-        self.single = Some(Single { steps: single.iterations, seconds: single.wall_s });
-        let spent = std::time::Duration::from_secs_f64(single.wall_s);
-        self.limits.budget = self.limits.budget.map(|budget| budget.saturating_sub(spent));
+        self.single = Some(single.iterations);
         self.limits.iterations = self.limits.iterations.saturating_sub(single.iterations);
         self.from = None;
     }
@@ -75,29 +84,30 @@ impl<'a, 'm> Course<'a, 'm> {
         objective: &mut O,
         done: &mut dyn FnMut(u64, &[E]) -> bool,
     ) -> Result<Outcome<E>, RecoverError> {
-        let Self { fingerprint, limits, from, monitor, single } = self;
+        let limits = self.left();
+        let Self { fingerprint, start, from, monitor, single, .. } = self;
         let marked = |state: State| match *single {
-            Some(single) => state.with_counter(SINGLE_STEPS, single.steps),
+            Some(steps) => state.with_counter(SINGLE_STEPS, steps),
             None => state,
         };
-        let Single { steps, seconds } = single.unwrap_or_default();
+        let steps = single.unwrap_or(0);
         let monitor = &mut |progress: &Progress<'_, E>| {
             let report = Report {
                 iteration: steps + progress.iteration,
-                elapsed_s: seconds + progress.elapsed.as_secs_f64(),
+                elapsed_s: start.elapsed().as_secs_f64(),
                 loss: progress.best_loss,
                 checkpoint: &|| Checkpoint { fingerprint: *fingerprint, state: marked((progress.checkpoint)()) },
             };
             monitor(report)
         };
         let run = match from {
-            None => Run::new(method, *limits),
+            None => Run::new(method, limits),
             // What carries the right fingerprint and still does not fit was not written by us.
-            Some(state) => Run::restored(method, objective, state, *limits).map_err(|_| CheckpointError::Damaged)?,
+            Some(state) => Run::restored(method, objective, state, limits).map_err(|_| CheckpointError::Damaged)?,
         };
         let outcome = run.go(method, objective, monitor, done);
         let state = marked(outcome.state);
         let iterations = steps + outcome.iterations;
-        Ok(Outcome { state, iterations, wall_s: seconds + outcome.wall_s, ..outcome })
+        Ok(Outcome { state, iterations, ..outcome })
     }
 }

@@ -148,7 +148,9 @@ fn solve(
     }
     let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
     let pool = pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
-    let course = Course::new(fingerprint, limits(settings, start), checkpoint.map(|c| &c.state), monitor);
+    let limits =
+        Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() };
+    let course = Course::new(fingerprint, limits, start, checkpoint.map(|c| &c.state), monitor);
     pool.install(|| match &settings.local {
         Some(local) => solve_local(bound, local, settings, start, course),
         None => network::solve(bound, settings, start, course),
@@ -162,7 +164,8 @@ fn solve_local(
     start: Instant,
     course: Course<'_, '_>,
 ) -> Result<Solution, RecoverError> {
-    let Course { fingerprint, limits, from, monitor, .. } = course;
+    let limits = course.left();
+    let Course { fingerprint, from, monitor, .. } = course;
     let found = local::solve(&bound, local, limits, from, &mut |progress| {
         monitor(Report {
             iteration: progress.iteration,
@@ -172,12 +175,4 @@ fn solve_local(
         })
     })?;
     Ok(Solution::of_local(bound, found, settings, start))
-}
-
-fn limits(settings: &Settings, start: Instant) -> Limits {
-    Limits {
-        budget: settings.budget.map(|budget| budget.saturating_sub(start.elapsed())),
-        iterations: settings.iterations.unwrap_or(u64::MAX),
-        ..Limits::default()
-    }
 }

@@ -71,14 +71,13 @@ pub(super) fn solve(
         if !optimizer.counts_noise() {
             weigh::by_noise(&mut engine, &bound, &noise);
         }
-        if has_time_for_curvature(settings, start, parameters, rows) {
-            let architecture = settings.architecture;
-            let theta = &outcome.theta;
-            let mut view = View { bound: &bound, engine: &mut engine, theta, prior, architecture };
+        let architecture = settings.architecture;
+        let mut view = View { bound: &bound, engine: &mut engine, theta: &outcome.theta, prior, architecture };
+        if has_time_for_curvatures(view.curvatures(), settings, start, parameters, rows) {
             outcome.warnings.extend(view.warnings());
         } else {
             let message = "no time was left to look for what the data do not determine; give a larger budget".into();
-            outcome.warnings.push(Warning { kind: WarningKind::Undetermined, message });
+            outcome.warnings.push(Warning { kind: WarningKind::OutOfTime, message });
         }
     }
     let precision = match precision {
@@ -90,12 +89,12 @@ pub(super) fn solve(
     Ok(Solution::new(bound, engine, outcome, settings, run))
 }
 
-/// True where a curvature keeps the run within a twentieth of its budget.
-fn has_time_for_curvature(settings: &Settings, start: Instant, parameters: usize, rows: usize) -> bool {
-    /// Operations a second that any machine reaches.
+/// True where so many curvatures should keep the run within a twentieth of its budget.
+fn has_time_for_curvatures(count: usize, settings: &Settings, start: Instant, parameters: usize, rows: usize) -> bool {
+    /// Products a second on two cores with vectors of 256 bits, about; fewer cores may be late.
     const RATE: f64 = 2e10;
     let (parameters, rows) = (parameters as f64, rows as f64);
-    let seconds = (rows + parameters / 3.0) * parameters * parameters / RATE;
+    let seconds = count as f64 * (rows + parameters / 3.0) * parameters * parameters / RATE;
     settings.budget.is_none_or(|budget| start.elapsed().as_secs_f64() + seconds <= 1.05 * budget.as_secs_f64())
 }
 
@@ -271,6 +270,9 @@ impl<'a> Fit<'a> {
         let was_ended = matches!(single.status, Status::Budget | Status::Interrupted);
         if was_ended && !promotion.due {
             return Ok(single);
+        }
+        if !course.has_steps_after(&single) {
+            return Ok(Outcome { status: Status::Budget, ..single });
         }
         course.promote(&single);
         let (double, _) = self.in_double(optimizer, course, Some(&single))?;

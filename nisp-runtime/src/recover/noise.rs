@@ -3,20 +3,20 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::problem::Bound;
-use crate::schema::TermKind;
 
-/// Noise of observed columns.
+/// Noise of what is observed.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Noise {
-    /// Of every observed column where it can be judged.
-    pub(crate) columns: Vec<ColumnNoise>,
+    /// Of every observation where it can be judged.
+    pub(crate) observations: Vec<ObservationNoise>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct ColumnNoise {
+pub(crate) struct ObservationNoise {
     pub(crate) group: usize,
-    pub(crate) column: usize,
-    /// Standard deviation in the engine's units, and that of the data themselves.
+    pub(crate) term: usize,
+    /// Standard deviation in the engine's units, and that of the data themselves; root mean squares over the columns that
+    /// the observation compares with.
     pub(crate) deviation: f64,
     pub(crate) spread: f64,
 }
@@ -25,22 +25,22 @@ pub(crate) struct ColumnNoise {
 const EXACT: f64 = 1e-5;
 
 impl Noise {
-    /// True if no observed column shows noise.
+    /// True if no observation shows noise.
     pub(crate) fn is_exact(&self) -> bool {
-        self.columns.iter().all(|c| is_exact(c.deviation, c.spread))
+        self.observations.iter().all(|o| is_exact(o.deviation, o.spread))
     }
 
-    /// Share of the data's variance that is noise, the mean over observed columns: 0 for exact data. One, the worst, where
+    /// Share of the data's variance that is noise, the mean over observations: 0 for exact data. One, the worst, where
     /// nothing can be judged.
     pub(super) fn share(&self) -> f64 {
-        let shares = self.columns.iter().map(|c| (c.deviation / c.spread.max(c.deviation)).powi(2));
+        let shares = self.observations.iter().map(|o| (o.deviation / o.spread.max(o.deviation)).powi(2));
         let sum: f64 = shares.map(|share| if share.is_nan() { 0.0 } else { share }).sum();
-        if self.columns.is_empty() { 1.0 } else { sum / self.columns.len() as f64 }
+        if self.observations.is_empty() { 1.0 } else { sum / self.observations.len() as f64 }
     }
 
-    /// Noise of a column of a group.
-    pub(crate) fn of(&self, group: usize, column: usize) -> Option<ColumnNoise> {
-        self.columns.iter().find(|c| (c.group, c.column) == (group, column)).copied()
+    /// Noise of a term of a group, if it is an observation.
+    pub(crate) fn of(&self, group: usize, term: usize) -> Option<ObservationNoise> {
+        self.observations.iter().find(|o| (o.group, o.term) == (group, term)).copied()
     }
 }
 
@@ -49,26 +49,31 @@ pub(super) fn is_exact(deviation: f64, spread: f64) -> bool {
     deviation <= EXACT * spread
 }
 
-/// Estimates the noise of every column of groups with observations.
+/// Estimates the noise of every observation.
 pub(crate) fn estimate(bound: &Bound) -> Noise {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
-    let mut columns = Vec::new();
+    let mut observations = Vec::new();
     for (at, group) in schema.groups.iter().enumerate() {
-        if !group.terms.iter().any(|t| t.kind == TermKind::Observation) {
-            continue;
-        }
-        for (column, values) in bound.columns[at].iter().enumerate() {
-            let spread = deviation(values);
-            let places = &bound.coordinates[at];
-            let found =
-                if inputs == 1 { by_differences(&in_order(places, values)) } else { by_fits(places, inputs, values) };
-            if let Some(deviation) = found {
-                columns.push(ColumnNoise { group: at, column, deviation, spread });
-            }
+        let places = &bound.coordinates[at];
+        let noise_of = |values: &[f64]| match inputs {
+            1 => by_differences(&in_order(places, values)),
+            _ => by_fits(places, inputs, values),
+        };
+        for (term, _) in group.terms.iter().enumerate().filter(|(_, term)| !term.columns.is_empty()) {
+            let columns = || group.terms[term].columns.iter().map(|&column| &bound.columns[at][column][..]);
+            let spread = root_mean_square(columns().map(deviation));
+            let found: Option<Vec<f64>> = columns().map(noise_of).collect();
+            let deviation = found.map(|found| root_mean_square(found.into_iter()));
+            observations.extend(deviation.map(|deviation| ObservationNoise { group: at, term, deviation, spread }));
         }
     }
-    Noise { columns }
+    Noise { observations }
+}
+
+fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
+    let count = values.len() as f64;
+    (values.map(|x| x * x).sum::<f64>() / count).sqrt()
 }
 
 /// Values in the order of their only coordinate.

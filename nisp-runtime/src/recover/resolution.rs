@@ -1,10 +1,9 @@
 //! Where the answer does not fit: data that the network does not follow or follows too closely, and places where an
 //! equation fails.
 
-use super::noise::{ColumnNoise, Noise, in_order, is_exact};
+use super::noise::{Noise, ObservationNoise, in_order, is_exact};
 use super::place::place;
 use super::swing::{self, Swing};
-use super::weigh::observed;
 use crate::engine::Engine;
 use crate::problem::Bound;
 use crate::schema::{Loss, TermKind};
@@ -16,6 +15,9 @@ const LOOSE: f64 = 1.5;
 const TIGHT: f64 = 0.5;
 /// Misfit of exact data beside their own spread, above which they are not resolved.
 const COARSE: f64 = 1e-3;
+
+/// Longest gap of a record that counts as evenly sampled, beside the mean.
+const LONGEST: f64 = 2.0;
 
 /// Points of a term at least for some of them to stand out.
 const MANY: usize = 50;
@@ -37,14 +39,14 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
             let message = match term.kind {
                 TermKind::Observation if term.loss == Loss::Square => {
                     let outward = bound.system.outward(&term.unit);
-                    observed(noise, bound, at, number).and_then(|column| {
+                    noise.of(at, number).and_then(|level| {
                         let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
                         let unit = term.unit.text;
-                        let Some(said) = misfit(rms, column.deviation, column.spread) else {
-                            let swing = swing(&bound.coordinates[at], own, column)?;
+                        let Some(said) = misfit(rms, level.deviation, level.spread) else {
+                            let swing = swing(&bound.coordinates[at], own, level)?;
                             return Some(smoothed_away(term.name, swing, outward, unit));
                         };
-                        let (rms, sigma) = (rms * outward, column.deviation * outward);
+                        let (rms, sigma) = (rms * outward, level.deviation * outward);
                         Some(format!("`{}` {said} (rms {rms:.2e} {unit}, noise {sigma:.2e} {unit})", term.name))
                     })
                 }
@@ -88,16 +90,24 @@ fn misfit(rms: f64, noise: f64, spread: f64) -> Option<&'static str> {
     }
 }
 
-/// An oscillation in what is left of a noisy record over time.
-fn swing(times: &[f64], residuals: &[f64], noise: ColumnNoise) -> Option<Swing> {
-    let is_record = times.len() == residuals.len() && !is_exact(noise.deviation, noise.spread);
+/// An oscillation in what is left of a noisy record, if that is evenly sampled.
+fn swing(times: &[f64], residuals: &[f64], noise: ObservationNoise) -> Option<Swing> {
+    let is_record = times.len() == residuals.len() && is_even(times) && !is_exact(noise.deviation, noise.spread);
     is_record.then(|| swing::strongest(&in_order(times, residuals))).flatten()
+}
+
+/// True where no gap is much longer than the others.
+fn is_even(times: &[f64]) -> bool {
+    let sorted = in_order(times, times);
+    let longest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    let whole = sorted.last().zip(sorted.first()).map_or(0.0, |(last, first)| last - first);
+    longest <= LONGEST * whole / (sorted.len().max(2) - 1) as f64
 }
 
 fn smoothed_away(name: &str, swing: Swing, outward: f64, unit: &str) -> String {
     format!(
         "`{name}` is not resolved: what is left of its data goes up and down {} times over the record by {:.2e} {unit}, which \
-         noise does not; the source misses that, and its error bars do not know of it; give another seed",
+         noise does not; the answer misses that, and its error bars do not know of it; give another seed",
         swing.periods,
         swing.amplitude * outward,
     )
@@ -132,6 +142,14 @@ mod tests {
         peak[140] = 2.0;
         assert_eq!(hot_spot(&peak, 100, 4.0).map(|(point, _)| point), Some(40));
         assert_eq!(hot_spot(&peak, 100, 400.0), None, "too small to matter");
+    }
+
+    #[test]
+    fn a_record_with_a_gap_is_not_even() {
+        let even: Vec<f64> = (0..50).rev().map(|i| 0.1 * f64::from(i) + 0.02 * f64::from(i % 3)).collect();
+        assert!(is_even(&even) && is_even(&[]) && is_even(&[1.0]));
+        let gap: Vec<f64> = even.iter().map(|t| if *t > 2.0 { t + 1.0 } else { *t }).collect();
+        assert!(!is_even(&gap));
     }
 
     #[test]

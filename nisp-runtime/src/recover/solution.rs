@@ -65,7 +65,7 @@ pub struct Estimate {
     pub values: Vec<f64>,
     /// Standard deviations, one per point, where the method gives them.
     pub deviations: Option<Vec<f64>>,
-    /// The part of each that is only the prior's word: smoothing that no measurement speaks for or against.
+    /// The part of each that is only the prior's word, so multiplied: smoothing that no measurement speaks for or against.
     pub by_prior: Option<Vec<f64>>,
 }
 
@@ -78,7 +78,7 @@ pub struct LearnedValue {
     pub unit: schema::Unit,
     /// Its value in the declared unit.
     pub value: f64,
-    /// Its standard deviation, where the method gives it.
+    /// Its standard deviation, where the method gives it, made as those of [`Solution::evaluate_with_errors`].
     pub deviation: Option<f64>,
 }
 
@@ -182,8 +182,9 @@ impl Solution {
         }
     }
 
-    /// As [`Solution::evaluate`], with standard deviations from the Laplace approximation of the posterior. Methods
-    /// without a prior and a noise model have none. Those of local functions take a source's patches as they were found:
+    /// As [`Solution::evaluate`], with standard deviations: those of the Laplace approximation of the posterior, in which the
+    /// prior's part is multiplied by 0.5 to 3.25, the more the less the data tell signal from noise, as simulated records
+    /// over time ask for. Methods without a prior and a noise model have none. Those of local functions take a source's patches as they were found:
     /// they say how well the source is known within them, not whether a patch may be elsewhere.
     pub fn evaluate_with_errors(&mut self, points: &[f64]) -> Vec<Estimate> {
         if let Carrier::Local(local) = &self.carrier {

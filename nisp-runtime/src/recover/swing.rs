@@ -26,13 +26,10 @@ pub(super) fn strongest(values: &[f64]) -> Option<Swing> {
     let variance = values.iter().map(|x| x * x).sum::<f64>() / count;
     let frequencies = (values.len().saturating_sub(1) / 2).min(MOST);
     let square = |periods: usize| {
-        let turn = TAU * periods as f64 / count;
-        let parts = values.iter().enumerate().map(|(at, x)| {
-            let (sine, cosine) = (turn * at as f64).sin_cos();
-            (x * cosine, x * sine)
-        });
-        let (re, im) = parts.fold((0.0, 0.0), |(re, im), (a, b)| (re + a, im + b));
-        re * re + im * im
+        // Goertzel (1958): the sum of `values[k] exp(i turn k)` by a recurrence of two terms.
+        let turn = 2.0 * (TAU * periods as f64 / count).cos();
+        let (last, before) = values.iter().fold((0.0, 0.0), |(last, before), x| (x + turn * last - before, last));
+        last * last + before * before - turn * last * before
     };
     let (square, periods) = (1..=frequencies)
         .map(|k| (square(k), k))

@@ -41,6 +41,11 @@ struct Open {
 }
 
 impl View<'_> {
+    /// How many curvatures [`View::warnings`] looks at, at most.
+    pub(super) fn curvatures(&self) -> usize {
+        1 + (0..self.engine.blocks().len()).filter(|&block| self.condition(block).is_some()).count()
+    }
+
     /// Directions that are open, and conditions that close directions which are open without them.
     pub(super) fn warnings(&mut self) -> Vec<Warning> {
         let points = self.sample();

@@ -3,7 +3,7 @@
 use crate::engine::Engine;
 use crate::problem::Bound;
 use crate::real::Real;
-use crate::recover::noise::{ColumnNoise, Noise};
+use crate::recover::noise::Noise;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
 use crate::solve::objective::LeastSquares;
@@ -53,7 +53,7 @@ pub(super) fn by_noise(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
             let sigma = match schema.kind {
                 _ if schema.within.is_some() => size / schema.weight.sqrt(),
                 TermKind::Observation => {
-                    observed(noise, bound, at, term).map_or(size, |c| c.deviation).max(LEAST_NOISE * size)
+                    noise.of(at, term).map_or(size, |observed| observed.deviation).max(LEAST_NOISE * size)
                 }
                 _ if engine.blocks()[block].rows.len() <= FEW_ROWS => CONDITION_TOLERANCE * size / schema.weight.sqrt(),
                 _ => EQUATION_TOLERANCE * size / schema.weight.sqrt(),
@@ -62,14 +62,6 @@ pub(super) fn by_noise(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
             block += 1;
         }
     }
-}
-
-/// Noise of the column that an observation compares with: the one of its name, or the group's only one.
-pub(super) fn observed(noise: &Noise, bound: &Bound, group: usize, term: usize) -> Option<ColumnNoise> {
-    let schema = &bound.problem.scene().schema.groups[group];
-    let name = schema.terms[term].name;
-    let column = schema.columns.iter().position(|c| c.name == name).or((schema.columns.len() == 1).then_some(0))?;
-    noise.of(group, column)
 }
 
 /// The paper's rule: residuals are weighted so that at the start `ratio` times their gradient is no longer than the

@@ -110,6 +110,8 @@ pub enum WarningKind {
     SinglePrecision,
     /// Data or an equation that the network does not follow, or data that it follows into their noise.
     Unresolved,
+    /// Something that was not looked at, because the budget was spent.
+    OutOfTime,
     /// A direction of the answer that neither equations nor data determine.
     Undetermined,
     /// A condition that the answer rests on: the data alone would leave a direction open.

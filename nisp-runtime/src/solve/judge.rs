@@ -114,7 +114,7 @@ impl Judge {
         let first_gradient = *self.first_gradient.get_or_insert(step.gradient_norm);
         let flat = match self.period {
             // At a constant rate the loss goes up and down.
-            Some(period) => self.since_best >= period,
+            Some(period) => self.since_best >= period.max(LONG_WINDOW as u64),
             None => self.seen > window && earlier - step.loss <= tolerance * step.loss,
         };
         let close = match step.decrement {

@@ -7,12 +7,10 @@ use super::vector;
 /// What is known about reported quantities.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Posterior {
-    /// Standard deviation of every quantity, if equations hold as loosely as their tolerances.
-    pub deviations: Vec<f64>,
-    /// The part of it that comes from the noise of measurements and the spread of beliefs. Tolerances of equations are no
-    /// noise: the truth meets equations exactly, and errors follow from its rows alone.
+    /// The part of every quantity's standard deviation that comes from the noise of measurements and the spread of beliefs.
+    /// Tolerances of equations are no noise: the truth meets equations exactly, and errors follow from its rows alone.
     pub by_noise: Vec<f64>,
-    /// The part of it that the prior vouches for: the deviation of what smoothing takes away, if the truth is as the prior
+    /// The part that the prior vouches for: the deviation of what smoothing takes away, if the truth is as the prior
     /// believes.
     pub by_prior: Vec<f64>,
 }
@@ -36,8 +34,7 @@ pub struct Direction {
 pub fn posterior(curvature: &Curvature, derivatives: &[f64]) -> Posterior {
     let len = curvature.parameters();
     let mut spread = derivatives.to_vec();
-    let variances = curvature.variances(&mut spread);
-    let count = variances.len();
+    let count = curvature.variances(&mut spread).len();
     // H^-1 = H^-1 J^T J H^-1 + H^-1 A H^-1: rows and prior.
     curvature.cholesky.solve_upper(&mut spread, count);
     let mut by_noise = vec![0.0; count];
@@ -49,11 +46,7 @@ pub fn posterior(curvature: &Curvature, derivatives: &[f64]) -> Posterior {
         let square: f64 = x.iter().zip(&curvature.precision).map(|(x, a)| a * x * x).sum();
         square.sqrt()
     });
-    Posterior {
-        deviations: variances.iter().map(|v| v.sqrt()).collect(),
-        by_noise: by_noise.into_iter().map(f64::sqrt).collect(),
-        by_prior: by_prior.collect(),
-    }
+    Posterior { by_noise: by_noise.into_iter().map(f64::sqrt).collect(), by_prior: by_prior.collect() }
 }
 
 /// The leading directions of the covariance of quantities given as for [`posterior`], largest first and `most` at most.

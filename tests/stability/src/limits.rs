@@ -242,8 +242,10 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
         (1e6, stiff),
     );
     if let Some(silent) = locked.last_mut() {
-        (silent.held, silent.why) =
-            (1.0, "an answer that moves with the lattice by less than a hundredth passes for resolved");
+        (silent.held, silent.why) = (
+            extent.pick(0.0, 1.0),
+            "an answer that moves with the lattice by less than a hundredth passes for resolved",
+        );
     }
     rows.extend(locked);
     let thin: &[f64] = extent.pick(&[0.3, 3e-5], &[0.3, 0.03, 3e-3, 3e-5, 3e-7]);

@@ -33,17 +33,20 @@ fn halfway(optimizer: Optimizer, steps: u64) -> usize {
 const LOOKS: u64 = 100;
 
 /// What a run leaves that is broken off after a step, before, at and after each look and the turn to double precision, all gone
-/// on to the end of the run: how many there are, and how many end otherwise by a bit. Nothing of a run that does not turn.
-fn about_the_turn(width: usize) -> Option<(usize, usize)> {
+/// on to the end of the run: how many there are, and how many end otherwise by a bit. Nothing of a run that does not turn, or
+/// not where it should: at a look, or between two.
+fn about_the_turn(width: usize, at_a_look: bool) -> Option<(usize, usize)> {
     let problem = problem("rlc");
     let settings = |threads| Settings { threads, ..settings(Optimizer::Lbfgs, Width::Auto, width, 450) };
     // Names in a checkpoint are text.
     let is_double = |bytes: &[u8]| bytes.windows(12).any(|text| text == b"single steps");
     let (mut kept, mut last): (Vec<Vec<u8>>, Vec<u8>) = (Vec::new(), Vec::new());
+    let mut turn = None;
     let straight = recover(&problem, &settings(1), &mut |report: Report<'_>| {
         let bytes = (report.checkpoint)().to_bytes();
         let turns = is_double(&bytes) && !is_double(&last);
         if turns {
+            turn = Some(report.iteration - 1);
             kept.push(last.clone());
         }
         if turns || (report.iteration + 1) % LOOKS < 3 {
@@ -52,7 +55,8 @@ fn about_the_turn(width: usize) -> Option<(usize, usize)> {
         last = bytes;
         Flow::Continue
     });
-    let straight = straight.ok().filter(|_| is_double(&last))?.checkpoint.to_bytes();
+    turn.filter(|turn| turn.is_multiple_of(LOOKS) == at_a_look)?;
+    let straight = straight.ok()?.checkpoint.to_bytes();
     let differs = |bytes: &&Vec<u8>| {
         let from = Checkpoint::from_bytes(bytes).expect("what was written");
         let resumed = resume(&problem, &settings(3), &from, &mut |_| Flow::Continue);
@@ -70,8 +74,8 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
         wrong,
     )];
     // The first turns between two looks, where single precision finds no better point; the second at a look.
-    for (width, turn) in [(6, "between two looks"), (10, "at a look")] {
-        let (stops, wrong) = about_the_turn(width).unwrap_or((0, 1));
+    for (width, turn, at_a_look) in [(6, "between two looks", false), (10, "at a look", true)] {
+        let (stops, wrong) = about_the_turn(width, at_a_look).unwrap_or((0, 1));
         let what =
             format!("f32 that turns f64 {turn}, broken off about each look and the turn: later bits that differ");
         rows.push(Row::count(what, stops, wrong));

@@ -209,12 +209,18 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
         }
         _ => quote!(None),
     };
+    let columns: Vec<usize> = match &term.kind {
+        model::TermKind::Observation { columns, .. } => {
+            columns.iter().filter_map(|at| group.columns.iter().position(|own| own == at)).collect()
+        }
+        _ => Vec::new(),
+    };
     let (first, rows, jets) = (plan.first, plan.rows, &plan.jets);
     quote! {
         schema::Term {
             name: #name, equation: #equation, latex: #latex, unit: #unit, kind: #kind, loss: #loss,
             weight: #weight, within: #within, measure: #measure, first: #first, rows: #rows,
-            jets: &[#(#jets),*],
+            jets: &[#(#jets),*], columns: &[#(#columns),*],
         }
     }
 }

@@ -26,10 +26,14 @@ impl TermInput<'_, '_> {
             Some(name) => self.named_column(name, unit, expr, &value)?,
         };
         let rows = value.entries.iter().zip(&measured).map(|(entry, column)| build::subtract(entry, column).expr);
+        let columns = measured.iter().filter_map(|column| match *column.expr {
+            Node::Column(at) => Some(at),
+            _ => None,
+        });
         let column_text = column.map_or(term.name.text.as_str(), |name| name.text.as_str());
         let observed = if column.is_none() { "measured" } else { column_text };
         Ok(Body {
-            kind: TermKind::Observation(rows.collect()),
+            kind: TermKind::Observation { rows: rows.collect(), columns: columns.collect() },
             unit,
             equation: format!("{} ~ {observed}", print_text(expr)),
             latex: format!(r"{} \sim \mathrm{{{}}}", self.latex(expr), observed.replace('_', r"\_")),

@@ -75,7 +75,8 @@ fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
     for expr in &expressions {
         merge(&mut fields, &walker.fields(expr));
     }
-    let measured = matches!(term.kind, TermKind::Observation(_) | TermKind::Chamfer { .. } | TermKind::Integral { .. });
+    let measured =
+        matches!(term.kind, TermKind::Observation { .. } | TermKind::Chamfer { .. } | TermKind::Integral { .. });
     let conditions = match &term.kind {
         TermKind::Residual(rows) => rows.len(),
         _ => 1,
@@ -85,7 +86,9 @@ fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
 
 fn expressions(term: &Term) -> Vec<&Expr> {
     match &term.kind {
-        TermKind::Residual(rows) | TermKind::Observation(rows) | TermKind::Inequality(rows) => rows.iter().collect(),
+        TermKind::Residual(rows) | TermKind::Observation { rows, .. } | TermKind::Inequality(rows) => {
+            rows.iter().collect()
+        }
         TermKind::Complementarity { a, b, .. } => vec![a, b],
         TermKind::Integral { integrand, target, .. } => integrand.iter().chain(target).collect(),
         TermKind::Chamfer { point, .. } => point.iter().collect(),
@@ -96,7 +99,7 @@ fn sources_without_equation(elaborator: &mut Elaborator<'_>, model: &Model, rows
     for (index, field) in model.fields.iter().enumerate().filter(|(_, field)| field.role == Role::Source) {
         let equations = model.groups.iter().zip(rows).flat_map(|(group, rows)| group.terms.iter().zip(rows));
         let read = equations
-            .filter(|(term, _)| !matches!(term.kind, TermKind::Observation(_) | TermKind::Chamfer { .. }))
+            .filter(|(term, _)| !matches!(term.kind, TermKind::Observation { .. } | TermKind::Chamfer { .. }))
             .any(|(_, row)| row.fields.contains_key(&index));
         if !read {
             elaborator.errors.push(field.name.span, catalogue::source_without_equation(&field.name.text));

@@ -241,8 +241,13 @@ pub struct Term {
 pub enum TermKind {
     /// `a == b`, as `a - b`.
     Residual(Vec<Expr>),
-    /// `observe a ~ column`, as `a - column`: like a residual, but the misfit is measurement noise.
-    Observation(Vec<Expr>),
+    /// `observe a ~ column`: like a residual, but the misfit is measurement noise.
+    Observation {
+        /// `a - column`
+        rows: Vec<Expr>,
+        /// The column of each row, by index in the group.
+        columns: Vec<usize>,
+    },
     /// `a >= b`, as `a - b`, wanted non-negative.
     Inequality(Vec<Expr>),
     /// `0 <= a _|_ b >= 0`: both non-negative and one of them zero; each with its own dimension.

@@ -99,7 +99,7 @@ pub(super) fn draft(
 fn kind(kind: &TermKind) -> RowKind {
     match kind {
         TermKind::Residual(_) | TermKind::Inequality(_) | TermKind::Complementarity { .. } => RowKind::Residual,
-        TermKind::Observation(_) => RowKind::Observation,
+        TermKind::Observation { .. } => RowKind::Observation,
         TermKind::Integral { .. } => RowKind::Integral(Program::default()),
         TermKind::Chamfer { symmetric, plane, .. } => RowKind::Chamfer { symmetric: *symmetric, plane: *plane },
     }

@@ -23,7 +23,7 @@ pub(super) fn rows(lowering: &mut Lowering, term: &Term, place: (usize, usize)) 
     let mut plain = |expressions: &[Expr]| expressions.iter().map(|e| lowering.lower(e, 0)).collect::<Vec<Id>>();
     let mut targets = Vec::new();
     let rows = match &term.kind {
-        TermKind::Residual(rows) | TermKind::Observation(rows) => plain(rows),
+        TermKind::Residual(rows) | TermKind::Observation { rows, .. } => plain(rows),
         TermKind::Chamfer { point, .. } => plain(point),
         TermKind::Integral { integrand, target, .. } => {
             targets = plain(target);

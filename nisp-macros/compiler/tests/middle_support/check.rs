@@ -69,7 +69,7 @@ fn rows(model: &Model, scene: usize, group: &GroupPlan) -> Vec<Expr> {
     let terms = &model.groups[group.group].terms;
     let used = terms.iter().zip(&model.scenes[scene].uses[group.group]).filter(|(_, used)| **used);
     used.flat_map(|(term, _)| match &term.kind {
-        TermKind::Residual(rows) | TermKind::Observation(rows) => rows.clone(),
+        TermKind::Residual(rows) | TermKind::Observation { rows, .. } => rows.clone(),
         TermKind::Chamfer { point, .. } => point.clone(),
         TermKind::Integral { integrand, .. } => integrand.clone(),
         other => panic!("no oracle for {other:?}"),

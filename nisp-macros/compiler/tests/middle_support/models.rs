@@ -209,8 +209,9 @@ pub(crate) fn pendulum() -> Model {
     let residuals = [("cart", cart), ("first", first), ("second", second)];
     m.group("motion", 0, residuals.map(|(text, e)| (text, TermKind::Residual(vec![e]))).into());
     let observed = [("q", q), ("psi", psi), ("phi", phi)];
-    let observe =
-        |(i, (text, e)): (usize, (&'static str, Expr))| (text, TermKind::Observation(vec![sub(&e, &column(i))]));
+    let observe = |(i, (text, e)): (usize, (&'static str, Expr))| {
+        (text, TermKind::Observation { rows: vec![sub(&e, &column(i))], columns: vec![i] })
+    };
     m.group("samples", 3, observed.into_iter().enumerate().map(observe).collect());
     m.scene();
     m
@@ -266,7 +267,7 @@ pub(crate) fn rlc() -> Model {
     let left = add(&[&d(&v, &[0, 0]), &mul(&[&rate(7.0), &d(&v, &[0])]), &mul(&[&q(10.0, [0, 0, -2]), &v])]);
     let right = mul(&[&rate(1.0), &add(&[&d(&f, &[0]), &mul(&[&rate(6.0), &f])])]);
     m.group("circuit", 0, vec![("balance", TermKind::Residual(vec![sub(&left, &right)]))]);
-    m.group("samples", 1, vec![("v", TermKind::Observation(vec![sub(&v, &column(0))]))]);
+    m.group("samples", 1, vec![("v", TermKind::Observation { rows: vec![sub(&v, &column(0))], columns: vec![0] })]);
     m.scene();
     m
 }
