@@ -15,8 +15,9 @@ pub(super) struct Distrust(f64);
 
 impl Distrust {
     /// The prior's smoothness is chosen by the data, and the less they tell signal from noise, the more it is that of the
-    /// states, which are smoother than the source that drives them. Line through what covers 95 % of simulated circuits and
-    /// pendulums from noise of a thousandth of the signal to several times the signal (`equations/examples/calibrate.rs`).
+    /// states, which are smoother than the source that drives them. Line through what covers about 95 % of the sources of
+    /// simulated circuits and pendulums, from noise of a thousandth of the signal to several times the signal
+    /// (`equations/examples/calibrate.rs`).
     pub(super) fn under(noise: &Noise) -> Self {
         Self(0.5 + 2.75 * noise.share())
     }
