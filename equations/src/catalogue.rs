@@ -142,12 +142,25 @@ pub struct Prepared {
     pub source: String,
     /// What the user should know of the data. One line each.
     pub warnings: Vec<String>,
+    /// What was taken as declared beside data of the user's own.
+    pub assumed: Vec<Assumed>,
     /// What classical rivals solve, if they know this scene.
     pub rival: Option<Box<dyn System>>,
     /// Local functions, where they suit the scene better than a network.
     pub local: Option<Local>,
     /// The body whose surface was seen, where the data are a cloud.
     pub contact: Option<Contact>,
+}
+
+/// A parameter or size that nobody gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assumed {
+    /// Its name.
+    pub name: &'static str,
+    /// Its declared value, in its declared unit.
+    pub value: f64,
+    /// The unit.
+    pub unit: &'static str,
 }
 
 impl Prepared {

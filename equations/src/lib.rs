@@ -14,7 +14,7 @@ pub mod sponge;
 pub mod truth;
 mod yardsticks;
 
-pub use catalogue::{Binding, Entry, Prepared, Request, catalogue};
+pub use catalogue::{Assumed, Binding, Entry, Prepared, Request, catalogue};
 pub use contact::Contact;
 pub use copies::noisy_copy;
 pub use error::PrepareError;

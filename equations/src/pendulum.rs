@@ -34,6 +34,13 @@ const SERIES: Series = Series {
         "data/pendulum/run_23_truth.csv",
     ],
     every: 4,
+    positive: &[
+        ("m0", "a cart has a mass above zero: give it with --set m0=VALUE"),
+        ("m1", "a link has a mass above zero: give it with --set m1=VALUE"),
+        ("m2", "a link has a mass above zero: give it with --set m2=VALUE"),
+        ("l1", "a link has a length above zero: give it with --set l1=VALUE"),
+        ("l2", "a link has a length above zero: give it with --set l2=VALUE"),
+    ],
     rival,
 };
 

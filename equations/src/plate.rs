@@ -79,6 +79,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         truth,
         source,
         warnings: Vec::new(),
+        assumed: Vec::new(),
         rival: None,
         local: None,
         contact: None,

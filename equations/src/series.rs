@@ -6,7 +6,7 @@ use nisp::schema::{Origin, Scene};
 use nisp_data::Table;
 use std::path::Path;
 
-use crate::catalogue::{Entry, Prepared, Request, hint};
+use crate::catalogue::{Assumed, Entry, Prepared, Request, hint};
 use crate::copies::noisy_copy;
 use crate::error::PrepareError;
 use crate::rivals::System;
@@ -54,6 +54,8 @@ pub struct Series {
     pub truths: &'static [&'static str],
     /// Rows of a truth for each measurement.
     pub every: usize,
+    /// Parameters that make no sense at zero or below, and what to do.
+    pub(crate) positive: &'static [(&'static str, &'static str)],
     /// The system that classical rivals solve for a scene of this name, where they know how.
     pub(crate) rival: fn(&str, Given<'_>) -> Option<Box<dyn System>>,
 }
@@ -135,6 +137,14 @@ impl Series {
         for (name, value) in &request.parameters {
             problem.set_parameter(name, *value)?;
         }
+        for &(name, must) in self.positive {
+            let value = parameter(schema, request, name);
+            if value <= 0.0 {
+                let unit =
+                    schema.scalars.iter().find(|scalar| scalar.name == name).map_or("", |scalar| scalar.unit.text);
+                return Err(PrepareError::Range { name, value, unit, must });
+            }
+        }
         let mut measured = Vec::new();
         let (first, last) = (times[0], times[times.len() - 1]);
         for group in schema.groups {
@@ -164,6 +174,7 @@ impl Series {
             truth,
             source,
             warnings: Vec::new(),
+            assumed: assumed(schema, request),
             rival,
             local: None,
             contact: None,
@@ -181,6 +192,17 @@ fn check_columns(schema: &Scene, request: &Request) -> Result<(), PrepareError> 
         }
         None => Ok(()),
     }
+}
+
+/// Parameters that nobody gave beside data of the user's own.
+fn assumed(schema: &Scene, request: &Request) -> Vec<Assumed> {
+    let declared = schema.scalars.iter().filter(|_| request.data.is_some()).filter_map(|scalar| match scalar.origin {
+        Origin::Given(Some(value)) if !scalar.name.is_empty() => {
+            Some(Assumed { name: scalar.name, value: value / scalar.unit.factor, unit: scalar.unit.text })
+        }
+        _ => None,
+    });
+    declared.filter(|assumed| request.parameters.iter().all(|(name, _)| name != assumed.name)).collect()
 }
 
 /// What a parameter was set to, or its declared value.

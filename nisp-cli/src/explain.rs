@@ -16,9 +16,12 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Archite
         let _ = writeln!(text, "{}", content.trim_end());
     };
     line(format!("{}, scene {}: {}", schema.module, schema.name, schema.docs.lines().next().unwrap_or_default()));
+    for coordinate in schema.coordinates {
+        line(format!("  coordinate {:5} {}", coordinate.name, unit(&coordinate.unit)));
+    }
     for head in schema.heads {
         let kind = if head.source { "source" } else { "field" };
-        line(format!("  {kind:9} {:6} {:9} {}", head.name, unit(&head.unit), head.docs));
+        line(format!("  {kind:10} {:5} {:9} {}", head.name, unit(&head.unit), head.docs));
     }
     for scalar in schema.scalars {
         let (kind, value) = match scalar.origin {
@@ -28,9 +31,9 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Archite
         };
         let value =
             value.map_or_else(|| "must be --set".into(), |value| format!("{}", rounded(value / scalar.unit.factor)));
-        line(format!("  {kind:9} {:6} {:9} {value}", scalar.name, unit(&scalar.unit)));
+        line(format!("  {kind:10} {:5} {:9} {value}", scalar.name, unit(&scalar.unit)));
     }
-    line(format!("network of {} layers of {} units, with gates", architecture.layers, architecture.width));
+    line(format!("in a network of {} layers of {} units, with gates:", architecture.layers, architecture.width));
     for group in schema.groups {
         line(format!("group {}", group.name));
         for term in group.terms {

@@ -74,7 +74,7 @@ impl<'a> Means<'a> {
     }
 
     pub(crate) fn add(&mut self, solution: &mut Solution, prepared: &Prepared) {
-        let answer = Found::of(solution, prepared);
+        let answer = Found::of(solution, prepared, &[]);
         for (values, measure) in self.found.iter_mut().zip(self.measures) {
             values.extend(measure.of(&answer));
         }

@@ -130,7 +130,14 @@ pub(crate) fn table(
     for skipped in scene.skipped {
         line(format!("  skipped    {skipped}"));
     }
-    if !found.scores.is_empty() {
+    if !prepared.assumed.is_empty() {
+        let assumed: Vec<String> =
+            prepared.assumed.iter().map(|given| format!("{} = {} {}", given.name, given.value, given.unit)).collect();
+        line(format!("  assumed    {} (others with --set)", assumed.join(", ")));
+    }
+    if found.scores.is_empty() {
+        found_rows(found).into_iter().for_each(&mut line);
+    } else {
         line("mean absolute error".into());
     }
     for score in &found.scores {
@@ -155,6 +162,20 @@ pub(crate) fn table(
     }
     line(written.into());
     text
+}
+
+/// What was found, where no truth is known.
+fn found_rows(found: &Found) -> Vec<String> {
+    let sizes = found.sizes.iter().map(|size| {
+        let bars = size
+            .deviation
+            .map_or_else(String::new, |deviation| format!(", standard deviation {deviation:.2e} {}", size.unit));
+        (size.name.to_string(), format!("{:.2e} {}{bars}", size.value, size.unit))
+    });
+    let noise =
+        found.noise.iter().map(|(name, value, unit)| (format!("noise of {name}"), format!("{value:.2e} {unit}")));
+    let rows: Vec<String> = sizes.chain(noise).map(|(name, value)| format!("  {name:26} {value}")).collect();
+    if rows.is_empty() { rows } else { [vec!["root mean square".into()], rows].concat() }
 }
 
 /// Which files were written, and where.

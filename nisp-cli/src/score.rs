@@ -1,7 +1,7 @@
 //! Scores against a truth that no solver has seen.
 
 use nisp::schema::Origin;
-use nisp::{LearnedValue, Solution};
+use nisp::{Estimate, LearnedValue, Solution};
 use nisp_equations::contact::ContactScore;
 use nisp_equations::rivals::mean_abs_error;
 use nisp_equations::{Contact, Prepared, Truth};
@@ -15,6 +15,30 @@ pub(crate) struct Found {
     /// Of the contact by a classical way.
     pub(crate) rival: Option<Rival>,
     pub(crate) learned: Vec<LearnedValue>,
+    /// Of every source.
+    pub(crate) sizes: Vec<Size>,
+    /// Of every observation where it was found: name, standard deviation, unit.
+    pub(crate) noise: Vec<(String, f64, &'static str)>,
+}
+
+/// How large a source is, and how large its error bars are: root mean squares over the points of the answer.
+pub(crate) struct Size {
+    pub(crate) name: &'static str,
+    pub(crate) unit: &'static str,
+    pub(crate) value: f64,
+    pub(crate) deviation: Option<f64>,
+}
+
+impl Size {
+    fn of(estimate: &Estimate) -> Self {
+        let rms = |values: &Vec<f64>| (values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64).sqrt();
+        Self {
+            name: estimate.name,
+            unit: estimate.unit.text,
+            value: rms(&estimate.values),
+            deviation: estimate.deviations.as_ref().map(rms),
+        }
+    }
 }
 
 /// What a classical way finds of a contact.
@@ -26,12 +50,15 @@ pub(crate) struct Rival {
 }
 
 impl Found {
-    pub(crate) fn of(solution: &mut Solution, prepared: &Prepared) -> Self {
+    pub(crate) fn of(solution: &mut Solution, prepared: &Prepared, estimates: &[Estimate]) -> Self {
         let truth = prepared.truth.as_ref();
         let scalars = solution.scene().scalars;
         let learns = scalars.iter().any(|scalar| matches!(scalar.origin, Origin::Learned { .. }));
         // Error bars take a factorisation.
         let learned = if learns { solution.learned() } else { Vec::new() };
+        let observed = solution.terms().into_iter().filter_map(|term| Some((term.noise?, term)));
+        let name = |name: &str| name.rsplit('.').next().unwrap_or(name).to_string();
+        let noise = observed.map(|(noise, term)| (name(&term.name), noise, term.unit.text)).collect();
         let solution = &*solution;
         let values = |name: &str, points: &[f64]| {
             let estimate = solution.evaluate(points).into_iter().find(|estimate| estimate.name == name);
@@ -42,6 +69,8 @@ impl Found {
             contact: prepared.contact.as_ref().and_then(|contact| contact.score(&values, truth)),
             rival: None,
             learned,
+            sizes: estimates.iter().filter(|estimate| estimate.source).map(Size::of).collect(),
+            noise,
         }
     }
 

@@ -51,9 +51,9 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         warnings.push(format!("interrupted after {:.1} s: this is the best state so far", solution.wall_s));
     }
     warnings.extend(prepared.truth.as_ref().and_then(unscored));
-    let found = Found::of(&mut solution, &prepared);
+    let (mut files, estimates) = results::files(&prepared, &mut solution).map_err(|error| error.to_string())?;
+    let found = Found::of(&mut solution, &prepared, &estimates);
     warnings.extend(found.warnings());
-    let mut files = results::files(&prepared, &mut solution).map_err(|error| error.to_string())?;
     if options.checkpoint || solution.status == Status::Interrupted {
         files.push((checkpoint::NAME, solution.checkpoint.to_bytes()));
     }

@@ -86,6 +86,7 @@ fn names() {
     refused("solve rlc --truth nowhere.csv", &["nowhere.csv: no such file"]);
     refused("solve rlc --config nowhere.toml", &["nowhere.toml"]);
     refused("solve rlc --set f1=3", &["no parameter `f1`", "f0"]);
+    refused("solve pendulum --set m0=-1", &["`m0` is -1 kg", "a mass above zero", "--set m0=VALUE"]);
     refused("solve rlc --sede 3", &["'--sede'", "'--seed'"]);
     refused("solve", &["<SCENE>"]);
     refused("slove rlc", &["'slove'", "'solve'"]);

@@ -174,7 +174,7 @@ fn lists_and_explains() {
     assert!(list.code == Some(0) && list.stdout.contains("pendulum") && list.stdout.contains("--scene free"));
     let explained = place.run("explain pendulum");
     assert_eq!(explained.code, Some(0));
-    for part in ["source    f", "[N]", "parameter m0", "0.005", "channels 3", "skipped"] {
+    for part in ["coordinate t", "source     f", "[N]", "parameter  m0", "0.005", "channels 3", "skipped"] {
         assert!(explained.stdout.contains(part), "{part}");
     }
     // One product of two layers of ten units over three channels: two operations a multiply-add, forward, twice back.

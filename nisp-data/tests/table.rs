@@ -46,6 +46,28 @@ fn multiples_of_the_unit_are_converted() {
 }
 
 #[test]
+fn round_brackets_hold_units_too() {
+    let table = parse("t (ms),q (cm),psi (filtered)\n0,1,2\n500,2,3\n");
+    assert_eq!(table.quantity("t", "s").unwrap(), [0.0, 0.5]);
+    assert_eq!(table.quantity("q", "m").unwrap(), [0.01, 0.02]);
+    // What is no unit says nothing of one.
+    assert_eq!(table.chosen("psi", "psi (filtered)", "rad").unwrap(), [2.0, 3.0]);
+}
+
+#[test]
+fn another_unit_is_refused_even_where_the_column_is_chosen() {
+    let table = parse("t [s],q [kg],x [furlong],phi (V)\n0,1,2,3\n1,2,3,4\n");
+    let mass = "t.csv: `q [kg]` is in kg, where `q` is in m: choose another column, or correct the header";
+    assert_eq!(table.chosen("q", "q [kg]", "m").unwrap_err().to_string(), mass);
+    assert_eq!(table.quantity("q", "m").unwrap_err().to_string(), mass);
+    assert!(table.chosen("x", "x [furlong]", "m").unwrap_err().to_string().contains("is in furlong"));
+    assert!(table.chosen("phi", "phi (V)", "rad").unwrap_err().to_string().contains("is in V"));
+    // A quantity of the same name is not meant by another.
+    let strange = table.quantity("psi", "rad").unwrap_err().to_string();
+    assert!(strange.contains("choose one, with --column psi=HEADER"), "{strange}");
+}
+
+#[test]
 fn refuses_with_what_to_do() {
     let table = parse("t_s,q_m_sigma0,q_m_sigma0.01\n0,1,1\n1,nan,x\n");
     assert_eq!(

@@ -2,11 +2,11 @@
 
 use std::path::Path;
 
-use nisp::schema::{Origin, Scene};
+use nisp::schema::{Origin, Scalar, Scene};
 use nisp::{BindError, Problem, SceneRef};
 
 use crate::PrepareError;
-use crate::catalogue::Request;
+use crate::catalogue::{Assumed, Request};
 
 /// A number of a sample, in SI units.
 pub(super) struct Number {
@@ -66,6 +66,27 @@ impl Given<'_> {
             return Err(PrepareError::Range { name: "nu", value, unit: "", must });
         }
         Ok(problem)
+    }
+
+    /// What is taken as declared beside a cloud of the user's own.
+    ///
+    /// # Errors
+    /// As [`Given::problem`].
+    pub(super) fn assumed(&self) -> Result<Vec<Assumed>, PrepareError> {
+        let mut assumed = Vec::new();
+        if self.request.data.is_none() {
+            return Ok(assumed);
+        }
+        let schema = self.scene.schema;
+        let is_given = |scalar: &&Scalar| !scalar.name.is_empty() && matches!(scalar.origin, Origin::Given(_));
+        let names = schema.scalars.iter().filter(is_given).map(|scalar| scalar.name);
+        for name in names.chain(self.sizes.iter().map(|size| size.name)) {
+            if let (None, Some(value)) = (self.value(name)?, self.of(name)?) {
+                let (unit, factor) = unit(schema, name);
+                assumed.push(Assumed { name, value: value / factor, unit });
+            }
+        }
+        Ok(assumed)
     }
 
     /// A parameter or size in SI units, by whatever says it; nothing if that is nobody.

@@ -93,6 +93,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
     let mut problem = given.problem(POSITIVE)?;
+    let assumed = given.assumed()?;
     let (a, b) = (given.size("a")?, given.size("b")?);
     observed.require_of("membrane", [-a, -b, 0.0], [a, b, b])?;
 
@@ -141,6 +142,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         truth,
         source: observed.source.display().to_string(),
         warnings: observed.cloud.warnings,
+        assumed,
         rival: None,
         local,
         contact: Some(contact),

@@ -105,6 +105,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
     let mut problem = given.problem(POSITIVE)?;
+    let assumed = given.assumed()?;
     let side = given.size("side")?;
     let (low, high) = ([-0.5 * side, -0.5 * side, -side], [0.5 * side, 0.5 * side, 0.0]);
     observed.require_of("sponge", low, high)?;
@@ -162,6 +163,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         truth,
         source: observed.source.display().to_string(),
         warnings: observed.cloud.warnings,
+        assumed,
         rival: None,
         local,
         contact: Some(contact),

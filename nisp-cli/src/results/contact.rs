@@ -14,7 +14,7 @@ pub(super) fn files(
     prepared: &Prepared,
     contact: &Contact,
     solution: &mut Solution,
-) -> Result<Vec<Content>, DataError> {
+) -> Result<(Vec<Content>, Vec<Estimate>), DataError> {
     let estimates = solution.evaluate_with_errors(&prepared.points);
     let shown = contact.pressure.unwrap_or(contact.displacement[2]);
     let Some(head) = solution.scene().heads.iter().find(|head| head.name == shown) else {
@@ -31,7 +31,7 @@ pub(super) fn files(
     files.push(("surface.svg", surface_view(&surface)?.svg().into()));
     files.push(("surface.vtu", mesh.vtu_bytes()));
     files.push(("surface.ply", mesh.ply_bytes(Some((shown, surface.scale)))?));
-    Ok(files)
+    Ok((files, estimates))
 }
 
 /// The deformed surface with a head's values; a pressure is zero where none can act.

@@ -14,8 +14,8 @@ use nisp_equations::Prepared;
 /// Points of a curve: a layer between two measurements shows too.
 const CURVE: usize = 600;
 
-/// Names and contents, to be written together.
-pub(crate) fn files(prepared: &Prepared, solution: &mut Solution) -> Result<Vec<Content>, DataError> {
+/// Names and contents, to be written together, and what they say at the points of [`Prepared`].
+pub(crate) fn files(prepared: &Prepared, solution: &mut Solution) -> Result<(Vec<Content>, Vec<Estimate>), DataError> {
     if let Some(contact) = &prepared.contact {
         return contact::files(prepared, contact, solution);
     }
@@ -23,7 +23,7 @@ pub(crate) fn files(prepared: &Prepared, solution: &mut Solution) -> Result<Vec<
     if let [_, _] = solution.scene().coordinates {
         let estimates = solution.evaluate_with_errors(times);
         let plot = maps(prepared, solution, &estimates)?;
-        return contents(prepared, &estimates, &plot);
+        return Ok((contents(prepared, &estimates, &plot)?, estimates));
     }
     let (first, last) = (times[0], times[times.len() - 1]);
     let fine: Vec<f64> = (0..CURVE).map(|i| first + (last - first) * i as f64 / (CURVE - 1) as f64).collect();
@@ -31,7 +31,7 @@ pub(crate) fn files(prepared: &Prepared, solution: &mut Solution) -> Result<Vec<
     let mut estimates = solution.evaluate_with_errors(&[times.as_slice(), &fine].concat());
     let curves: Vec<_> = estimates.iter_mut().map(|estimate| split(estimate, times.len())).collect();
     let plot = plot(prepared, solution, &fine, &curves)?;
-    contents(prepared, &estimates, &plot)
+    Ok((contents(prepared, &estimates, &plot)?, estimates))
 }
 
 fn contents(prepared: &Prepared, estimates: &[Estimate], plot: &Picture) -> Result<Vec<Content>, DataError> {

@@ -1,4 +1,4 @@
-//! Which header answers to a name. For `q` in metres: `q`, `q [m]` or `q_m`; anything longer must be asked for by its
+//! Which header answers to a name. For `q` in metres: `q`, `q [m]`, `q (m)` or `q_m`; anything longer must be asked for by its
 //! exact header, because guessing between `q_m_sigma0` and `q_m_sigma0.01` would be a quiet wrong answer.
 
 use super::units::factor;
@@ -12,8 +12,12 @@ const SYMBOLS: [&str; 34] = [
     "V", "mV", "A", "mA", "K", "C", "rad", "deg", "Hz", "J", "W", "Nm", "mol", "per", "pct",
 ];
 
+/// Headers less like a name are not meant by it, unless they begin with it.
+const ALIKE: f64 = 0.85;
+
 impl Table {
-    /// The column that answers to `name`: an exact header, or the only one of the forms `name [unit]` and `name_unit`.
+    /// The column that answers to `name`: an exact header, or the only one of the forms `name [unit]`, `name (unit)` and
+    /// `name_unit`.
     pub fn column(&self, name: &str) -> Result<&[f64], DataError> {
         self.checked(self.find(name, None)?)
     }
@@ -24,7 +28,8 @@ impl Table {
         self.converted(self.find(name, Some(unit))?, name, unit)
     }
 
-    /// The column with a header that the user chose for `name`, in `unit`, converted as in [`Table::quantity`].
+    /// The column with a header that the user chose for `name`, in `unit`, converted as in [`Table::quantity`]. A header whose
+    /// brackets hold another unit is refused.
     pub fn chosen(&self, name: &str, header: &str, unit: &str) -> Result<Vec<f64>, DataError> {
         let Some(column) = self.columns.iter().find(|column| column.header == header) else {
             return self
@@ -37,9 +42,21 @@ impl Table {
 
     fn converted(&self, column: &Column, name: &str, unit: &str) -> Result<Vec<f64>, DataError> {
         let values = self.checked(column)?;
+        if let Some(error) = self.other_unit(&column.header, name, unit).filter(|_| column.header != name) {
+            return Err(error);
+        }
         let own = unit_of(&column.header).filter(|_| column.header != name);
         let size = own.and_then(|own| factor(own, unit)).unwrap_or(1.0);
         Ok(values.iter().map(|value| value * size).collect())
+    }
+
+    /// What is wrong with a header that says that it is in another unit.
+    fn other_unit(&self, header: &str, name: &str, unit: &str) -> Option<DataError> {
+        let own = claimed(header).filter(|own| !fits(own, unit))?;
+        let wanted = if is_plain(unit) { "a number without unit".into() } else { format!("in {unit}") };
+        let what =
+            format!("`{header}` is in {own}, where `{name}` is {wanted}: choose another column, or correct the header");
+        Some(DataError::Column { path: self.path.clone(), what })
     }
 
     /// Whether some header answers to `name`.
@@ -92,8 +109,12 @@ impl Table {
             _ => format!("`{name}`"),
         };
         let longer = self.matching(|header| starts_with_name(header, name));
+        let other = unit.and_then(|unit| longer.iter().find_map(|column| self.other_unit(&column.header, name, unit)));
+        if let Some(other) = other {
+            return other;
+        }
         let nearest = longer.first().map(|column| column.header.as_str()).or_else(|| self.nearest(name));
-        self.no_column(&wanted, &nearest.map_or_else(String::new, |header| format!("; {}", choose(name, header))))
+        self.no_column(&wanted, &format!("; {}", choose(name, nearest.unwrap_or("HEADER"))))
     }
 
     /// A header that the user asked for and that is not there.
@@ -114,18 +135,23 @@ impl Table {
         DataError::Column { path: self.path.clone(), what }
     }
 
+    /// The header most like the name, if it may be meant: `psi` is not meant by `phi`, but `time` by `t`.
     fn nearest(&self, name: &str) -> Option<&str> {
-        self.headers().max_by(|a, b| likeness(base(a), name).total_cmp(&likeness(base(b), name)))
+        let likeness = |header: &str| likeness(base(header), name);
+        let meant =
+            |header: &&str| header.to_lowercase().starts_with(&name.to_lowercase()) || likeness(header) >= ALIKE;
+        self.headers().filter(meant).max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
     }
 }
 
 fn choose(name: &str, header: &str) -> String {
-    format!("choose one, for instance with {}", option(name, header))
+    let example = if header == "HEADER" { "" } else { "for instance " };
+    format!("choose one, {example}with {}", option(name, header))
 }
 
 /// How to choose a header on the command line.
 fn option(name: &str, header: &str) -> String {
-    if header.contains([' ', '[', '*']) {
+    if header.contains([' ', '[', '(', '*']) {
         format!("--column '{name}={header}'")
     } else {
         format!("--column {name}={header}")
@@ -137,14 +163,14 @@ fn list<'a>(headers: impl Iterator<Item = &'a str>) -> String {
 }
 
 fn base(header: &str) -> &str {
-    header.split('[').next().unwrap_or(header).trim_end()
+    header.split(['[', '(']).next().unwrap_or(header).trim_end()
 }
 
 fn starts_with_name(header: &str, name: &str) -> bool {
-    header.strip_prefix(name).is_some_and(|rest| rest.starts_with([' ', '_', '[', '.', '-']))
+    header.strip_prefix(name).is_some_and(|rest| rest.starts_with([' ', '_', '[', '(', '.', '-']))
 }
 
-/// Whether `header` is `name [unit]` or `name_unit`, for the given unit, a multiple of it, or any.
+/// Whether `header` is `name [unit]`, `name (unit)` or `name_unit`, for the given unit, a multiple of it, or any.
 fn answers(header: &str, name: &str, unit: Option<&str>) -> bool {
     let Some(rest) = header.strip_prefix(name) else { return false };
     if let Some(inner) = bracketed(rest) {
@@ -158,17 +184,27 @@ fn answers(header: &str, name: &str, unit: Option<&str>) -> bool {
 }
 
 fn fits(own: &str, unit: &str) -> bool {
-    normal(own) == normal(unit) || factor(own, unit).is_some()
+    is_plain(own) && is_plain(unit) || normal(own) == normal(unit) || factor(own, unit).is_some()
 }
 
-/// The unit that a header ends with: `t [ms]`, `t_ms`.
+/// The unit that a header ends with: `t [ms]`, `t (ms)`, `t_ms`.
 fn unit_of(header: &str) -> Option<&str> {
-    let end = header.find('[').map_or(header, |at| &header[at..]);
-    bracketed(end).or_else(|| header.rsplit_once('_').map(|(_, suffix)| suffix))
+    in_brackets(header).or_else(|| header.rsplit_once('_').map(|(_, suffix)| suffix))
+}
+
+/// The unit that a header says it is in: anything in square brackets, and what is a unit in round ones.
+fn claimed(header: &str) -> Option<&str> {
+    in_brackets(header).filter(|inner| header.ends_with(']') || is_unit_suffix(inner))
+}
+
+fn in_brackets(header: &str) -> Option<&str> {
+    bracketed(&header[header.find(['[', '('])?..])
 }
 
 fn bracketed(text: &str) -> Option<&str> {
-    text.trim_start().strip_prefix('[').and_then(|rest| rest.strip_suffix(']'))
+    let text = text.trim_start();
+    let within = |open, close| text.strip_prefix(open).and_then(|rest| rest.strip_suffix(close));
+    within('[', ']').or_else(|| within('(', ')'))
 }
 
 fn is_plain(unit: &str) -> bool {

@@ -6,7 +6,7 @@ use super::place::place;
 use super::swing::{self, Swing};
 use crate::engine::Engine;
 use crate::problem::Bound;
-use crate::schema::{Loss, TermKind};
+use crate::schema::{Loss, Term, TermKind};
 use crate::solve::driver::{Warning, WarningKind};
 
 /// Misfit beside the noise, above which data are not resolved; its square is chi^2 per datum.
@@ -39,6 +39,9 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
             let message = match term.kind {
                 TermKind::Observation if term.loss == Loss::Square => {
                     let outward = bound.system.outward(&term.unit);
+                    if let Some(message) = too_few(term, points, noise.of(at, number)) {
+                        warnings.push(Warning { kind: WarningKind::Unresolved, message });
+                    }
                     noise.of(at, number).and_then(|level| {
                         let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
                         let unit = term.unit.text;
@@ -70,6 +73,17 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
         }
     }
     warnings
+}
+
+/// Says so where measurements are too few to tell noise from signal, and nobody says how noisy they are.
+fn too_few(term: &Term, points: usize, level: Option<ObservationNoise>) -> Option<String> {
+    (level.is_none() && term.within.is_none() && !term.columns.is_empty()).then(|| {
+        format!(
+            "`{}` has too few measurements ({points}) to tell noise from signal, and no error bars to trust: give more of them, \
+             or say in the equations how far they may be off (`within`)",
+            term.name
+        )
+    })
 }
 
 /// What a misfit says, where it is not that of noise.

@@ -99,6 +99,12 @@ pub struct Warning {
     pub message: String,
 }
 
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
 /// Kinds of [`Warning`].
 #[derive(Debug, Clone, PartialEq)]
 pub enum WarningKind {
