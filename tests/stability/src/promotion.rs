@@ -116,7 +116,10 @@ fn ratio(name: &str, optimizer: Optimizer, width: usize) -> Row {
         solution.precision()
     );
     Row::new(what, samples, time(&both) / time(&alone), 0.6)
-        .timed("a step in f32 takes half the time but leads less far, or the run turned to f64 on its way")
+        .timed(
+            "a step in f32 takes half the time but leads less far, since rounding blurs the curvature of flat directions; to \
+             leave out pairs that rounding may have made, and to turn to f64 sooner or later, did not help",
+        )
 }
 
 /// Methods that need double precision, of which one is run in single, or not refused in words.
