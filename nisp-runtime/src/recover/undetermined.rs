@@ -1,7 +1,7 @@
 //! What the data do not determine, said in the user's words.
 //!
 //! The Laplace posterior of every head has a leading direction. Where nearly all of the head's variance lies along it, and
-//! it is large beside the head itself, the direction is open: multiples of it may be added to the answer, and only the
+//! it is not small beside the head itself, or most of the variance and it is larger than the head, the direction is open: multiples of it may be added to the answer, and only the
 //! prior says how much. A condition that closes a direction which is open without it is named too.
 
 use super::place::place;
@@ -19,11 +19,9 @@ use crate::solve::prior::WeightPrior;
 /// Points that directions are looked at, at most.
 const SAMPLE: usize = 64;
 
-/// Share of a head's variance that an open direction has at least.
-const SHARE: f64 = 0.99;
-
-/// Standard deviation along an open direction at least, beside the head itself.
-const DEVIATION: f64 = 0.05;
+/// Share of a head's variance that an open direction has at least, and standard deviation along it at least, beside the head
+/// itself: one that stands alone, or one that drowns the head.
+const OPEN: [(f64, f64); 2] = [(0.99, 0.05), (0.9, 1.0)];
 
 /// A place to look from: the solution, with rows over their standard deviations.
 pub(super) struct View<'a> {
@@ -103,7 +101,8 @@ impl View<'_> {
             .filter_map(|(head, (values, derivatives))| {
                 let direction = directions(&curvature, derivatives, 1).pop()?;
                 let size = values.iter().map(|x| x * x).sum::<f64>().sqrt();
-                let is_open = direction.share > SHARE && direction.deviation > DEVIATION * size;
+                let is_open =
+                    OPEN.iter().any(|(share, large)| direction.share > *share && direction.deviation > large * size);
                 is_open.then_some(Open { head, direction })
             })
             .collect()
