@@ -50,6 +50,8 @@ fn round_brackets_hold_units_too() {
     let table = parse("t (ms),q (cm),psi (filtered)\n0,1,2\n500,2,3\n");
     assert_eq!(table.quantity("t", "s").unwrap(), [0.0, 0.5]);
     assert_eq!(table.quantity("q", "m").unwrap(), [0.01, 0.02]);
+    let remarked = parse("q (raw) [mm]\n1\n2\n");
+    assert_eq!(remarked.chosen("q", "q (raw) [mm]", "m").unwrap(), [1e-3, 2e-3]);
     // What is no unit says nothing of one.
     assert_eq!(table.chosen("psi", "psi (filtered)", "rad").unwrap(), [2.0, 3.0]);
 }

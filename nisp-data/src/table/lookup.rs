@@ -198,7 +198,8 @@ fn claimed(header: &str) -> Option<&str> {
 }
 
 fn in_brackets(header: &str) -> Option<&str> {
-    bracketed(&header[header.find(['[', '('])?..])
+    let open = if header.ends_with(']') { '[' } else { '(' };
+    bracketed(&header[header.find(open)?..])
 }
 
 fn bracketed(text: &str) -> Option<&str> {

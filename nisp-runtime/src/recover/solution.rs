@@ -184,8 +184,9 @@ impl Solution {
 
     /// As [`Solution::evaluate`], with standard deviations: those of the Laplace approximation of the posterior, in which the
     /// prior's part is multiplied by 0.5 to 3.25, the more the less the data tell signal from noise, as simulated records
-    /// over time ask for. Methods without a prior and a noise model have none, nor have answers to exact data. Those of local functions take a source's patches as they were found:
-    /// they say how well the source is known within them, not whether a patch may be elsewhere.
+    /// over time ask for. Methods without a prior and a noise model have none, nor have answers to exact data. Those of local
+    /// functions take a source's patches as they were found: they say how well the source is known within them, not whether
+    /// a patch may be elsewhere.
     pub fn evaluate_with_errors(&mut self, points: &[f64]) -> Vec<Estimate> {
         if let Carrier::Local(local) = &self.carrier {
             let inward = self.bound.inward(points);
