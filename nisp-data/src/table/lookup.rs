@@ -93,7 +93,8 @@ impl Table {
             [] => Err(self.missing(name, unit)),
             many => {
                 let headers = list(many.iter().map(|column| column.header.as_str()));
-                let what = format!("several columns answer to `{name}`: {headers}; {}", choose(name, &many[0].header));
+                let what =
+                    format!("several columns answer to `{name}`: {headers}; {}", choose(name, Some(&many[0].header)));
                 Err(DataError::Column { path: self.path.clone(), what })
             }
         }
@@ -114,7 +115,7 @@ impl Table {
             return other;
         }
         let nearest = longer.first().map(|column| column.header.as_str()).or_else(|| self.nearest(name));
-        self.no_column(&wanted, &format!("; {}", choose(name, nearest.unwrap_or("HEADER"))))
+        self.no_column(&wanted, &format!("; {}", choose(name, nearest)))
     }
 
     /// A header that the user asked for and that is not there.
@@ -144,9 +145,11 @@ impl Table {
     }
 }
 
-fn choose(name: &str, header: &str) -> String {
-    let example = if header == "HEADER" { "" } else { "for instance " };
-    format!("choose one, {example}with {}", option(name, header))
+fn choose(name: &str, example: Option<&str>) -> String {
+    match example {
+        Some(header) => format!("choose one, for instance with {}", option(name, header)),
+        None => format!("choose one, with {}", option(name, "HEADER")),
+    }
 }
 
 /// How to choose a header on the command line.
