@@ -16,6 +16,7 @@ pub(crate) const ENTRY: Entry = Entry {
         scene::<membrane::identify_no_inplane::Scene>,
         scene::<membrane::contact_bending::Scene>,
         scene::<membrane::identify_bending::Scene>,
+        scene::<membrane::identify_unknown_pressure::Scene>,
     ],
     data: "data/membrane/y_shape_1.toml",
     binding: Binding::Cloud(contact::prepare_membrane),
@@ -86,5 +87,7 @@ nisp::pde! {
         scene contact_bending { without interior.balance; }
         /// Young's modulus of a membrane that resists bending.
         scene identify_bending { f = 0; learn E; without interior.balance, rim.no_contact; }
+        /// Young's modulus of a membrane whose gauge pressure nobody has measured: not enough to determine both.
+        scene identify_unknown_pressure { f = 0; learn E, p; without interior.bending, rim.no_contact; }
     }
 }

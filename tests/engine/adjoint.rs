@@ -23,7 +23,7 @@ pub(crate) fn dot_product_error<M: Model>(model: &M) -> f64 {
         for (data, group) in model.groups().iter().zip(schema.groups) {
             let tangents = reference.rows(&moving, data);
             for term in group.terms {
-                let (size, points) = (reference.sizes[block], tangents.len());
+                let (size, points) = (reference.size(block, &moving), tangents.len());
                 block += 1;
                 match term.kind {
                     TermKind::Integral => {
@@ -41,9 +41,9 @@ pub(crate) fn dot_product_error<M: Model>(model: &M) -> f64 {
                 if term.loss == nisp::schema::Loss::Square {
                     let mut u = vec![0.0; engine.rows()];
                     u[first..first + count].iter_mut().enumerate().for_each(|(i, u)| *u = (i as f64 * 0.31).sin());
-                    let scale = (term.weight / points as f64).sqrt() / size;
-                    let products =
-                        (0..count).map(|i| u[first + i] * scale * tangents[i % points][term.first + i / points].slope);
+                    let scale = (term.weight / points as f64).sqrt();
+                    let tangent = |i: usize| (tangents[i % points][term.first + i / points] / size).slope;
+                    let products = (0..count).map(|i| u[first + i] * scale * tangent(i));
                     let (forward, size): (f64, f64) = (products.clone().sum(), products.map(f64::abs).sum());
                     let mut transposed = vec![0.0; theta.len()];
                     engine.vector_jacobian(&theta, &u, &mut transposed).expect("finite");

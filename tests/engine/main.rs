@@ -10,6 +10,7 @@ mod gradients;
 mod hard;
 mod models;
 mod number;
+mod open;
 mod reference;
 mod rows;
 mod tolerance;

@@ -78,6 +78,8 @@ pub(crate) struct Reference<'m, M> {
     pub(crate) scaling: Scaling,
     /// Natural size of each term's rows.
     pub(crate) sizes: Vec<f64>,
+    /// The powers of the learned scalars that these go with, by term.
+    powers: Vec<Vec<f64>>,
     space: Space,
 }
 
@@ -90,6 +92,7 @@ impl<'m, M: Model> Reference<'m, M> {
             model,
             layout: engine.layout().clone(),
             sizes: engine.blocks().iter().map(|block| block.sigma).collect(),
+            powers: powers(&problem, architecture),
             space: Space::new(scaling.half.len(), M::ORDER),
             scaling,
             problem,
@@ -104,6 +107,18 @@ impl<'m, M: Model> Reference<'m, M> {
             theta[at] = 0.3 * (at as f64 * 0.7 + seed as f64).sin();
         }
         theta
+    }
+
+    /// Size of a term's rows where learned scalars are not at their start.
+    pub(crate) fn size<T: Number>(&self, term: usize, theta: &[T]) -> T {
+        let theta = &theta[self.layout.learned.clone()];
+        let (values, starts) = (self.model.learned(theta), self.model.learned(&vec![0.0; theta.len()]));
+        let pairs = values.into_iter().zip(starts).zip(&self.powers[term]);
+        pairs.fold(T::of(self.sizes[term]), |size, ((value, start), &power)| {
+            let ratio = value * T::of(1.0 / start);
+            let grown = ratio.value().powf(power);
+            size * ratio.chain(grown, power * grown / ratio.value())
+        })
     }
 
     /// Series of all heads at a point, in the engine's units, which are the user's where units are off.
@@ -156,16 +171,16 @@ impl<'m, M: Model> Reference<'m, M> {
     /// The loss by definition.
     pub(crate) fn loss<T: Number>(&self, theta: &[T]) -> T {
         let learned = self.model.learned(&theta[self.layout.learned.clone()]);
-        let mut sizes = self.sizes.iter();
+        let mut sizes = (0..self.sizes.len()).map(|term| self.size(term, theta));
         let mut loss = T::of(0.0);
         for (data, group) in self.model.groups().iter().zip(self.problem.scene().schema.groups) {
             let rows = self.rows(theta, data);
-            for (term, &size) in group.terms.iter().zip(&mut sizes) {
+            for (term, size) in group.terms.iter().zip(&mut sizes) {
                 let each = term.first..term.first + term.rows;
                 let mut misfits: Vec<T> = Vec::new();
                 if let TermKind::Chamfer { symmetric, .. } = term.kind {
                     let surface: Vec<&[T]> = rows.iter().map(|r| &r[each.clone()]).collect();
-                    loss = loss + T::of(term.weight) * chamfer(&surface, &data.cloud, symmetric, term, size);
+                    loss = loss + T::of(term.weight) * chamfer(&surface, &data.cloud, symmetric, term, size.value());
                     continue;
                 }
                 if term.kind == TermKind::Integral {
@@ -179,11 +194,46 @@ impl<'m, M: Model> Reference<'m, M> {
                 }
                 let count = if term.kind == TermKind::Integral { 1 } else { rows.len() };
                 let weight = T::of(term.weight / count as f64);
-                loss = misfits.iter().fold(loss, |loss, &r| loss + weight * cost(term, r * T::of(1.0 / size)));
+                loss = misfits.iter().fold(loss, |loss, &r| loss + weight * cost(term, r / size));
             }
         }
         loss
     }
+}
+
+/// How sizes go with learned scalars, from those of problems that start elsewhere; robust losses and data have sizes that stay.
+fn powers(problem: &Problem, architecture: Architecture) -> Vec<Vec<f64>> {
+    const STEP: f64 = 1e-4;
+    let schema = problem.scene().schema;
+    let learned: Vec<(&str, f64)> = schema
+        .scalars
+        .iter()
+        .filter_map(|scalar| match scalar.origin {
+            schema::Origin::Learned { start, .. } => Some((scalar.name, start.expect("a start"))),
+            _ => None,
+        })
+        .collect();
+    let sizes = |name: &str, value: f64| -> Vec<f64> {
+        let mut moved = problem.clone();
+        moved.set_parameter(name, value).expect("a parameter");
+        engine::<f64>(&moved, architecture).blocks().iter().map(|block| block.sigma).collect()
+    };
+    let power = |(above, below): (f64, f64)| (above / below).ln() / (2.0 * STEP.atanh());
+    let by_scalar: Vec<Vec<f64>> = learned
+        .iter()
+        .map(|&(name, start)| {
+            let pairs = sizes(name, start * (1.0 + STEP)).into_iter().zip(sizes(name, start * (1.0 - STEP)));
+            pairs.map(power).collect()
+        })
+        .collect();
+    let terms = schema.groups.iter().flat_map(|group| group.terms).enumerate();
+    terms
+        .map(|(at, term)| {
+            let equation = matches!(term.kind, TermKind::Residual | TermKind::Integral) && term.loss == Loss::Square;
+            let follows = equation && by_scalar.iter().any(|powers| powers[at].abs() > 1e-6);
+            by_scalar.iter().map(|powers| if follows { powers[at] } else { 0.0 }).collect()
+        })
+        .collect()
 }
 
 /// Mean cost of the distances from a cloud to a surface, and from the surface to the cloud.

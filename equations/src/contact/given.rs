@@ -123,8 +123,8 @@ impl Given<'_> {
             return Ok(Some(value * factor));
         }
         let scalar = schema.scalars.iter().find(|scalar| scalar.name == name);
-        // What is to be learned is not to be read.
-        if scalar.is_some_and(|scalar| matches!(scalar.origin, Origin::Learned { .. })) {
+        // What is to be learned is not to be read, unless nothing else says where to begin.
+        if scalar.is_some_and(|scalar| matches!(scalar.origin, Origin::Learned { start: Some(_), .. })) {
             return Ok(None);
         }
         let number = self

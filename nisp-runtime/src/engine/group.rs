@@ -3,6 +3,7 @@
 use super::chamfer::Chamfer;
 use super::reading::Reading;
 use crate::kernel::{GroupKernel, Programs};
+use crate::problem::powers::Powers;
 use crate::real::Real;
 use crate::schema::{self, TermKind};
 
@@ -33,6 +34,12 @@ pub(crate) struct BoundTerm<E> {
     pub(crate) size: f64,
     /// Rows are multiplied by this after the division.
     pub(crate) factor: f64,
+    /// Powers of the learned scalars that the size goes with.
+    pub(crate) powers: Powers,
+    /// What the size is multiplied by because of them.
+    pub(crate) grown: f64,
+    /// Derivatives of the size's logarithm by the learned scalars.
+    pub(crate) growth: Vec<f64>,
     /// A weight for each point, or nothing for one.
     pub(crate) point_weights: Option<Vec<E>>,
     /// The cloud that rows are compared with, of a Chamfer term.
@@ -75,7 +82,16 @@ impl<E: Real> BoundGroup<E> {
         let terms = schema
             .terms
             .iter()
-            .map(|schema| BoundTerm { schema, size: 1.0, factor: 1.0, point_weights: None, chamfer: None })
+            .map(|schema| BoundTerm {
+                schema,
+                size: 1.0,
+                factor: 1.0,
+                powers: Powers::default(),
+                grown: 1.0,
+                growth: Vec::new(),
+                point_weights: None,
+                chamfer: None,
+            })
             .collect();
         Self {
             programs: kernel.programs,
@@ -121,16 +137,21 @@ impl<E: Real> BoundTerm<E> {
         self.chamfer.as_ref().map_or_else(|| self.row_count(points), Chamfer::data)
     }
 
+    /// What raw rows are multiplied by.
+    pub(crate) fn scale(&self) -> f64 {
+        self.factor / (self.size * self.grown)
+    }
+
     /// The row that a Chamfer term's loss has beyond what its points can mend.
     pub(crate) fn scatter(&self) -> f64 {
-        self.chamfer.as_ref().map_or(0.0, |chamfer| chamfer.scatter() * self.factor / self.size)
+        self.chamfer.as_ref().map_or(0.0, |chamfer| chamfer.scatter() * self.scale())
     }
 
     /// Value and derivative of a row, as counted, for a misfit `r` at a point of weight `m`: half the square of the
     /// value is the row's share of the loss, robust or not.
     #[inline(always)]
     pub(crate) fn row(&self, r: E, m: E) -> (E, E) {
-        let scale = E::from_f64(self.factor / self.size) * m;
+        let scale = E::from_f64(self.scale()) * m;
         match self.schema.loss {
             schema::Loss::Square => (scale * r, scale),
             loss => {

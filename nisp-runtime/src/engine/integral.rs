@@ -88,7 +88,7 @@ impl<E: Real> Engine<E> {
             let sum: f64 =
                 parts.iter().filter(|(range, _)| range.group == integral.group).map(|(_, sums)| sums[at]).sum();
             group.programs.target(scalars, targets);
-            let scale = term.factor / term.size;
+            let scale = term.scale();
             let misfit = (sum - targets[integral.row]) * scale;
             if !misfit.is_finite() {
                 return Err(Fault::residual(term.schema.name, None));

@@ -160,7 +160,7 @@ impl Engine<f64> {
     fn integral_jacobian(&self, integral: &Integral, theta: &[f64], out: &mut [f64]) {
         let group = &self.groups[integral.group];
         let term = &group.terms[integral.term];
-        let scale = term.factor / term.size;
+        let scale = term.scale();
         let mut gradient = vec![0.0; self.layout.padded_len];
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         with_buffers(&self.buffers, |buffers| {
@@ -176,6 +176,7 @@ impl Engine<f64> {
                 network.adjoint(&tile, buffers, &mut gradient, false);
             }
         });
+        term.shrink(integral.misfit, &mut gradient[self.layout.learned_at..]);
         for (i, (slope, by_target)) in self.learned_slopes(theta).iter().zip(&integral.target_slopes).enumerate() {
             let at = self.layout.learned_at + i;
             gradient[at] = (gradient[at] - scale * by_target) * slope;
@@ -202,6 +203,7 @@ impl Engine<f64> {
                     let job = TileJob { network: &network, tile, starts: &starts[group], theta, slopes: &slopes };
                     job.seed(buffers, u);
                     network.adjoint(&tile, buffers, &mut chunk.gradient, false);
+                    job.shrink(buffers, u, &mut chunk.gradient);
                 }
             });
         });
@@ -262,7 +264,11 @@ impl TileJob<'_> {
             gradients.clear();
             gradients.resize(self.tile.count * layout.padded_len, 0.0);
             self.network.adjoint(&self.tile, buffers, gradients, true);
+            let term = self.tile.group.terms.iter().find(|term| covers(term, row));
             for (p, gradient) in gradients.chunks_exact_mut(layout.padded_len).enumerate() {
+                if let Some(term) = term {
+                    term.shrink(buffers.rows[row * stride + p], &mut gradient[layout.learned_at..]);
+                }
                 for (i, slope) in self.slopes.iter().enumerate() {
                     gradient[layout.learned_at + i] *= slope;
                 }
@@ -282,13 +288,24 @@ impl TileJob<'_> {
         }
     }
 
+    /// What sizes that follow learned scalars add to a product `J^T u`.
+    fn shrink(&self, buffers: &super::Buffers<f64>, u: &[f64], gradient: &mut [f64]) {
+        let stride = self.tile.stride();
+        for row in self.pointwise() {
+            let Some(term) = self.tile.group.terms.iter().find(|term| covers(term, row)) else { continue };
+            let own = &buffers.rows[row * stride..][..self.tile.count];
+            let product = own.iter().enumerate().map(|(p, r)| r * u[self.starts[row] + self.tile.first + p]);
+            term.shrink(product.sum(), &mut gradient[self.network.layout.learned_at..]);
+        }
+    }
+
     /// Adds to the seeds of the raw rows those of one row as it counts, a seed for each point of the tile.
     fn seed_row(&self, row: usize, u: impl Fn(usize) -> f64, buffers: &mut super::Buffers<f64>) {
         let stride = self.tile.stride();
         let super::Buffers { seeds, row_slopes, .. } = buffers;
         let chamfer = self.tile.group.terms.iter().find(|term| term.chamfer.is_some() && covers(term, row));
         if let Some((term, chamfer)) = chamfer.and_then(|term| Some((term, term.chamfer.as_ref()?))) {
-            let (points, scale) = (self.tile.first..self.tile.first + self.tile.count, term.factor / term.size);
+            let (points, scale) = (self.tile.first..self.tile.first + self.tile.count, term.scale());
             let seeds = &mut seeds[term.schema.first * stride..];
             chamfer.seed(row - term.schema.first, points, stride, |p| scale * u(p), seeds);
         } else {

@@ -19,6 +19,21 @@ pub(crate) enum LearnedMap {
 }
 
 impl LearnedMap {
+    /// True if all values are above zero.
+    pub(crate) fn is_positive(self) -> bool {
+        match self {
+            Self::Positive(_) => true,
+            Self::Linear(..) => false,
+            Self::Between(lower, ..) => lower >= 0.0,
+        }
+    }
+
+    /// What a size is multiplied by that goes with a power of the value, and the derivative of its logarithm by the value.
+    pub(crate) fn grown(self, theta: f64, power: f64) -> (f64, f64) {
+        let value = self.at(theta).0;
+        ((value / self.at(0.0).0).powf(power), power / value)
+    }
+
     /// Value and derivative.
     pub(crate) fn at(self, theta: f64) -> (f64, f64) {
         match self {

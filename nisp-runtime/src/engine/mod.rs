@@ -11,6 +11,7 @@ mod chunks;
 mod fit;
 mod form;
 mod group;
+mod grow;
 mod heads;
 mod integral;
 mod jacobian;
@@ -147,6 +148,9 @@ impl<E: Real> Engine<E> {
         for (learned, &theta) in self.learned.iter().zip(&theta[self.layout.learned.clone()]) {
             self.scalars[learned.slot] = E::from_f64(learned.map.at(theta.to_f64()).0);
         }
+        for term in self.groups.iter_mut().flat_map(|group| &mut group.terms) {
+            term.grow(&self.learned, &theta[self.layout.learned.clone()]);
+        }
         if self.chamfers().any(|chamfer| !chamfer.is_assigned()) {
             self.assign();
         }
@@ -180,6 +184,8 @@ impl<E: Real> Engine<E> {
                 total[self.layout.learned_at + i] -= E::from_f64(integral.seed * slope);
             }
         }
+        self.shrink_shares();
+        let total = &mut self.chunks[0].gradient;
         for (i, learned) in self.learned.iter().enumerate() {
             let slope = learned.map.at(theta[self.layout.learned.start + i].to_f64()).1;
             total[self.layout.learned_at + i] *= E::from_f64(slope);

@@ -56,7 +56,7 @@ impl<E: Real> Resampler<E> {
         for term in &own.terms {
             for row in term.schema.first..term.schema.first + term.schema.rows {
                 let values = rows[row * all..][..all].iter();
-                off.iter_mut().zip(values).for_each(|(sum, r)| *sum += (r * term.factor / term.size).powi(2));
+                off.iter_mut().zip(values).for_each(|(sum, r)| *sum += (r * term.scale()).powi(2));
             }
         }
         let powers: Vec<f64> = off.iter().map(|square| square.powf(self.settings.power / 2.0)).collect();

@@ -35,7 +35,7 @@ pub(super) fn weigh<E: Real>(
             let (at, len) = (term.schema.first * stride, term.schema.rows * stride);
             let (values, seeds) = (&mut rows[at..][..len], &mut seeds[at..][..len]);
             let points = tile.first..tile.first + tile.count;
-            let scale = E::from_f64(term.factor / term.size);
+            let scale = E::from_f64(term.scale());
             let sum = chamfer.weigh(points.clone(), stride, scale, values);
             seeds.fill(E::ZERO);
             for (i, row) in values.chunks_exact(stride).enumerate() {

@@ -5,7 +5,7 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
 use super::block::Block;
-use super::draws::Draws;
+use super::draws::{Deviations, Draws};
 use super::heads::Heads;
 use super::phase::Phase;
 use super::place::State;
@@ -143,9 +143,9 @@ impl Solver<'_> {
         }
     }
 
-    /// Deviations of the coefficients, drawn from the posterior about a state. The patch is taken as it is: what the prior
+    /// Deviations of all unknowns, drawn from the posterior about a state. The patch is taken as it is: what the prior
     /// holds at zero stays there.
-    pub(super) fn deviations(&mut self, state: &State) -> Option<Vec<Vec<f64>>> {
+    pub(super) fn deviations(&mut self, state: &State) -> Option<Deviations> {
         self.find_feet(&state.theta, &state.learned);
         self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
         let assembled = self.assemble(state, state.noise, Phase::Concave);

@@ -22,6 +22,15 @@ pub(super) struct Draws {
     random: StdRng,
 }
 
+/// Deviations of all unknowns, draw by draw.
+#[derive(Default)]
+pub(super) struct Deviations {
+    /// Of the coefficients.
+    pub(super) coefficients: Vec<Vec<f64>>,
+    /// Of the parameters of learned scalars.
+    pub(super) learned: Vec<Vec<f64>>,
+}
+
 impl Draws {
     /// Of so many coefficients and learned scalars. The same every time.
     pub(super) fn new(len: usize, learned: usize) -> Self {
@@ -94,7 +103,7 @@ mod tests {
             normal.add_stiffness(1, 9.0);
             normal.add_difference([0, 1], 2.0, 0.0);
             draws = normal.draws.take().unwrap();
-            for x in normal.factor().unwrap().deviations(&draws).unwrap() {
+            for x in normal.factor().unwrap().deviations(&draws).unwrap().coefficients {
                 (0..4).for_each(|i| products[i / 2][i % 2] += x[i / 2] * x[i % 2] / f64::from(rounds * COUNT as i32));
             }
         }
@@ -114,7 +123,7 @@ mod tests {
         normal.add_stiffness(1, 1.0);
         normal.add_dense(&[1.0, 1.0], 0.0, 1.0 / 3f64.sqrt());
         let draws = normal.draws.take().unwrap();
-        let spread = normal.factor().unwrap().deviations(&draws).unwrap();
+        let spread = normal.factor().unwrap().deviations(&draws).unwrap().coefficients;
         let mean = |of: &dyn Fn(&[f64]) -> f64| spread.iter().map(|x| of(x)).sum::<f64>() / COUNT as f64;
         // The sum has variance 2 / 7, the difference 2; 64 draws know them to within a sixth.
         let (sum, difference) = (mean(&|x| (x[0] + x[1]).powi(2)), mean(&|x| (x[0] - x[1]).powi(2)));

@@ -95,6 +95,12 @@ impl Group {
                 }
             }
         }
+        for ((row, bars), growth) in bars.iter_mut().enumerate().zip(&self.growth) {
+            for (by_learned, growth) in bars[count * stride..].chunks_exact_mut(stride).zip(growth) {
+                let values = &rows[row * stride..][..stride];
+                by_learned.iter_mut().zip(values).for_each(|(by, value)| *by -= value * growth);
+            }
+        }
         Evaluated { stride, rows, bars }
     }
 

@@ -24,6 +24,8 @@ pub(super) struct Group {
     pub(super) operators: Vec<Vec<(Exponents, f64)>>,
     /// By row: what it is divided by.
     pub(super) sigma: Vec<f64>,
+    /// By row: derivatives of that divisor's logarithm by the learned scalars; empty if it goes with none.
+    pub(super) growth: Vec<Vec<f64>>,
     /// Weights of the points; empty if each has rows of its own.
     pub(super) weights: Vec<f64>,
     /// What weighted points are tested with, their points cell by cell.
@@ -64,7 +66,8 @@ impl Group {
         for test in &mut tests {
             test.points.sort_by(|&(p, _), &(q, _)| cells(p).cmp(cells(q)));
         }
-        Self { schema, kernel, operators, sigma: vec![1.0; schema.rows], sites, weights, tests, degree, highest }
+        let (sigma, growth) = (vec![1.0; schema.rows], vec![Vec::new(); schema.rows]);
+        Self { schema, kernel, operators, sigma, growth, sites, weights, tests, degree, highest }
     }
 
     /// Other points than the group's own, without columns.

@@ -38,10 +38,12 @@ use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status, Warning};
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
+use crate::solve::vector;
 
 pub use prior::Patches;
 
 use course::End;
+use draws::Deviations;
 use heads::Heads;
 use normal::Factor;
 use solver::Solver;
@@ -103,8 +105,8 @@ pub(crate) struct LocalSolution {
     factor: Option<Factor>,
     /// Where the solver stopped.
     pub(crate) checkpoint: State,
-    /// Deviations of the coefficients, drawn from their posterior.
-    deviations: Vec<Vec<f64>>,
+    /// Of all unknowns, drawn from their posterior; none where there was no time for it.
+    deviations: Deviations,
 }
 
 /// What the caller sees after every step.
@@ -157,7 +159,8 @@ pub(crate) fn solve(
     // Of what is no solution, the spread about it says nothing.
     let solved = matches!(end.status, Status::Converged | Status::Budget);
     let has_time = end.status == Status::Converged || stage.has_time(course::BARS * end.longest);
-    let deviations = if solved && has_time { solver.deviations(&end.state).unwrap_or_default() } else { Vec::new() };
+    let deviations =
+        if solved && has_time { solver.deviations(&end.state).unwrap_or_default() } else { Deviations::default() };
     if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
         end.warnings.extend(solver.unresolved(&end.state, settings.cells));
     }
@@ -208,16 +211,27 @@ impl LocalSolution {
     }
 
     /// Standard deviations of a head at points in the engine's units, flat: root mean squares of draws from the posterior.
-    pub(crate) fn spread(&self, head: usize, points: &[f64]) -> Option<Vec<f64>> {
-        if self.deviations.is_empty() {
-            return None;
-        }
+    pub(crate) fn deviations(&self, head: usize, points: &[f64]) -> Option<Vec<f64>> {
+        let spread = self.spread(head, points);
+        let draws = self.deviations.coefficients.len();
+        (draws > 0).then(|| spread.chunks_exact(draws).map(vector::norm).collect())
+    }
+
+    /// A square root `X` of the covariance `X X^T` of a head's values at points in the engine's units, flat: a row for every
+    /// point, a column for every draw.
+    pub(crate) fn spread(&self, head: usize, points: &[f64]) -> Vec<f64> {
         let inputs = self.heads.lattices[head].dimensions();
-        let spread = |point: &[f64]| {
-            let squares = self.heads.values(head, point, &self.deviations).map(|x| x * x);
-            (squares.sum::<f64>() / self.deviations.len() as f64).sqrt()
-        };
-        Some(points.chunks_exact(inputs).map(spread).collect())
+        let draws = &self.deviations.coefficients;
+        let share = (draws.len() as f64).sqrt().recip();
+        let row = |point| self.heads.values(head, point, draws).map(|x| share * x);
+        points.chunks_exact(inputs).flat_map(row).collect()
+    }
+
+    /// The same of the learned scalars' parameters.
+    pub(crate) fn spread_of_learned(&self) -> Vec<f64> {
+        let draws = &self.deviations.learned;
+        let share = (draws.len() as f64).sqrt().recip();
+        (0..self.learned.len()).flat_map(|at| draws.iter().map(move |draw| share * draw[at])).collect()
     }
 
     /// Standard deviation of a learned scalar's parameter.

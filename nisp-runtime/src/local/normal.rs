@@ -8,7 +8,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::block::Block;
-use super::draws::Draws;
+use super::draws::{Deviations, Draws};
 use super::sorted::Sorted;
 use crate::simd::Isa;
 
@@ -268,18 +268,18 @@ impl Factor {
         Some(shared.iter().take(self.learned).copied().collect())
     }
 
-    /// Solutions for all right-hand sides: deviations of the coefficients, drawn from the posterior.
-    pub(super) fn deviations(&self, draws: &Draws) -> Option<Vec<Vec<f64>>> {
+    /// Solutions for all right-hand sides, drawn from the posterior.
+    pub(super) fn deviations(&self, draws: &Draws) -> Option<Deviations> {
         let solutions = self.factor.solve(draws.matrix());
-        (0..solutions.ncols())
-            .map(|draw| {
-                let mut deviation: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
-                let mut below = draws.below(draw);
-                below.resize(self.border.len(), 0.0);
-                self.share(&mut deviation, &below)?;
-                Some(deviation)
-            })
-            .collect()
+        let mut deviations = Deviations::default();
+        for draw in 0..solutions.ncols() {
+            let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
+            let mut below = draws.below(draw);
+            below.resize(self.border.len(), 0.0);
+            deviations.learned.push(self.share(&mut coefficients, &below)?);
+            deviations.coefficients.push(coefficients);
+        }
+        Some(deviations)
     }
 
     /// `vector . H^-1 vector`, of the coefficients alone.

@@ -9,7 +9,6 @@ use super::place::{Place, State};
 use super::refuse::refuse_what_networks_do;
 use super::surface::{Feet, Surface};
 use super::{Local, LocalError};
-use crate::engine::Learned;
 use crate::problem::Bound;
 use crate::schema::TermKind;
 
@@ -54,11 +53,7 @@ impl<'a> Solver<'a> {
             let points = (flat.as_slice(), bound.columns[at].as_slice());
             let measure = schema.terms.iter().find_map(|term| term.measure.as_ref());
             let weights = bound.weights(at, measure);
-            let mut group = Group::new(schema, kernel, &heads, points, weights, (&base, settings.tests));
-            for (term, size) in schema.terms.iter().zip(&bound.sizes[at]) {
-                let tolerance = if term.within.is_some() { 1.0 } else { TOLERANCE };
-                group.sigma[term.first..term.first + term.rows].fill(tolerance * size / term.weight.sqrt());
-            }
+            let group = Group::new(schema, kernel, &heads, points, weights, (&base, settings.tests));
             for (term, cloud) in schema.terms.iter().zip(&bound.clouds[at]) {
                 if !matches!(term.kind, TermKind::Chamfer { .. }) {
                     continue;
@@ -70,7 +65,10 @@ impl<'a> Solver<'a> {
         }
         let together = together(&heads, &base, settings.tests, bound);
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
-        Ok(Self { bound, settings, heads, groups, surfaces, normal, scalars: bound.scalars.clone(), cell })
+        let scalars = bound.scalars.clone();
+        let mut solver = Self { bound, settings, heads, groups, surfaces, normal, scalars, cell };
+        solver.set_learned(&vec![0.0; bound.learned.len()]);
+        Ok(solver)
     }
 
     /// Where the solver starts: all heads at their offsets.
@@ -94,13 +92,27 @@ impl<'a> Solver<'a> {
         self.surfaces.iter_mut().zip(feet).for_each(|(surface, feet)| surface.set_feet(feet));
     }
 
-    /// Takes over learned scalars; returns their derivatives by their parameters.
+    /// Takes over learned scalars, which tolerances of equations go with; returns their derivatives by their parameters.
     pub(super) fn set_learned(&mut self, parameters: &[f64]) -> Vec<f64> {
-        let set = |(learned, &parameter): (&Learned, &f64)| {
-            let (value, slope) = learned.map.at(parameter);
-            self.scalars[learned.slot] = value;
-            slope
-        };
-        self.bound.learned.iter().zip(parameters).map(set).collect()
+        let pairs = || self.bound.learned.iter().zip(parameters);
+        let found: Vec<(f64, f64)> = pairs().map(|(learned, &parameter)| learned.map.at(parameter)).collect();
+        for (learned, (value, _)) in self.bound.learned.iter().zip(&found) {
+            self.scalars[learned.slot] = *value;
+        }
+        for (at, group) in self.groups.iter_mut().enumerate() {
+            let terms = group.schema.terms.iter().zip(&self.bound.sizes[at]).zip(&self.bound.powers[at]);
+            for ((term, size), powers) in terms {
+                let grown = pairs().zip(powers.iter());
+                let (grown, growth): (Vec<f64>, Vec<f64>) =
+                    grown.map(|((learned, &parameter), power)| learned.map.grown(parameter, *power)).unzip();
+                let tolerance = if term.within.is_some() { 1.0 } else { TOLERANCE };
+                let sigma = tolerance * size * grown.iter().product::<f64>() / term.weight.sqrt();
+                for row in term.first..term.first + term.rows {
+                    group.sigma[row] = sigma;
+                    group.growth[row].clone_from(&growth);
+                }
+            }
+        }
+        found.into_iter().map(|(_, slope)| slope).collect()
     }
 }

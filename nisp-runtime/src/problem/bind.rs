@@ -2,6 +2,7 @@
 
 use thiserror::Error;
 
+use super::powers::{Powers, powers};
 use super::scale::{Data, Scales, scales};
 use super::{Binding, Problem, UnitSystem};
 use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling, is_exchangeable};
@@ -116,6 +117,8 @@ pub(crate) struct Bound {
     pub(crate) learned: Vec<Learned>,
     /// Natural size of each term's rows, by group and term.
     pub(crate) sizes: Vec<Vec<f64>>,
+    /// Powers of the learned scalars that the sizes of equations go with, by group and term; see [`super::powers`].
+    pub(crate) powers: Vec<Vec<Powers>>,
     /// Coordinates by group, in the engine's units, point by point.
     pub(crate) coordinates: Vec<Vec<f64>>,
     /// Coordinates of their partners, in the same way; empty unless the group is paired.
@@ -273,19 +276,16 @@ impl Bound {
             .zip(&problem.scalars)
             .map(|(scalar, value)| value.map_or(1.0, |value| value / system.size(&scalar.unit)))
             .collect();
-        let Scales { scaling, mut sizes } = scales(
-            &problem.scene,
-            &mut scalars,
-            Data { coordinates: &coordinates, partners: &partners, columns: &columns, clouds: &clouds },
-            inputs,
-        );
+        let data = Data { coordinates: &coordinates, partners: &partners, columns: &columns, clouds: &clouds };
+        let Scales { scaling, mut sizes } = scales(&problem.scene, &mut scalars, data, inputs);
         for (sizes, group) in sizes.iter_mut().zip(schema.groups) {
             for (size, term) in sizes.iter_mut().zip(group.terms) {
                 *size = term.within.map_or(*size, |within| within / system.size(&term.unit));
             }
         }
         let learned = learned(schema, &system, &scalars);
-        Ok(Self { problem, system, scaling, scalars, learned, sizes, coordinates, partners, columns, clouds })
+        let powers = powers(&problem.scene, &scalars, data, inputs, &learned);
+        Ok(Self { problem, system, scaling, scalars, learned, sizes, powers, coordinates, partners, columns, clouds })
     }
 
     /// The engine of this problem in precision `E`, for a network of the given shape.
@@ -317,9 +317,10 @@ impl Bound {
                 &self.partners[at],
                 &self.columns[at],
             );
-            let bound = self.sizes[at].iter().zip(&self.clouds[at]);
-            for (term, (size, cloud)) in group.terms.iter_mut().zip(bound) {
+            let bound = self.sizes[at].iter().zip(&self.powers[at]).zip(&self.clouds[at]);
+            for (term, ((size, powers), cloud)) in group.terms.iter_mut().zip(bound) {
                 term.size = *size;
+                term.powers = powers.clone();
                 if term.schema.kind == schema::TermKind::Integral && !self.raw_weights(at).is_empty() {
                     let weights = self.weights(at, term.schema.measure.as_ref());
                     term.point_weights = Some(weights.into_iter().map(E::from_f64).collect());

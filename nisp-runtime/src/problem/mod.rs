@@ -3,6 +3,7 @@
 mod beliefs;
 mod bind;
 mod evaluate;
+pub(crate) mod powers;
 mod scale;
 mod system;
 mod units;

@@ -9,14 +9,17 @@ mod course;
 mod layers;
 mod network;
 mod noise;
+mod open;
 mod place;
 mod promotion;
 mod resolution;
 mod settings;
 mod solution;
+mod spread;
 mod swing;
 mod undetermined;
 pub(crate) mod weigh;
+mod words;
 
 use std::time::Instant;
 
@@ -166,7 +169,7 @@ fn solve_local(
 ) -> Result<Solution, RecoverError> {
     let limits = course.left();
     let Course { fingerprint, from, monitor, .. } = course;
-    let found = local::solve(&bound, local, limits, from, &mut |progress| {
+    let mut found = local::solve(&bound, local, limits, from, &mut |progress| {
         monitor(Report {
             iteration: progress.iteration,
             elapsed_s: progress.elapsed_s,
@@ -174,5 +177,6 @@ fn solve_local(
             checkpoint: &|| Checkpoint { fingerprint, state: (progress.checkpoint)() },
         })
     })?;
+    found.warnings.extend(undetermined::of_local(&bound, &found));
     Ok(Solution::of_local(bound, found, settings, start))
 }

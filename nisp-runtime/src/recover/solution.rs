@@ -193,8 +193,8 @@ impl Solution {
             let mut estimates = self.evaluate(points);
             for (head, estimate) in estimates.iter_mut().enumerate() {
                 let outward = self.bound.system.outward(&estimate.unit);
-                let spread = local.spread(head, &inward);
-                estimate.deviations = spread.map(|spread| spread.into_iter().map(|x| x * outward).collect());
+                let deviations = local.deviations(head, &inward);
+                estimate.deviations = deviations.map(|all| all.into_iter().map(|x| x * outward).collect());
             }
             return estimates;
         }

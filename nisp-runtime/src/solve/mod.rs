@@ -27,4 +27,4 @@ pub mod projection;
 mod record;
 pub mod state;
 mod symmetric;
-mod vector;
+pub(crate) mod vector;

@@ -24,9 +24,9 @@ pub struct Direction {
     pub deviation: f64,
     /// Share of the sum of all variances.
     pub share: f64,
-    /// Share of the prior's variance of this pattern that the rows have removed: near 1 for what the data determine,
-    /// near 0 for what they say nothing about. Absent where some parameter has a flat prior.
-    pub learned: Option<f64>,
+    /// The pattern by columns of the spread, of unit length: another quantity moves by its row times this while the
+    /// amplitude moves by one standard deviation.
+    pub columns: Vec<f64>,
 }
 
 /// The posterior of quantities whose derivatives by the parameters are the rows of `derivatives` (row-major,
@@ -49,55 +49,35 @@ pub fn posterior(curvature: &Curvature, derivatives: &[f64]) -> Posterior {
     Posterior { by_noise: by_noise.into_iter().map(f64::sqrt).collect(), by_prior: by_prior.collect() }
 }
 
-/// The leading directions of the covariance of quantities given as for [`posterior`], largest first and `most` at most.
-pub fn directions(curvature: &Curvature, derivatives: &[f64], most: usize) -> Vec<Direction> {
+/// A square root `X` of the covariance `X X^T` of quantities given as for [`posterior`]: row-major, quantities x parameters.
+pub fn spread(curvature: &Curvature, derivatives: &[f64]) -> Vec<f64> {
     let mut spread = derivatives.to_vec();
-    let variances = curvature.variances(&mut spread);
-    let total: f64 = variances.iter().sum();
-    let leading = leading(&spread, variances.len(), curvature.parameters(), most).into_iter();
-    leading
-        .map(|(variance, shape)| Direction {
-            deviation: variance.sqrt(),
-            share: variance / total,
-            learned: prior_variance(curvature, derivatives, &shape).map(|prior| 1.0 - variance / prior),
-            shape,
-        })
-        .collect()
+    curvature.variances(&mut spread);
+    spread
 }
 
-/// Largest eigenvalues of `X X^T` with their eigenvectors, for `X` row-major of `count x len`, from the smaller of
-/// `X X^T` and `X^T X`.
-fn leading(x: &[f64], count: usize, len: usize, most: usize) -> Vec<(f64, Vec<f64>)> {
-    let view = dense::row_major(x, count, len);
+/// The leading direction of the covariance `X X^T` of `count` quantities, from its square root `X`, row-major; none where
+/// nothing moves.
+pub fn leading(spread: &[f64], count: usize) -> Option<Direction> {
+    let len = spread.len().checked_div(count).filter(|len| *len > 0)?;
+    let view = dense::row_major(spread, count, len);
     let small = count.min(len);
     let mut gram = vec![0.0; small * small];
     dense::gram(if count <= len { view } else { view.transpose() }, &mut gram);
-    let Some((values, vectors)) = dense::eigen(&gram, small) else {
-        return Vec::new();
-    };
-    let positive = values.into_iter().zip(vectors.chunks_exact(small.max(1))).filter(|(value, _)| *value > 0.0);
-    positive
-        .take(most)
-        .map(|(value, vector)| {
-            let mut shape = vec![0.0; count];
-            if count <= len {
-                shape.copy_from_slice(vector);
-            } else {
-                dense::times(x, vector, &mut shape);
-            }
-            let peak = shape.iter().copied().fold(0.0, |peak: f64, x| if x.abs() > peak.abs() { x } else { peak });
-            let scale = peak.signum() / vector::norm(&shape);
-            shape.iter_mut().for_each(|x| *x *= scale);
-            (value, shape)
-        })
-        .collect()
-}
-
-/// Variance of the amplitude of `shape` before any row was seen.
-fn prior_variance(curvature: &Curvature, derivatives: &[f64], shape: &[f64]) -> Option<f64> {
-    let mut pulled = vec![0.0; curvature.parameters()];
-    dense::transpose_times(derivatives, shape, &mut pulled);
-    let precision = &curvature.precision;
-    let proper = precision.iter().all(|a| *a > 0.0);
-    proper.then(|| pulled.iter().zip(precision).map(|(x, a)| x * x / a).sum())
+    let (values, vectors) = dense::eigen(&gram, small)?;
+    let variance = values.first().copied().filter(|value| *value > 0.0)?;
+    let deviation = variance.sqrt();
+    let (mut shape, mut columns) = (vec![0.0; count], vec![0.0; len]);
+    if count <= len {
+        shape.copy_from_slice(&vectors[..small]);
+        dense::transpose_times(spread, &shape, &mut columns);
+        columns.iter_mut().for_each(|x| *x /= deviation);
+    } else {
+        columns.copy_from_slice(&vectors[..small]);
+        dense::times(spread, &columns, &mut shape);
+        shape.iter_mut().for_each(|x| *x /= deviation);
+    }
+    let sign = shape[vector::largest(&shape)].signum();
+    shape.iter_mut().chain(&mut columns).for_each(|x| *x *= sign);
+    Some(Direction { shape, deviation, share: variance / vector::dot(spread, spread), columns })
 }

@@ -17,6 +17,11 @@ pub(crate) fn distance<E: Real>(a: &[E], b: &[E]) -> f64 {
     sum_pairs(a, b, |x, y| (x - y) * (x - y)).sqrt()
 }
 
+/// Where the largest magnitude is; the first of equals, and 0 where there is none.
+pub(crate) fn largest(x: &[f64]) -> usize {
+    x.iter().enumerate().fold((0, 0.0), |best, (at, x)| if x.abs() > best.1 { (at, x.abs()) } else { best }).0
+}
+
 /// Sum of a function of each pair.
 #[inline(always)]
 fn sum_pairs<E: Real>(a: &[E], b: &[E], of: impl Fn(f64, f64) -> f64) -> f64 {
