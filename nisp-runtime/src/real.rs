@@ -37,6 +37,9 @@ pub trait Real:
     const ONE: Self;
     /// Distance from one to the next larger number.
     const EPSILON: Self;
+    /// Products that are summed before their sum is added to those before: a long sum of few bits loses to rounding what
+    /// short ones keep.
+    const SUMMED: usize;
     /// Name as users write it: `f32` or `f64`.
     const NAME: &'static str;
     /// Rounds to this type.
@@ -52,11 +55,12 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($type:ident) => {
+    ($type:ident, $summed:expr) => {
         impl Real for $type {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const EPSILON: Self = $type::EPSILON;
+            const SUMMED: usize = $summed;
             const NAME: &'static str = stringify!($type);
             #[inline(always)]
             fn from_f64(x: f64) -> Self {
@@ -82,5 +86,5 @@ macro_rules! real {
     };
 }
 
-real!(f32);
-real!(f64);
+real!(f32, 16);
+real!(f64, usize::MAX);

@@ -1,5 +1,6 @@
 //! The innermost loops: a block of C held in registers while the inner index runs.
 
+use crate::real::Real;
 use crate::simd::Simd;
 
 /// Where a block lives and how to step through it. Distances are in elements.
@@ -58,34 +59,42 @@ unsafe fn with_rows<V: Simd, const ROWS: usize, const VECTORS: usize>(at: Block<
 /// As for [`block`].
 #[inline(always)]
 unsafe fn accumulate<V: Simd, const ROWS: usize, const VECTORS: usize>(at: Block<V::Elem>) {
-    let mut sums = [[V::lit(0.0); VECTORS]; ROWS];
     let (mut a, mut b) = (at.a, at.b);
-    for _ in 0..at.inner {
-        // SAFETY: the caller vouches for `inner` columns of A and rows of B; the pointers may go one step past them,
-        // but are not read there.
-        unsafe {
-            let mut right = [V::lit(0.0); VECTORS];
-            for (v, right) in right.iter_mut().enumerate() {
-                *right = V::load(b.add(v * V::LANES));
+    let (mut left, mut add) = (at.inner, at.add);
+    loop {
+        let count = left.min(V::Elem::SUMMED);
+        let mut sums = [[V::lit(0.0); VECTORS]; ROWS];
+        for _ in 0..count {
+            // SAFETY: the caller vouches for `inner` columns of A and rows of B; the pointers may go one step past them,
+            // but are not read there.
+            unsafe {
+                let mut right = [V::lit(0.0); VECTORS];
+                for (v, right) in right.iter_mut().enumerate() {
+                    *right = V::load(b.add(v * V::LANES));
+                }
+                for (i, sums) in sums.iter_mut().enumerate() {
+                    let left = V::splat(*a.add(i * at.a_row));
+                    for (sum, right) in sums.iter_mut().zip(right) {
+                        *sum = left.mul_add(right, *sum);
+                    }
+                }
+                a = a.wrapping_add(at.a_column);
+                b = b.wrapping_add(at.b_row);
             }
-            for (i, sums) in sums.iter_mut().enumerate() {
-                let left = V::splat(*a.add(i * at.a_row));
-                for (sum, right) in sums.iter_mut().zip(right) {
-                    *sum = left.mul_add(right, *sum);
+        }
+        for (i, sums) in sums.iter().enumerate() {
+            for (v, &sum) in sums.iter().enumerate() {
+                // SAFETY: the caller vouches for these rows and vectors of C.
+                unsafe {
+                    let c = at.c.add(i * at.c_row + v * V::LANES);
+                    let sum = if add { V::load(c).add(sum) } else { sum };
+                    sum.store(c);
                 }
             }
-            a = a.wrapping_add(at.a_column);
-            b = b.wrapping_add(at.b_row);
         }
-    }
-    for (i, sums) in sums.iter().enumerate() {
-        for (v, &sum) in sums.iter().enumerate() {
-            // SAFETY: the caller vouches for these rows and vectors of C.
-            unsafe {
-                let c = at.c.add(i * at.c_row + v * V::LANES);
-                let sum = if at.add { V::load(c).add(sum) } else { sum };
-                sum.store(c);
-            }
+        (left, add) = (left - count, true);
+        if left == 0 {
+            break;
         }
     }
 }

@@ -170,10 +170,9 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
             }
             let samples = format!("{sizes}; rounding the weights to f32 changes {rounded:.1e}");
             let row = Row::new(what, samples, worst, target);
-            // Weights are rounded once, the sums that they are part of once more in every layer.
-            let bounded = "such a network amplifies rounding: within 20 times what rounding nothing but its weights to \
-                           f32 does to the exact derivative; give f64";
-            rows.push(if factor > 1.0 { row.missing(target.max(20.0 * rounded), bounded) } else { row });
+            // What weights in this precision cannot say, sums of them cannot either.
+            let bounded = "rounding nothing but the weights to f32 changes the exact derivative by more; give f64";
+            rows.push(if rounded > target { row.missing(rounded, bounded) } else { row });
         }
     }
     let worst = networks(extent).into_iter().map(|a| directional_error(a, extent.pick(9, 40))).fold(0.0, f64::max);
