@@ -7,16 +7,17 @@ use crate::real::Real;
 /// Defines a function that runs `$body`, an `#[inline(always)]` function with the same arguments, compiled for the
 /// instruction set found at run time.
 macro_rules! widest {
-    ($vis:vis fn $name:ident $(<$e:ident: $bound:ident>)? ($($arg:ident: $type:ty),* $(,)?) = $body:ident) => {
-        $vis fn $name $(<$e: $bound>)? ($($arg: $type),*) {
+    ($(#[$doc:meta])* $vis:vis fn $name:ident $(<$e:ident: $bound:ident>)? ($($arg:ident: $type:ty),* $(,)?) $(-> $out:ty)? = $body:ident) => {
+        $(#[$doc])*
+        $vis fn $name $(<$e: $bound>)? ($($arg: $type),*) $(-> $out)? {
             #[cfg(target_arch = "x86_64")]
             {
                 #[target_feature(enable = "avx512f,avx512dq,avx512vl")]
-                fn avx512 $(<$e: $bound>)? ($($arg: $type),*) {
+                fn avx512 $(<$e: $bound>)? ($($arg: $type),*) $(-> $out)? {
                     $body($($arg),*)
                 }
                 #[target_feature(enable = "avx2")]
-                fn avx2 $(<$e: $bound>)? ($($arg: $type),*) {
+                fn avx2 $(<$e: $bound>)? ($($arg: $type),*) $(-> $out)? {
                     $body($($arg),*)
                 }
                 if is_x86_feature_detected!("avx512f")

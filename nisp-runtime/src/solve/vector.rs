@@ -1,19 +1,30 @@
 //! Sums over long vectors, in a fixed order.
 //!
-//! Eight partial sums let the compiler use vector registers of any width; because their order is part of the program
-//! and nothing is fused, every machine gives the same bits.
+//! Partial sums let the compiler use vector registers of any width; because their order is part of the program and nothing
+//! is fused, every machine gives the same bits.
 
 use crate::real::Real;
+use crate::wide::widest;
 
 const LANES: usize = 8;
 
-/// `a . b` in double precision.
-pub(crate) fn dot<E: Real>(a: &[E], b: &[E]) -> f64 {
+widest! {
+    /// `a . b` in double precision.
+    pub(crate) fn dot<E: Real>(a: &[E], b: &[E]) -> f64 = dot_loop
+}
+
+#[inline(always)]
+fn dot_loop<E: Real>(a: &[E], b: &[E]) -> f64 {
     sum_pairs(a, b, |x, y| x * y)
 }
 
-/// Euclidean distance.
-pub(crate) fn distance<E: Real>(a: &[E], b: &[E]) -> f64 {
+widest! {
+    /// Euclidean distance.
+    pub(crate) fn distance<E: Real>(a: &[E], b: &[E]) -> f64 = distance_loop
+}
+
+#[inline(always)]
+fn distance_loop<E: Real>(a: &[E], b: &[E]) -> f64 {
     sum_pairs(a, b, |x, y| (x - y) * (x - y)).sqrt()
 }
 
@@ -22,19 +33,25 @@ pub(crate) fn largest(x: &[f64]) -> usize {
     x.iter().enumerate().fold((0, 0.0), |best, (at, x)| if x.abs() > best.1 { (at, x.abs()) } else { best }).0
 }
 
-/// Sum of a function of each pair.
+/// Sum of a function of each pair. Single precision has four times as many partial sums, which hide that they are widened.
 #[inline(always)]
 fn sum_pairs<E: Real>(a: &[E], b: &[E], of: impl Fn(f64, f64) -> f64) -> f64 {
-    let mut lanes = [0.0; LANES];
-    let (a_blocks, a_rest) = a.as_chunks::<LANES>();
-    let (b_blocks, b_rest) = b.as_chunks::<LANES>();
+    if size_of::<E>() == 4 { sum_in::<E, 32>(a, b, of) } else { sum_in::<E, LANES>(a, b, of) }
+}
+
+/// The same in so many partial sums, a multiple of eight.
+#[inline(always)]
+fn sum_in<E: Real, const SUMS: usize>(a: &[E], b: &[E], of: impl Fn(f64, f64) -> f64) -> f64 {
+    let mut sums = [0.0; SUMS];
+    let (a_blocks, a_rest) = a.as_chunks::<SUMS>();
+    let (b_blocks, b_rest) = b.as_chunks::<SUMS>();
     for (x, y) in a_blocks.iter().zip(b_blocks) {
-        for lane in 0..LANES {
-            lanes[lane] += of(x[lane].to_f64(), y[lane].to_f64());
+        for lane in 0..SUMS {
+            sums[lane] += of(x[lane].to_f64(), y[lane].to_f64());
         }
     }
     let rest: f64 = a_rest.iter().zip(b_rest).map(|(x, y)| of(x.to_f64(), y.to_f64())).sum();
-    sum_lanes(&lanes) + rest
+    sums.as_chunks::<LANES>().0.iter().map(sum_lanes).sum::<f64>() + rest
 }
 
 /// Sum of eight lanes, pairwise by halves.
@@ -48,16 +65,26 @@ pub(crate) fn norm<E: Real>(a: &[E]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// `y += factor * x`
-pub(crate) fn add_scaled<E: Real>(y: &mut [E], factor: f64, x: &[E]) {
+widest! {
+    /// `y += factor * x`
+    pub(crate) fn add_scaled<E: Real>(y: &mut [E], factor: f64, x: &[E]) = add_scaled_loop
+}
+
+#[inline(always)]
+fn add_scaled_loop<E: Real>(y: &mut [E], factor: f64, x: &[E]) {
     let factor = E::from_f64(factor);
     for (y, x) in y.iter_mut().zip(x) {
         *y += factor * *x;
     }
 }
 
-/// `out = origin + factor * direction`
-pub(crate) fn along<E: Real>(out: &mut [E], origin: &[E], factor: f64, direction: &[E]) {
+widest! {
+    /// `out = origin + factor * direction`
+    pub(crate) fn along<E: Real>(out: &mut [E], origin: &[E], factor: f64, direction: &[E]) = along_loop
+}
+
+#[inline(always)]
+fn along_loop<E: Real>(out: &mut [E], origin: &[E], factor: f64, direction: &[E]) {
     let factor = E::from_f64(factor);
     for ((out, x), d) in out.iter_mut().zip(origin).zip(direction) {
         *out = *x + factor * *d;
