@@ -93,7 +93,7 @@ impl<E: Rival> Layer<E> {
         let x = Left::rows(&self.x, stride);
         let gradient_shape = Shape { rows: width, columns: width, inner: rows };
         [
-            best(|| gemm(isa, by_weights, x, Right::Packed(&forward), &mut self.y, stride, Write::Set)),
+            best(|| gemm(isa, by_weights, x, Right::Packed(&forward), &mut self.y, stride, Write::SetFromShortSums)),
             best(|| gemm(isa, by_weights, x, Right::Packed(&adjoint), &mut self.y, stride, Write::Set)),
             best(|| {
                 let right = Right::Rows { elements: &self.x, stride };

@@ -9,7 +9,7 @@
 //! | adjoint, rows by W | adjoint rows, as they lie | W, packed |
 //! | gradient of W, `+=` | adjoint rows transposed: row stride 1 | rows, as they lie |
 //!
-//! Each element of C is one sum over the inner index in ascending order (in runs of [`RUN`] that are added to C one
+//! Each element of C is one sum over the inner index in ascending order (in runs of [`RUN`] or fewer that are added to C one
 //! after the other): for a given instruction set, its bits depend on nothing but its own row of A and column of B.
 //! Blocks only decide what stays in registers (see `block`) and in the nearest cache (see `sweep`).
 
@@ -75,6 +75,9 @@ pub enum Right<'a, E: Real> {
 pub enum Write {
     /// They are replaced.
     Set,
+    /// The same, from sums of few products where the type has few bits ([`Real::SUMMED`]): some per cent slower, and rounding
+    /// takes a fraction.
+    SetFromShortSums,
     /// The product is added to them.
     Add,
 }
@@ -110,6 +113,7 @@ pub fn gemm<E: Real>(isa: Isa, shape: Shape, a: Left<E>, b: Right<E>, c: &mut [E
         c: c.as_mut_ptr(),
         c_row: stride,
         add: write == Write::Add,
+        summed: if write == Write::SetFromShortSums { E::SUMMED } else { usize::MAX },
     };
     // SAFETY: the assertions above cover every element that the shape reaches.
     unsafe { E::multiply(isa, task) };
@@ -137,6 +141,8 @@ pub(crate) struct Task<E> {
     c: *mut E,
     c_row: usize,
     add: bool,
+    /// Products that are summed before their sum is added to others.
+    summed: usize,
 }
 
 /// Compiles the products here, once per element type, and not in every crate that calls them.

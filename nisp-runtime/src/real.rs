@@ -37,8 +37,8 @@ pub trait Real:
     const ONE: Self;
     /// Distance from one to the next larger number.
     const EPSILON: Self;
-    /// Products that are summed before their sum is added to those before: a long sum of few bits loses to rounding what
-    /// short ones keep.
+    /// Products that are summed before their sum is added to those before, where that is asked for: a long sum of few bits
+    /// loses to rounding what short ones keep.
     const SUMMED: usize;
     /// Name as users write it: `f32` or `f64`.
     const NAME: &'static str;

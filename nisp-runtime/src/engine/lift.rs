@@ -7,6 +7,7 @@ use super::adjoint::Parts;
 use super::buffers::Buffers;
 use super::tile::{Network, Tile};
 use crate::features::Features;
+use crate::gemm::Write;
 use crate::layer::{Affine, AffineAdjoint, Layer, LayerAdjoint, Shape, row_distance};
 use crate::network::{Matrix, ProductAdjoint, multiply};
 use crate::real::Real;
@@ -39,7 +40,15 @@ impl<E: Real> Network<'_, E> {
                 }
                 Some(features) => {
                     let lds = [features.shape.ld, shape.ld];
-                    multiply(self.isa, rows, &buffers.features, &features.matrices[j], value, lds);
+                    multiply(
+                        self.isa,
+                        rows,
+                        &buffers.features,
+                        &features.matrices[j],
+                        value,
+                        lds,
+                        Write::SetFromShortSums,
+                    );
                     kernel.layer(self.isa, Layer { shape, argument: value, bias, slope, output }, None, false);
                 }
             }

@@ -1,6 +1,5 @@
 //! The innermost loops: a block of C held in registers while the inner index runs.
 
-use crate::real::Real;
 use crate::simd::Simd;
 
 /// Where a block lives and how to step through it. Distances are in elements.
@@ -14,6 +13,8 @@ pub(super) struct Block<E> {
     pub(super) c: *mut E,
     pub(super) c_row: usize,
     pub(super) add: bool,
+    /// Products that are summed before their sum goes to C.
+    pub(super) summed: usize,
 }
 
 /// Most rows of a block: with two vectors a row, two for B and one for A, all registers are in use.
@@ -62,7 +63,7 @@ unsafe fn accumulate<V: Simd, const ROWS: usize, const VECTORS: usize>(at: Block
     let (mut a, mut b) = (at.a, at.b);
     let (mut left, mut add) = (at.inner, at.add);
     loop {
-        let count = left.min(V::Elem::SUMMED);
+        let count = left.min(at.summed);
         let mut sums = [[V::lit(0.0); VECTORS]; ROWS];
         for _ in 0..count {
             // SAFETY: the caller vouches for `inner` columns of A and rows of B; the pointers may go one step past them,

@@ -65,6 +65,7 @@ unsafe fn sweep_panel<V: Simd, const VECTORS: usize>(task: &Task<V::Elem>, colum
                 c: task.c.add(row * task.c_row + column),
                 c_row: task.c_row,
                 add: task.add || run.start > 0,
+                summed: task.summed,
             };
             block::<V, VECTORS>(height, at);
         }

@@ -116,12 +116,12 @@ impl<E: Real> Weights<E> {
 impl<E: Real> Hidden<E> {
     /// `out = rows W^T`
     pub(crate) fn forward(&self, isa: Isa, rows: usize, ld: usize, input: &[E], out: &mut [E]) {
-        multiply(isa, rows, input, &self.forward, out, [ld; 2]);
+        multiply(isa, rows, input, &self.forward, out, [ld; 2], Write::SetFromShortSums);
     }
 
     /// Adjoint of [`Hidden::forward`]: `input_bar = out_bar W`
     pub(crate) fn backward(&self, isa: Isa, rows: usize, ld: usize, out_bar: &[E], input_bar: &mut [E]) {
-        multiply(isa, rows, out_bar, &self.backward, input_bar, [ld; 2]);
+        multiply(isa, rows, out_bar, &self.backward, input_bar, [ld; 2], Write::Set);
     }
 }
 
@@ -133,9 +133,10 @@ pub(crate) fn multiply<E: Real>(
     matrix: &Packed<E>,
     out: &mut [E],
     [input_ld, out_ld]: [usize; 2],
+    write: Write,
 ) {
     let shape = gemm::Shape { rows, columns: matrix.columns(), inner: matrix.inner() };
-    gemm(isa, shape, Left::rows(input, input_ld), Right::Packed(matrix), out, out_ld, Write::Set);
+    gemm(isa, shape, Left::rows(input, input_ld), Right::Packed(matrix), out, out_ld, write);
 }
 
 /// The other adjoint of a layer's product, by its weights and biases.
