@@ -37,11 +37,12 @@ pub(super) fn powers(
     };
     let pairs: Vec<_> = learned
         .iter()
-        .map(|learned| learned.map.is_positive().then(|| (sizes(learned, 1.0 + STEP), sizes(learned, 1.0 - STEP))))
+        .map(|learned| learned.map.is_positive().then(|| [1.0 + STEP, 1.0 - STEP].map(|factor| sizes(learned, factor))))
         .collect();
-    let power = |group: usize, term: usize, pair: &Option<(Vec<Vec<f64>>, Vec<Vec<f64>>)>| {
-        let Some((above, below)) = pair else { return 0.0 };
-        let power = (above[group][term] / below[group][term]).ln() / (2.0 * STEP.atanh());
+    let power = |group: usize, term: usize, pair: &Option<[Vec<Vec<f64>>; 2]>| {
+        let Some(pair) = pair else { return 0.0 };
+        let [above, below] = pair.each_ref().map(|sizes| sizes[group][term]);
+        let power = (above / below).ln() / (2.0 * STEP.atanh());
         if power.is_finite() && power.abs() > NONE { power } else { 0.0 }
     };
     let of_term = |group: usize, term: usize| -> Powers {

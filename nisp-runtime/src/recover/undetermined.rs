@@ -56,9 +56,9 @@ impl View<'_> {
 
     /// What a block says, if it is a condition that could be left out.
     fn condition(&self, block: usize) -> Option<String> {
-        let terms =
+        let mut terms =
             self.engine.groups.iter().flat_map(|group| group.terms.iter().map(|term| (group.schema, term.schema)));
-        let (group, schema) = terms.skip(block).next()?;
+        let (group, schema) = terms.nth(block)?;
         let few = self.engine.blocks()[block].rows.len() <= FEW_ROWS;
         if group.is_beliefs() {
             return Some(format!("what is believed of `{}`", schema.name));
