@@ -136,10 +136,12 @@ impl Given<'_> {
             Some((path, Number { key, .. })) => {
                 Err(PrepareError::SampleKey { path: path.to_path_buf(), key, name, unit })
             }
-            None if scalar.is_some_and(|scalar| matches!(scalar.origin, Origin::Given(None))) => {
-                Err(PrepareError::Missing { name, unit })
-            }
-            None => Ok(None),
+            None => match scalar.map(|scalar| &scalar.origin) {
+                Some(Origin::Given(None) | Origin::Learned { start: None, .. }) => {
+                    Err(PrepareError::Missing { name, unit })
+                }
+                _ => Ok(None),
+            },
         }
     }
 }

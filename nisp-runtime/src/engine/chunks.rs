@@ -5,6 +5,7 @@ use crate::aligned::AlignedVec;
 use crate::layer::row_distance;
 use crate::network::Layout;
 use crate::real::Real;
+use crate::wide::add_rows;
 
 /// Most chunks that a step is cut into; more threads than this find no work.
 const CHUNKS: usize = 16;
@@ -37,6 +38,18 @@ pub(super) fn tile_points<E: Real>(layout: &Layout, channels: usize, points: usi
     let fit = (TILE_BYTES / bytes).clamp(4, 64);
     let share = points.div_ceil(CHUNKS).next_multiple_of(4);
     fit.min(share).max(4).min(points.max(1))
+}
+
+/// Does the work of all chunks and adds their gradients up in the first: in a fixed tree, whatever the threads, and each sum as
+/// soon as both of its parts are there.
+pub(super) fn add_up<E: Real>(chunks: &mut [Chunk<E>], work: &(impl Fn(&mut Chunk<E>) + Sync)) {
+    if let [chunk] = chunks {
+        return work(chunk);
+    }
+    let (left, right) = chunks.split_at_mut(chunks.len().next_power_of_two() / 2);
+    rayon::join(|| add_up(left, work), || add_up(right, work));
+    let right = &right[0].gradient;
+    add_rows(&mut left[0].gradient, right, right.len());
 }
 
 /// Cuts all tiles of all groups into chunks of about equal work.

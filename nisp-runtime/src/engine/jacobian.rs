@@ -6,9 +6,10 @@
 use rayon::prelude::*;
 
 use super::tile::{Network, Tile};
-use super::{Engine, Integral, TileRange, covers, weigh, with_buffers};
+use super::{Engine, Integral, TileRange, add_up, covers, weigh, with_buffers};
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
+use crate::solve::vector;
 
 /// Lets tiles write their own rows of a shared matrix.
 #[derive(Clone, Copy)]
@@ -192,7 +193,7 @@ impl Engine<f64> {
         let slopes = self.learned_slopes(theta);
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         let (groups, buffers) = (&self.groups, &self.buffers);
-        self.chunks.par_iter_mut().for_each(|chunk| {
+        add_up(&mut self.chunks, &|chunk| {
             chunk.gradient.fill(0.0);
             with_buffers(buffers, |buffers| {
                 for &TileRange { group, first, count } in &chunk.tiles {
@@ -207,7 +208,6 @@ impl Engine<f64> {
                 }
             });
         });
-        self.reduce();
         let total = &mut self.chunks[0].gradient;
         for (i, slope) in slopes.iter().enumerate() {
             total[self.layout.learned_at + i] *= slope;
@@ -220,10 +220,7 @@ impl Engine<f64> {
             let weight = u[starts[integral.group][integral.row]];
             out.iter_mut().zip(&row).for_each(|(out, row)| *out += weight * row);
         }
-        match out.iter().all(|x| x.is_finite()) {
-            true => Ok(()),
-            false => Err(Fault::gradient("gradient", None)),
-        }
+        if vector::all_finite(out) { Ok(()) } else { Err(Fault::gradient("gradient", None)) }
     }
 }
 

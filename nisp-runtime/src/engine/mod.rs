@@ -30,7 +30,7 @@ use rayon::prelude::*;
 
 use buffers::{Buffers, Extent, with_buffers};
 pub(crate) use chamfer::Chamfer;
-use chunks::{Chunk, TileRange, cut, tile_points};
+use chunks::{Chunk, TileRange, add_up, cut, tile_points};
 pub use group::{BoundGroup, Scaling};
 use integral::{Integral, Integrals, covers, seed_integrals};
 pub(crate) use learned::{Learned, LearnedMap};
@@ -45,7 +45,7 @@ use crate::real::Real;
 use crate::simd::Isa;
 use crate::solve::fault::Fault;
 use crate::solve::objective::Block;
-use crate::wide::add_rows;
+use crate::solve::vector;
 
 /// A scene bound to points and data, ready to be evaluated at any parameters.
 pub struct Engine<E: Real> {
@@ -176,7 +176,6 @@ impl<E: Real> Engine<E> {
         self.integrate()?;
         self.run(true);
         let loss = self.collect()?;
-        self.reduce();
         self.slope_targets();
         let total = &mut self.chunks[0].gradient;
         for integral in &self.integrals.rows {
@@ -191,18 +190,15 @@ impl<E: Real> Engine<E> {
             total[self.layout.learned_at + i] *= E::from_f64(slope);
         }
         self.layout.pad_adjoint(theta, total, gradient);
-        match gradient.iter().all(|g| g.is_finite()) {
-            true => Ok(loss),
-            false => Err(Fault::gradient("gradient", None)),
-        }
+        if vector::all_finite(gradient) { Ok(loss) } else { Err(Fault::gradient("gradient", None)) }
     }
 
-    /// Runs all chunks, forward only or with the adjoint.
+    /// Runs all chunks: forward only, or with the adjoint, which adds their gradients up in the first.
     fn run(&mut self, adjoint: bool) {
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
         let (groups, buffers, integrals) = (&self.groups, &self.buffers, &self.integrals.rows);
         let first_term = &self.first_terms;
-        self.chunks.par_iter_mut().for_each(|chunk| {
+        let work = |chunk: &mut Chunk<E>| {
             with_buffers(buffers, |buffers| {
                 if adjoint {
                     chunk.gradient.fill(E::ZERO);
@@ -224,7 +220,8 @@ impl<E: Real> Engine<E> {
                     }
                 }
             });
-        });
+        };
+        if adjoint { add_up(&mut self.chunks, &work) } else { self.chunks.par_iter_mut().for_each(work) }
     }
 
     /// Adds up the chunks' shares of the loss.
@@ -249,20 +246,6 @@ impl<E: Real> Engine<E> {
         }
         let loss: f64 = self.chunks.iter().flat_map(|chunk| &chunk.shares).sum::<f64>() + whole;
         if loss.is_finite() { Ok(loss) } else { Err(Fault::residual("loss", None)) }
-    }
-
-    /// Adds the chunks' gradients in a fixed tree into the first.
-    fn reduce(&mut self) {
-        let mut distance = 1;
-        while distance < self.chunks.len() {
-            self.chunks.par_chunks_mut(2 * distance).for_each(|pair| {
-                if pair.len() > distance {
-                    let (left, right) = pair.split_at_mut(distance);
-                    add_rows(&mut left[0].gradient, &right[0].gradient, self.layout.padded_len);
-                }
-            });
-            distance *= 2;
-        }
     }
 
     /// `group.term`, for messages.

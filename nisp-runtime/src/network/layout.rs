@@ -147,10 +147,9 @@ impl Layout {
     pub fn pad<E: Real>(&self, theta: &[E], padded: &mut [E]) {
         for m in self.matrices() {
             for i in 0..m.rows {
-                let scale = m.scale(theta, i);
-                for j in 0..m.columns {
-                    padded[m.padded_at(i, j)] = scale * theta[m.weights + i * m.columns + j];
-                }
+                let (scale, weights) = (m.scale(theta, i), &theta[m.row(i)]);
+                let places = padded[m.padded_at(i, 0)..].iter_mut().step_by(m.padded_column);
+                places.zip(weights).for_each(|(place, weight)| *place = scale * *weight);
                 padded[m.padded_bias + i] = theta[m.bias + i];
             }
         }
@@ -161,16 +160,12 @@ impl Layout {
     pub fn pad_adjoint<E: Real>(&self, theta: &[E], padded: &[E], gradient: &mut [E]) {
         for m in self.matrices() {
             for i in 0..m.rows {
-                let scale = m.scale(theta, i);
-                let mut scale_bar = E::ZERO;
-                for j in 0..m.columns {
-                    let at = m.weights + i * m.columns + j;
-                    let bar = scale * padded[m.padded_at(i, j)];
-                    gradient[at] = bar;
-                    scale_bar += bar * theta[at];
-                }
+                let (scale, bars) = (m.scale(theta, i), &mut gradient[m.row(i)]);
+                let places = padded[m.padded_at(i, 0)..].iter().step_by(m.padded_column);
+                bars.iter_mut().zip(places).for_each(|(bar, place)| *bar = scale * *place);
                 if let Some(scales) = m.scales {
-                    gradient[scales + i] = scale_bar;
+                    let by_scale = bars.iter().zip(&theta[m.row(i)]).map(|(bar, weight)| *bar * *weight).sum();
+                    gradient[scales + i] = by_scale;
                 }
                 gradient[m.bias + i] = padded[m.padded_bias + i];
             }
@@ -180,6 +175,12 @@ impl Layout {
 }
 
 impl Matrix {
+    /// A row's weights in `theta`.
+    fn row(&self, row: usize) -> Range<usize> {
+        let first = self.weights + row * self.columns;
+        first..first + self.columns
+    }
+
     /// Index of an entry in the padded vector.
     #[inline(always)]
     pub(crate) fn padded_at(&self, row: usize, column: usize) -> usize {

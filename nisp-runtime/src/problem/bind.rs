@@ -10,6 +10,7 @@ use crate::kernel::Precision;
 use crate::network::{Architecture, Inputs, Layout};
 use crate::schema::{self, Origin};
 use crate::simd::Isa;
+use crate::solve::objective::LeastSquares;
 
 /// Why a problem cannot be solved as it is bound.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -382,8 +383,7 @@ impl Bound {
     pub(crate) fn readout(&self, architecture: Architecture, points: &[f64]) -> Engine<f64> {
         let scene = self.problem.scene;
         let coordinates = scene.schema.coordinates;
-        let factors: Vec<f64> = coordinates.iter().map(|c| self.system.inward(&c.unit)).collect();
-        let points: Vec<f64> = points.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect();
+        let points = self.inward(points);
         let isa = Isa::detect();
         let lanes = isa.lanes::<f64>();
         let layout = Layout::new(architecture, coordinates.len(), scene.schema.heads.len(), self.learned.len(), lanes);
@@ -392,5 +392,20 @@ impl Bound {
             kernel.map(|kernel| BoundGroup::new(kernel, &scene.schema.outputs, &self.scaling, &points, &[], &[]));
         let scalars = self.scalars.clone();
         Engine::new(isa, layout, groups.into_iter().collect(), scalars, self.learned.clone())
+    }
+
+    /// Values of all heads at points, head by head, and their derivatives by the parameters, row by row; none where they are
+    /// not finite.
+    pub(crate) fn sensitivities(
+        &self,
+        architecture: Architecture,
+        theta: &[f64],
+        points: &[f64],
+    ) -> Option<(Vec<f64>, Vec<f64>)> {
+        let mut readout: Engine<f64> = self.readout(architecture, points);
+        let rows = readout.row_count();
+        let (mut values, mut derivatives) = (vec![0.0; rows], vec![0.0; rows * theta.len()]);
+        readout.jacobian(theta, &mut values, &mut derivatives).ok()?;
+        Some((values, derivatives))
     }
 }

@@ -36,19 +36,19 @@ pub(super) enum What {
 impl Open {
     /// All that are open: learned scalars, and heads on their own.
     pub(super) fn all(spread: &Spread) -> Vec<Self> {
-        let mut found: Vec<Self> = Self::of_learned(spread).into_iter().collect();
-        for (head, (values, rows)) in spread.heads.iter().enumerate() {
-            // A head that only follows open scalars is told of with them.
-            if found.iter().any(|open| open.moved(rows).is_some()) {
-                continue;
-            }
-            let Some(direction) = leading(rows, values.len()) else { continue };
-            let size = vector::norm(values);
-            if OPEN.iter().any(|(share, large)| direction.share > *share && direction.deviation > large * size) {
-                found.push(Self { what: What::Head(head), direction });
-            }
-        }
-        found
+        let learned = Self::of_learned(spread);
+        // A head that only follows open scalars is told of with them.
+        let follows = |rows: &[f64]| learned.as_ref().is_some_and(|open| open.moved(rows).is_some());
+        let alone = spread.heads.iter().enumerate().filter(|(_, (_, rows))| !follows(rows));
+        let heads: Vec<Self> = alone.filter_map(|(head, (values, rows))| Self::of_head(head, values, rows)).collect();
+        learned.into_iter().chain(heads).collect()
+    }
+
+    fn of_head(head: usize, values: &[f64], rows: &[f64]) -> Option<Self> {
+        let direction = leading(rows, values.len())?;
+        let size = vector::norm(values);
+        let open = OPEN.iter().any(|(share, large)| direction.share > *share && direction.deviation > large * size);
+        open.then_some(Self { what: What::Head(head), direction })
     }
 
     fn of_learned(spread: &Spread) -> Option<Self> {
@@ -98,6 +98,17 @@ mod tests {
         // The scalar is known to a third, and nothing else moves the load by as much.
         let found = Open::all(&spread(0.3));
         assert!(matches!(&found[..], [Open { what: What::Head(0), .. }]));
+    }
+
+    #[test]
+    fn heads_that_are_open_together_are_each_told_of() {
+        let f = vec![2.0, 1.0, -2.0];
+        let load = f.iter().flat_map(|f| [3.0 * f, 0.01]).collect();
+        let shape = f.iter().flat_map(|f| [-6.0 * f, 0.01]).collect();
+        let heads = vec![(f.clone(), load), (f, shape)];
+        let both = Spread { points: vec![0.0, 1.0, 2.0], heads, learned: Vec::new(), scalars: 0 };
+        let found: Vec<What> = Open::all(&both).into_iter().map(|open| open.what).collect();
+        assert!(found == [What::Head(0), What::Head(1)]);
     }
 
     #[test]

@@ -11,7 +11,6 @@ use crate::schema::{self, TermKind};
 use crate::simd::Isa;
 use crate::solve::curvature::Curvature;
 use crate::solve::driver::{Outcome, Status, Warning};
-use crate::solve::objective::LeastSquares;
 use crate::solve::posterior::posterior;
 use crate::solve::prior::WeightPrior;
 
@@ -226,10 +225,7 @@ impl Solution {
         let Carrier::Network(network) = &mut self.carrier else { return None };
         let Network { engine, theta, prior, distrust } = &mut **network;
         let curvature = Curvature::at(engine, theta, prior.as_ref()?).ok()?;
-        let mut readout: Engine<f64> = self.bound.readout(self.settings.architecture, points);
-        let rows = readout.row_count();
-        let (mut values, mut derivatives) = (vec![0.0; rows], vec![0.0; rows * theta.len()]);
-        readout.jacobian(theta, &mut values, &mut derivatives).ok()?;
+        let (values, derivatives) = self.bound.sensitivities(self.settings.architecture, theta, points)?;
         Some((values, distrust.bars(&posterior(&curvature, &derivatives))))
     }
 

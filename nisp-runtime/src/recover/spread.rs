@@ -1,11 +1,11 @@
 //! What is known of an answer: the posterior of heads at a few points and of learned scalars, as a square root.
 
-use crate::engine::Engine;
+use std::ops::Range;
+
 use crate::local::LocalSolution;
 use crate::network::Architecture;
 use crate::problem::Bound;
 use crate::solve::curvature::Curvature;
-use crate::solve::objective::LeastSquares;
 use crate::solve::posterior;
 
 /// Points that an answer is looked at, at most.
@@ -31,17 +31,15 @@ impl Spread {
         architecture: Architecture,
         curvature: &Curvature,
         theta: &[f64],
+        learned: Range<usize>,
     ) -> Option<Self> {
         let points = sample(bound);
-        let mut readout: Engine<f64> = bound.readout(architecture, &points);
-        let (rows, len) = (readout.row_count(), theta.len());
-        let (mut values, mut derivatives) = (vec![0.0; rows], vec![0.0; rows * len]);
-        readout.jacobian(theta, &mut values, &mut derivatives).ok()?;
+        let (values, derivatives) = bound.sensitivities(architecture, theta, &points)?;
         let spread = posterior::spread(curvature, &derivatives);
-        let count = (rows / bound.problem.scene().schema.heads.len().max(1)).max(1);
+        let len = theta.len();
+        let count = (values.len() / bound.problem.scene().schema.heads.len().max(1)).max(1);
         let heads = values.chunks_exact(count).zip(spread.chunks_exact(count * len));
         let heads = heads.map(|(values, rows)| (values.to_vec(), rows.to_vec())).collect();
-        let learned = readout.layout().learned.clone();
         let scalars = learned.len();
         let mut unit = vec![0.0; scalars * len];
         learned.enumerate().for_each(|(row, parameter)| unit[row * len + parameter] = 1.0);

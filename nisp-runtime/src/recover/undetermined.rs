@@ -70,7 +70,8 @@ impl View<'_> {
     /// None where the curvature cannot be had.
     fn spread(&mut self) -> Option<Spread> {
         let curvature = Curvature::at(self.engine, self.theta, self.prior).ok()?;
-        Spread::of_network(self.bound, self.architecture, &curvature, self.theta)
+        let learned = self.engine.layout().learned.clone();
+        Spread::of_network(self.bound, self.architecture, &curvature, self.theta, learned)
     }
 }
 

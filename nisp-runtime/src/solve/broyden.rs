@@ -131,10 +131,8 @@ impl Broyden {
 
     /// Takes over the point that the search found at `step` times the direction, and learns from it.
     fn accept(&mut self, loss: f64, step: f64) {
-        for i in 0..self.theta.len() {
-            self.s[i] = self.search.theta[i] - self.theta[i];
-            self.y[i] = self.search.gradient[i] - self.gradient[i];
-        }
+        vector::difference(&mut self.s, &self.search.theta, &self.theta);
+        vector::difference(&mut self.y, &self.search.gradient, &self.gradient);
         // B s = -step gradient, because s = step direction = -step H gradient.
         let sbs = -step * vector::dot(&self.s, &self.gradient);
         std::mem::swap(&mut self.theta, &mut self.search.theta);

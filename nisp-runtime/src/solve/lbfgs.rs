@@ -80,10 +80,8 @@ impl<E: Real> Lbfgs<E> {
     fn accept(&mut self, loss: f64) {
         let slot = self.taken % self.pairs.len();
         let (s, y) = &mut self.pairs[slot];
-        for i in 0..s.len() {
-            s[i] = self.search.theta[i] - self.theta[i];
-            y[i] = self.search.gradient[i] - self.gradient[i];
-        }
+        vector::difference(s, &self.search.theta, &self.theta);
+        vector::difference(y, &self.search.gradient, &self.gradient);
         let (sy, yy) = (vector::dot(s, y), vector::dot(y, y));
         // Without positive curvature along the step the pair would spoil the model.
         if sy > E::EPSILON.to_f64() * yy.sqrt() * vector::norm(s) {

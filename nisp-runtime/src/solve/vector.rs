@@ -91,8 +91,25 @@ fn along_loop<E: Real>(out: &mut [E], origin: &[E], factor: f64, direction: &[E]
     }
 }
 
-/// True where every element is finite.
-pub(crate) fn all_finite<E: Real>(a: &[E]) -> bool {
-    // A sum of zeros or NaNs instead of a branch per element.
-    a.iter().map(|x| *x * E::ZERO).fold(E::ZERO, |sum, x| sum + x) == E::ZERO
+widest! {
+    /// `out = a - b`
+    pub(crate) fn difference<E: Real>(out: &mut [E], a: &[E], b: &[E]) = difference_loop
+}
+
+#[inline(always)]
+fn difference_loop<E: Real>(out: &mut [E], a: &[E], b: &[E]) {
+    for ((out, a), b) in out.iter_mut().zip(a).zip(b) {
+        *out = *a - *b;
+    }
+}
+
+widest! {
+    /// True where every element is finite.
+    pub(crate) fn all_finite<E: Real>(a: &[E]) -> bool = all_finite_loop
+}
+
+#[inline(always)]
+fn all_finite_loop<E: Real>(a: &[E]) -> bool {
+    // No branch per element.
+    a.chunks(64).all(|some| some.iter().fold(true, |all, x| all & x.is_finite()))
 }
