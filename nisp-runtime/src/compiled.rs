@@ -8,6 +8,7 @@ use crate::kernel::{Layers, Programs, Residuals, Rules};
 use crate::layer::{
     Affine, AffineAdjoint, AffineAdjointKernel, AffineKernel, Ending, EndingAdjoint, Gate, GateAdjoint,
     GateAdjointKernel, GateKernel, Gated, GatedAdjoint, Layer, LayerAdjoint, LayerAdjointKernel, LayerKernel,
+    takes_values,
 };
 use crate::real::Real;
 use crate::residual::{Lane, Points, Sink};
@@ -34,6 +35,10 @@ where
 {
     fn channels(&self) -> usize {
         K
+    }
+
+    fn takes_values(&self) -> bool {
+        takes_values::<E, D, S>()
     }
 
     fn affine(&self, isa: Isa, layer: Affine<'_, E>) {

@@ -40,6 +40,9 @@ pub trait Real:
     /// Products that are summed before their sum is added to those before, where that is asked for: a long sum of few bits
     /// loses to rounding what short ones keep.
     const SUMMED: usize;
+    /// Highest order of derivatives that may be taken at values of this precision; for higher ones, layers are given values in
+    /// double precision.
+    const ORDERS: usize;
     /// Name as users write it: `f32` or `f64`.
     const NAME: &'static str;
     /// Rounds to this type.
@@ -55,12 +58,13 @@ pub trait Real:
 }
 
 macro_rules! real {
-    ($type:ident, $summed:expr) => {
+    ($type:ident, $summed:expr, $orders:expr) => {
         impl Real for $type {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;
             const EPSILON: Self = $type::EPSILON;
             const SUMMED: usize = $summed;
+            const ORDERS: usize = $orders;
             const NAME: &'static str = stringify!($type);
             #[inline(always)]
             fn from_f64(x: f64) -> Self {
@@ -86,5 +90,5 @@ macro_rules! real {
     };
 }
 
-real!(f32, 16);
-real!(f64, usize::MAX);
+real!(f32, 16, 4);
+real!(f64, usize::MAX, usize::MAX);

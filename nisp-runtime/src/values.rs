@@ -5,6 +5,9 @@ use crate::compiled::CompiledLayers;
 use crate::kernel::{Layers, Rules};
 use crate::simd::Simd;
 
+/// Coordinates that there are layers of values over, at most.
+pub(crate) const MOST_COORDINATES: usize = 4;
+
 /// Rules for values alone.
 #[derive(Debug)]
 pub struct Values;

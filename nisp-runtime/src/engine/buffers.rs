@@ -36,6 +36,8 @@ pub(crate) struct Buffers<E: Real> {
     pub(crate) bars: AlignedVec<E>,
     pub(super) output_bars: AlignedVec<E>,
     pub(crate) row_slopes: AlignedVec<E>,
+    /// For values in double precision, where layers take them.
+    pub(super) doubled: Option<Box<Buffers<f64>>>,
 }
 
 /// Largest sizes that a set of groups asks of [`Buffers`].
@@ -49,6 +51,8 @@ pub(crate) struct Extent {
     jets: usize,
     columns: usize,
     residuals: usize,
+    /// True if layers take values in double precision.
+    pub(super) doubled: bool,
 }
 
 impl Extent {
@@ -63,8 +67,16 @@ impl Extent {
                 jets: extent.jets.max(group.schema.jets.len()),
                 columns: extent.columns.max(group.schema.columns.len()),
                 residuals: extent.residuals.max(group.schema.rows),
+                doubled: extent.doubled || group.reading.layers.takes_values(),
             }
         })
+    }
+}
+
+impl Extent {
+    /// What values alone ask of the same tiles.
+    fn of_values(self) -> Self {
+        Self { points: self.points, rows: self.points, sites: self.sites, ..Self::default() }
     }
 }
 
@@ -99,6 +111,7 @@ impl<E: Real> Buffers<E> {
             bars: quantities(extent.jets + layout.learned.len()),
             output_bars: quantities(extent.outputs),
             row_slopes: quantities(extent.residuals),
+            doubled: extent.doubled.then(|| Box::new(Buffers::new(layout, extent.of_values()))),
         }
     }
 }

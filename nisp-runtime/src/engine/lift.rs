@@ -5,17 +5,24 @@
 
 use super::adjoint::Parts;
 use super::buffers::Buffers;
+use super::doubled::give;
 use super::tile::{Network, Tile};
 use crate::features::Features;
 use crate::gemm::Write;
+use crate::kernel::Layers;
 use crate::layer::{Affine, AffineAdjoint, Layer, LayerAdjoint, Shape, row_distance};
 use crate::network::{Matrix, ProductAdjoint, multiply};
 use crate::real::Real;
 
 impl<E: Real> Network<'_, E> {
     /// Channels of the first layer and the gates, in `buffers.lifted`.
-    pub(super) fn lift(&self, tile: &Tile<'_, E>, shape: Shape, buffers: &mut Buffers<E>) {
-        let kernel = tile.reading.layers;
+    pub(super) fn lift(
+        &self,
+        kernel: &dyn Layers<E>,
+        shape: Shape,
+        buffers: &mut Buffers<E>,
+        values: Option<&Buffers<f64>>,
+    ) {
         let rows = shape.points * kernel.channels();
         if let Some(features) = &self.weights.features {
             let layer = Features {
@@ -33,8 +40,14 @@ impl<E: Real> Network<'_, E> {
         for (j, matrix) in self.layout.affine.iter().enumerate() {
             let (bias, slope) = (self.weights.bias(matrix), &mut buffers.slopes[j]);
             let (value, output) = (&mut buffers.values[j], &mut buffers.lifted[j]);
+            if let Some(values) = values {
+                give(shape, &values.slopes[j], slope, 1);
+            }
             match &self.weights.features {
                 None => {
+                    if let Some(values) = values {
+                        give(shape, &values.values[j], value, 1);
+                    }
                     let (weights, coordinates) = (self.weights.matrix(matrix), &buffers.coordinates[..]);
                     kernel.affine(self.isa, Affine { shape, weights, bias, coordinates, value, slope, output });
                 }
@@ -49,6 +62,9 @@ impl<E: Real> Network<'_, E> {
                         lds,
                         Write::SetFromShortSums,
                     );
+                    if let Some(values) = values {
+                        give(shape, &values.values[j], value, kernel.channels());
+                    }
                     kernel.layer(self.isa, Layer { shape, argument: value, bias, slope, output }, None, false);
                 }
             }

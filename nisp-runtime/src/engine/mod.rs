@@ -8,6 +8,7 @@ mod assign;
 mod buffers;
 mod chamfer;
 mod chunks;
+mod doubled;
 mod fit;
 mod form;
 mod group;
@@ -103,7 +104,7 @@ impl<E: Real> Engine<E> {
         let integrals = Integrals::new(&groups, scalars.len(), learned.len());
         let mut engine = Self {
             isa,
-            weights: Weights::new(isa, &layout),
+            weights: Weights::new(isa, &layout, extent.doubled),
             theta: vec![E::from_f64(f64::NAN); layout.len],
             is_assigned: false,
             layout,

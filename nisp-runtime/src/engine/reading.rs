@@ -71,7 +71,7 @@ impl<E: Real> Reading<E> {
 }
 
 /// Layers of values over so many coordinates.
-fn values<E: Real>(coordinates: usize) -> Option<&'static dyn Layers<E>> {
+pub(super) fn values<E: Real>(coordinates: usize) -> Option<&'static dyn Layers<E>> {
     Some(match coordinates {
         1 => <E as Precompiled<1>>::values(),
         2 => <E as Precompiled<2>>::values(),

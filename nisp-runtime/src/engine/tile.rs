@@ -3,10 +3,12 @@
 //! A tile is so small that its channels stay in the second-level cache from the coordinates to the gradient.
 
 use super::buffers::Buffers;
+use super::doubled::give;
 use super::group::BoundGroup;
 use super::heads::Heads;
 use super::reading::Reading;
 use crate::aligned::AlignedVec;
+use crate::kernel::Layers;
 use crate::layer::{Gate, Gated, Layer, Shape, row_distance};
 use crate::network::{Layout, Weights};
 use crate::real::Real;
@@ -49,6 +51,15 @@ impl<'a, E: Real> Tile<'a, E> {
         Shape { points: self.count * self.group.sites(), width: layout.width, ld: row_distance(layout.width) }
     }
 
+    /// Copies the network's coordinates of the points, then of their partners.
+    pub(super) fn load_coordinates<T: Real>(&self, inputs: usize, to: &mut [T]) {
+        let (group, len) = (self.group, self.count * inputs);
+        for (site, to) in to.chunks_exact_mut(len).take(group.sites()).enumerate() {
+            let from = &group.network[(site * group.points + self.first) * inputs..];
+            to.iter_mut().zip(from).for_each(|(to, x)| *to = T::from_f64(*x));
+        }
+    }
+
     /// Distance between quantities of the network's points: the tile's own, then their partners.
     pub(super) fn output_stride(&self) -> usize {
         (self.count * self.group.sites()).next_multiple_of(POINT_LANES)
@@ -64,9 +75,26 @@ impl<E: Real> Network<'_, E> {
     /// From the points of a tile to the jets that its group reads.
     pub(crate) fn forward(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
         self.load(tile, buffers);
-        let shape = tile.shape(self.layout);
-        let kernel = tile.reading.layers;
-        self.lift(tile, shape, buffers);
+        let (shape, kernel) = (tile.shape(self.layout), tile.reading.layers);
+        let mut values = buffers.doubled.take();
+        let given = values.as_deref_mut().filter(|_| kernel.takes_values()).map(|values| {
+            self.doubled_values(tile, values);
+            &*values
+        });
+        self.layers(kernel, shape, buffers, given);
+        buffers.doubled = values;
+        self.heads(tile, shape, buffers);
+    }
+
+    /// From coordinates to the channels of the last layer, with its values from elsewhere if they are given.
+    pub(super) fn layers(
+        &self,
+        kernel: &dyn Layers<E>,
+        shape: Shape,
+        buffers: &mut Buffers<E>,
+        values: Option<&Buffers<f64>>,
+    ) {
+        self.lift(kernel, shape, buffers, values);
         let rows = shape.points * kernel.channels();
         let (first, gates) = split_gates(&mut buffers.lifted, rows * shape.ld);
         let layers = self.layout.architecture.layers;
@@ -79,26 +107,20 @@ impl<E: Real> Network<'_, E> {
         for (l, matrix) in self.layout.hidden.iter().enumerate() {
             let argument = &mut buffers.arguments[l];
             self.weights.hidden[l].forward(self.isa, rows, shape.ld, &buffers.output, argument);
-            let layer = Layer {
-                shape,
-                argument,
-                bias: self.weights.bias(matrix),
-                slope: &mut buffers.hidden_slopes[l],
-                output: &mut buffers.output,
-            };
+            let slope = &mut buffers.hidden_slopes[l];
+            if let Some(values) = values {
+                give(shape, &values.arguments[l], argument, kernel.channels());
+                give(shape, &values.hidden_slopes[l], slope, 1);
+            }
+            let layer = Layer { shape, argument, bias: self.weights.bias(matrix), slope, output: &mut buffers.output };
             kernel.layer(self.isa, layer, gates, l + 2 == layers);
         }
-        self.heads(tile, shape, buffers);
     }
 
     /// Copies a tile's points and data; lanes past the last point repeat it, so that programs stay finite there.
     fn load(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
         let group = tile.group;
-        let inputs = self.layout.inputs;
-        let len = tile.count * inputs;
-        for (site, to) in buffers.coordinates.chunks_exact_mut(len).take(group.sites()).enumerate() {
-            to.copy_from_slice(&group.network[(site * group.points + tile.first) * inputs..][..len]);
-        }
+        tile.load_coordinates(self.layout.inputs, &mut buffers.coordinates);
         for (from, to) in [(&group.coordinates, &mut buffers.points), (&group.columns, &mut buffers.columns)] {
             for (from, to) in from.chunks_exact(group.points).zip(to.chunks_exact_mut(tile.stride())) {
                 let values = &from[tile.first..][..tile.count];

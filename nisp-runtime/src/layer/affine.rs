@@ -2,7 +2,7 @@
 
 use std::marker::PhantomData;
 
-use super::{Shape, load_channels};
+use super::{Shape, load_channels, takes_values};
 use crate::kernel::Rules;
 use crate::real::Real;
 use crate::simd::{Kernel, Simd};
@@ -19,9 +19,9 @@ pub struct Affine<'a, E> {
     pub bias: &'a [E],
     /// Network coordinates, `[point][coordinate]`.
     pub coordinates: &'a [E],
-    /// Output: `tanh`, `[point][unit]`.
+    /// Output: `tanh`, `[point][unit]`; given where layers [take](crate::kernel::Layers::takes_values) values.
     pub value: &'a mut [E],
-    /// Output: slope of `tanh`, `[point][unit]`.
+    /// Output: slope of `tanh`, `[point][unit]`; given likewise.
     pub slope: &'a mut [E],
     /// Output: channels, `[point][channel][unit]`.
     pub output: &'a mut [E],
@@ -72,13 +72,19 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
                 let w: [V; S] = load_channels(weights.as_ptr().add(u), shape.width);
                 let b = V::load(bias.as_ptr().add(u));
                 for p in 0..shape.points {
-                    let mut a = b;
-                    for (i, &wi) in w.iter().enumerate() {
-                        a = wi.mul_add(V::splat(*coordinates.get_unchecked(p * S + i)), a);
-                    }
-                    let (t, s) = tanh::tanh_and_slope::<V, D>(a);
-                    t.store(value.as_mut_ptr().add(p * shape.ld + u));
-                    s.store(slope.as_mut_ptr().add(p * shape.ld + u));
+                    let row = p * shape.ld + u;
+                    let (t, s) = if takes_values::<E, D, S>() {
+                        (V::load(value.as_ptr().add(row)), V::load(slope.as_ptr().add(row)))
+                    } else {
+                        let mut a = b;
+                        for (i, &wi) in w.iter().enumerate() {
+                            a = wi.mul_add(V::splat(*coordinates.get_unchecked(p * S + i)), a);
+                        }
+                        let (t, s) = tanh::tanh_and_slope::<V, D>(a);
+                        t.store(value.as_mut_ptr().add(row));
+                        s.store(slope.as_mut_ptr().add(row));
+                        (t, s)
+                    };
                     let y = R::affine(&tanh::derivatives::<V, D>(t, s), &w);
                     for (k, yk) in y.into_iter().enumerate() {
                         yk.store(output.as_mut_ptr().add((p * K + k) * shape.ld + u));

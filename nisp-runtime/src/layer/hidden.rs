@@ -3,7 +3,7 @@
 use std::marker::PhantomData;
 
 use super::gate::{Ending, EndingAdjoint};
-use super::{Shape, load_channels, load_read, store_read};
+use super::{Shape, load_channels, load_read, store_read, takes_values};
 use crate::kernel::Rules;
 use crate::real::Real;
 use crate::simd::{Kernel, Simd};
@@ -14,11 +14,12 @@ use crate::tanh;
 pub struct Layer<'a, E> {
     /// Shape of the tile.
     pub shape: Shape,
-    /// Channels of the activation's argument; row 0 is replaced by `tanh`.
+    /// Channels of the activation's argument; row 0 is replaced by `tanh`, or has been where layers
+    /// [take](crate::kernel::Layers::takes_values) values.
     pub argument: &'a mut [E],
     /// Biases, added to the argument's value.
     pub bias: &'a [E],
-    /// Output: slope of `tanh`, `[point][unit]`.
+    /// Output: slope of `tanh`, `[point][unit]`; given likewise.
     pub slope: &'a mut [E],
     /// Output channels.
     pub output: &'a mut [E],
@@ -74,9 +75,14 @@ where
                 // SAFETY: lengths were checked above; u + LANES <= width.
                 unsafe {
                     let a: [V; K] = load_channels(argument.as_ptr().add(at), shape.ld);
-                    let (t, s) = tanh::tanh_and_slope::<V, D>(a[0].add(V::load(bias.as_ptr().add(u))));
-                    t.store(argument.as_mut_ptr().add(at));
-                    s.store(slope.as_mut_ptr().add(p * shape.ld + u));
+                    let (t, s) = if takes_values::<E, D, S>() {
+                        (a[0], V::load(slope.as_ptr().add(p * shape.ld + u)))
+                    } else {
+                        let (t, s) = tanh::tanh_and_slope::<V, D>(a[0].add(V::load(bias.as_ptr().add(u))));
+                        t.store(argument.as_mut_ptr().add(at));
+                        s.store(slope.as_mut_ptr().add(p * shape.ld + u));
+                        (t, s)
+                    };
                     let y = C::compose(&tanh::derivatives::<V, D>(t, s), &a);
                     let z = gate.end::<V, P, K, D, S>(at, shape.ld, y);
                     store_read(&z, output.as_mut_ptr().add(at), shape.ld, &P::READ);

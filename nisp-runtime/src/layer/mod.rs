@@ -16,6 +16,7 @@ pub(crate) use hidden::{LayerAdjointKernel, LayerKernel};
 
 use crate::real::Real;
 use crate::simd::Simd;
+use crate::values::MOST_COORDINATES;
 
 /// Shape of the rows of a tile.
 #[derive(Clone, Copy, Debug)]
@@ -31,6 +32,13 @@ pub struct Shape {
 /// Distance between rows: whole cache lines, and no power of two, where rows would share few cache sets.
 pub(crate) fn row_distance(width: usize) -> usize {
     if width.is_multiple_of(64) { width + 16 } else { width }
+}
+
+/// True if layers of these rules are given their activations and slopes: where derivatives are of a higher order than may be
+/// taken at values of this precision. Adjoints read one derivative more than the order, and the first is the value.
+#[inline(always)]
+pub(crate) fn takes_values<E: Real, const D: usize, const S: usize>() -> bool {
+    D - 2 > E::ORDERS && S <= MOST_COORDINATES
 }
 
 impl Shape {

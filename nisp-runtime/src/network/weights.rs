@@ -15,6 +15,14 @@ pub struct Weights<E: Real> {
     padded: AlignedVec<E>,
     pub(crate) hidden: Vec<Hidden<E>>,
     pub(crate) features: Option<Mapping<E>>,
+    doubled: Option<Box<Doubled>>,
+}
+
+/// The same weights in double precision.
+#[derive(Debug)]
+struct Doubled {
+    theta: Vec<f64>,
+    weights: Weights<f64>,
 }
 
 /// Features of the coordinates, and the matrices on them.
@@ -72,8 +80,8 @@ pub(crate) struct Hidden<E: Real> {
 }
 
 impl<E: Real> Weights<E> {
-    /// Weights of a network of this layout, all zero.
-    pub fn new(isa: Isa, layout: &Layout) -> Self {
+    /// Weights of a network of this layout, all zero; in double precision too if values are needed in it.
+    pub fn new(isa: Isa, layout: &Layout, doubled: bool) -> Self {
         let pack = || Packed::zeros(isa, layout.width, layout.width);
         Self {
             padded: AlignedVec::zeros(layout.padded_len),
@@ -83,6 +91,8 @@ impl<E: Real> Weights<E> {
                 .inputs
                 .features(layout.inputs)
                 .map(|features| Mapping::new(isa, layout, features)),
+            doubled: doubled
+                .then(|| Box::new(Doubled { theta: vec![0.0; layout.len], weights: Weights::new(isa, layout, false) })),
         }
     }
 
@@ -100,6 +110,15 @@ impl<E: Real> Weights<E> {
                 packed.pack(Left::transposed(w, matrix.padded_row), layout.width);
             }
         }
+        if let Some(doubled) = &mut self.doubled {
+            doubled.theta.iter_mut().zip(theta).for_each(|(wide, narrow)| *wide = narrow.to_f64());
+            doubled.weights.set(layout, &doubled.theta);
+        }
+    }
+
+    /// The same weights in double precision, if they are kept.
+    pub(crate) fn doubled(&self) -> Option<&Weights<f64>> {
+        self.doubled.as_deref().map(|doubled| &doubled.weights)
     }
 
     /// Weights of a matrix, in its padded layout.

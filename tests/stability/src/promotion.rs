@@ -14,7 +14,7 @@ use crate::row::{Extent, Row};
 /// Seconds of double precision.
 const SECONDS: f64 = 4.0;
 /// Initial weights.
-const SEEDS: u64 = 5;
+const SEEDS: u64 = 9;
 /// Looks at a run, each at the cost of a checkpoint and a step, which are not counted.
 const LOOKS: u32 = 40;
 
