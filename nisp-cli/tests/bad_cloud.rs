@@ -80,6 +80,8 @@ fn parameters() {
         refused(&[("c.csv", &bubble(1.0, 0.0))], &format!("membrane --data c.csv {line}"), parts);
     };
     cloud("", &["parameter `p` has no value; give it with --set p=VALUE in Pa", "--sample"]);
+    // Nor is there where to begin, if it is learned.
+    cloud("--scene identify_unknown_pressure", &["parameter `p` has no value; give it with --set p=VALUE in Pa"]);
     cloud("--set p=0", &["`p` is 0 Pa", "nothing inflates", "--set p=VALUE"]);
     cloud("--set p=-5670", &["`p` is -5670 Pa"]);
     cloud("--set p=5670 --set t=0", &["`t` is 0 mm", "thickness above zero"]);

@@ -52,7 +52,8 @@ pub trait Residuals: Send + Sync + 'static {
 pub trait Layers<E: Real>: Send + Sync {
     /// Number of channels of the hidden layers.
     fn channels(&self) -> usize;
-    /// True if activations and their slopes are given instead of computed, for they are needed in a higher precision.
+    /// True if activations and their slopes are given instead of computed, for they are needed in a higher precision: whoever
+    /// calls [`Layers::affine`] or [`Layers::layer`] has written them to where they are kept.
     fn takes_values(&self) -> bool;
     /// Channels of `phi(W x + b)`, with `phi` and its slope kept for the adjoint.
     fn affine(&self, isa: Isa, layer: Affine<'_, E>);

@@ -40,9 +40,9 @@ pub trait Real:
     /// Products that are summed before their sum is added to those before, where that is asked for: a long sum of few bits
     /// loses to rounding what short ones keep.
     const SUMMED: usize;
-    /// Highest order of derivatives that may be taken at values of this precision; for higher ones, layers are given values in
-    /// double precision.
-    const ORDERS: usize;
+    /// Highest order of derivatives that may be taken at values of this precision; for higher ones over at most four
+    /// coordinates, layers are given values in double precision.
+    const HIGHEST_ORDER: usize;
     /// Name as users write it: `f32` or `f64`.
     const NAME: &'static str;
     /// Rounds to this type.
@@ -64,7 +64,7 @@ macro_rules! real {
             const ONE: Self = 1.0;
             const EPSILON: Self = $type::EPSILON;
             const SUMMED: usize = $summed;
-            const ORDERS: usize = $orders;
+            const HIGHEST_ORDER: usize = $orders;
             const NAME: &'static str = stringify!($type);
             #[inline(always)]
             fn from_f64(x: f64) -> Self {

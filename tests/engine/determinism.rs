@@ -4,7 +4,7 @@ use nisp::network::Architecture;
 use nisp::simd::Isa;
 use nisp::{Precision, Problem};
 
-use crate::models::{Heat, Karman, Sponge, each_model};
+use crate::models::{Heat, Karman, Sponge, Triharmonic, each_model};
 use crate::reference::{Model, Reference};
 
 /// Loss and gradient on `threads` threads.
@@ -49,6 +49,7 @@ fn any_number_of_threads_gives_the_same_bits() {
     bits_are_equal::<f32, _>(&Karman);
     bits_are_equal::<f32, _>(&Sponge);
     bits_are_equal::<f32, _>(&Heat);
+    bits_are_equal::<f32, _>(&Triharmonic);
 }
 
 fn instruction_sets_agree<M: Model>(model: &M) {

@@ -71,9 +71,7 @@ impl Extent {
             }
         })
     }
-}
 
-impl Extent {
     /// What values alone ask of the same tiles.
     fn of_values(self) -> Self {
         Self { points: self.points, rows: self.points, sites: self.sites, ..Self::default() }
@@ -119,7 +117,7 @@ impl<E: Real> Buffers<E> {
 /// Lends a worker's buffers.
 pub(super) fn with_buffers<E: Real, T>(buffers: &[Mutex<Buffers<E>>], work: impl FnOnce(&mut Buffers<E>) -> T) -> T {
     let worker = rayon::current_thread_index().map_or(buffers.len() - 1, |at| at % buffers.len());
-    // A panic in another worker leaves scratch behind, nothing that could be torn.
+    // A panic in another worker leaves scratch behind; what a tile in flight has borrowed of it is missed aloud.
     let mut own = buffers[worker].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     work(&mut own)
 }

@@ -14,7 +14,9 @@ pub struct BoundGroup<E: Real> {
     /// Number of points.
     pub(crate) points: usize,
     /// Network coordinates, `[site][point][coordinate]`: of the points, then of their partners if they have any.
-    pub(crate) network: Vec<f64>,
+    pub(crate) network: Vec<E>,
+    /// The same in double precision, where values are needed in it.
+    pub(crate) doubled: Vec<f64>,
     /// Coordinates in the engine's units, `[site][coordinate][point]`.
     pub(crate) coordinates: Vec<E>,
     /// Data, `[column][point]`.
@@ -74,7 +76,7 @@ impl<E: Real> BoundGroup<E> {
         let points = coordinates.len() / inputs;
         let sites = [coordinates, partners];
         let scaled = |(at, x): (usize, &f64)| (x - scaling.centre[at % inputs]) / scaling.half[at % inputs];
-        let network = sites.iter().flat_map(|site| site.iter().enumerate().map(scaled)).collect();
+        let network = || sites.iter().flat_map(|site| site.iter().enumerate().map(scaled));
         let transposed = |site: &[f64], i: usize| -> Vec<E> {
             site.iter().skip(i).step_by(inputs).map(|&x| E::from_f64(x)).collect()
         };
@@ -97,7 +99,8 @@ impl<E: Real> BoundGroup<E> {
             programs: kernel.programs,
             schema,
             points,
-            network,
+            network: network().map(E::from_f64).collect(),
+            doubled: if kernel.layers.takes_values() { network().collect() } else { Vec::new() },
             coordinates: transposed,
             columns: columns.iter().flatten().map(|&x| E::from_f64(x)).collect(),
             terms,

@@ -5,7 +5,7 @@
 
 use super::adjoint::Parts;
 use super::buffers::Buffers;
-use super::doubled::give;
+use super::doubled::round_rows;
 use super::tile::{Network, Tile};
 use crate::features::Features;
 use crate::gemm::Write;
@@ -21,7 +21,7 @@ impl<E: Real> Network<'_, E> {
         kernel: &dyn Layers<E>,
         shape: Shape,
         buffers: &mut Buffers<E>,
-        values: Option<&Buffers<f64>>,
+        given: Option<&Buffers<f64>>,
     ) {
         let rows = shape.points * kernel.channels();
         if let Some(features) = &self.weights.features {
@@ -40,13 +40,13 @@ impl<E: Real> Network<'_, E> {
         for (j, matrix) in self.layout.affine.iter().enumerate() {
             let (bias, slope) = (self.weights.bias(matrix), &mut buffers.slopes[j]);
             let (value, output) = (&mut buffers.values[j], &mut buffers.lifted[j]);
-            if let Some(values) = values {
-                give(shape, &values.slopes[j], slope, 1);
+            if let Some(given) = given {
+                round_rows(shape, &given.slopes[j], slope, 1);
             }
             match &self.weights.features {
                 None => {
-                    if let Some(values) = values {
-                        give(shape, &values.values[j], value, 1);
+                    if let Some(given) = given {
+                        round_rows(shape, &given.values[j], value, 1);
                     }
                     let (weights, coordinates) = (self.weights.matrix(matrix), &buffers.coordinates[..]);
                     kernel.affine(self.isa, Affine { shape, weights, bias, coordinates, value, slope, output });
@@ -62,8 +62,8 @@ impl<E: Real> Network<'_, E> {
                         lds,
                         Write::SetFromShortSums,
                     );
-                    if let Some(values) = values {
-                        give(shape, &values.values[j], value, kernel.channels());
+                    if let Some(given) = given {
+                        round_rows(shape, &given.values[j], value, kernel.channels());
                     }
                     kernel.layer(self.isa, Layer { shape, argument: value, bias, slope, output }, None, false);
                 }

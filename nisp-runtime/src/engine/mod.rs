@@ -85,7 +85,7 @@ impl<E: Real> Engine<E> {
         for group in &mut groups {
             let (sites, points) = (group.sites(), group.points);
             for reading in std::iter::once(&mut group.reading).chain(&mut group.values) {
-                reading.tile = tile_points::<E>(&layout, reading.layers.channels() * sites, points);
+                reading.tile = tile_points::<E>(&layout, reading.rows() * sites, points);
             }
         }
         let terms = groups.iter().map(|g| g.terms.len()).sum();

@@ -63,6 +63,12 @@ impl<E: Real> Reading<E> {
         Self { layers, outputs, jets, tile: 1 }
     }
 
+    /// Rows of a point in every layer, as many as take their room in memory: activations and slopes in double precision
+    /// take that of four.
+    pub(super) fn rows(&self) -> usize {
+        self.layers.channels() + if self.layers.takes_values() { 4 } else { 0 }
+    }
+
     /// First point and number of points of every tile of so many points.
     pub(super) fn tiles(&self, points: usize) -> impl Iterator<Item = (usize, usize)> + use<E> {
         let tile = self.tile;

@@ -3,7 +3,7 @@
 //! A tile is so small that its channels stay in the second-level cache from the coordinates to the gradient.
 
 use super::buffers::Buffers;
-use super::doubled::give;
+use super::doubled::round_rows;
 use super::group::BoundGroup;
 use super::heads::Heads;
 use super::reading::Reading;
@@ -51,12 +51,11 @@ impl<'a, E: Real> Tile<'a, E> {
         Shape { points: self.count * self.group.sites(), width: layout.width, ld: row_distance(layout.width) }
     }
 
-    /// Copies the network's coordinates of the points, then of their partners.
-    pub(super) fn load_coordinates<T: Real>(&self, inputs: usize, to: &mut [T]) {
-        let (group, len) = (self.group, self.count * inputs);
-        for (site, to) in to.chunks_exact_mut(len).take(group.sites()).enumerate() {
-            let from = &group.network[(site * group.points + self.first) * inputs..];
-            to.iter_mut().zip(from).for_each(|(to, x)| *to = T::from_f64(*x));
+    /// Copies coordinates of the network, of the points, then of their partners, from those of the group.
+    pub(super) fn load_coordinates<T: Copy>(&self, from: &[T], inputs: usize, to: &mut [T]) {
+        let len = self.count * inputs;
+        for (site, to) in to.chunks_exact_mut(len).take(self.group.sites()).enumerate() {
+            to.copy_from_slice(&from[(site * self.group.points + self.first) * inputs..][..len]);
         }
     }
 
@@ -92,9 +91,10 @@ impl<E: Real> Network<'_, E> {
         kernel: &dyn Layers<E>,
         shape: Shape,
         buffers: &mut Buffers<E>,
-        values: Option<&Buffers<f64>>,
+        given: Option<&Buffers<f64>>,
     ) {
-        self.lift(kernel, shape, buffers, values);
+        assert_eq!(kernel.takes_values(), given.is_some(), "values are given to layers that take them");
+        self.lift(kernel, shape, buffers, given);
         let rows = shape.points * kernel.channels();
         let (first, gates) = split_gates(&mut buffers.lifted, rows * shape.ld);
         let layers = self.layout.architecture.layers;
@@ -108,9 +108,9 @@ impl<E: Real> Network<'_, E> {
             let argument = &mut buffers.arguments[l];
             self.weights.hidden[l].forward(self.isa, rows, shape.ld, &buffers.output, argument);
             let slope = &mut buffers.hidden_slopes[l];
-            if let Some(values) = values {
-                give(shape, &values.arguments[l], argument, kernel.channels());
-                give(shape, &values.hidden_slopes[l], slope, 1);
+            if let Some(given) = given {
+                round_rows(shape, &given.arguments[l], argument, kernel.channels());
+                round_rows(shape, &given.hidden_slopes[l], slope, 1);
             }
             let layer = Layer { shape, argument, bias: self.weights.bias(matrix), slope, output: &mut buffers.output };
             kernel.layer(self.isa, layer, gates, l + 2 == layers);
@@ -120,7 +120,7 @@ impl<E: Real> Network<'_, E> {
     /// Copies a tile's points and data; lanes past the last point repeat it, so that programs stay finite there.
     fn load(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
         let group = tile.group;
-        tile.load_coordinates(self.layout.inputs, &mut buffers.coordinates);
+        tile.load_coordinates(&group.network, self.layout.inputs, &mut buffers.coordinates);
         for (from, to) in [(&group.coordinates, &mut buffers.points), (&group.columns, &mut buffers.columns)] {
             for (from, to) in from.chunks_exact(group.points).zip(to.chunks_exact_mut(tile.stride())) {
                 let values = &from[tile.first..][..tile.count];

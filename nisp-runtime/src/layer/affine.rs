@@ -19,9 +19,9 @@ pub struct Affine<'a, E> {
     pub bias: &'a [E],
     /// Network coordinates, `[point][coordinate]`.
     pub coordinates: &'a [E],
-    /// Output: `tanh`, `[point][unit]`; given where layers [take](crate::kernel::Layers::takes_values) values.
+    /// Output (input where layers [take values](crate::kernel::Layers::takes_values)): `tanh`, `[point][unit]`.
     pub value: &'a mut [E],
-    /// Output: slope of `tanh`, `[point][unit]`; given likewise.
+    /// Output (input likewise): slope of `tanh`, `[point][unit]`.
     pub slope: &'a mut [E],
     /// Output: channels, `[point][channel][unit]`.
     pub output: &'a mut [E],

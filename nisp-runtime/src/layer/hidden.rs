@@ -15,11 +15,11 @@ pub struct Layer<'a, E> {
     /// Shape of the tile.
     pub shape: Shape,
     /// Channels of the activation's argument; row 0 is replaced by `tanh`, or has been where layers
-    /// [take](crate::kernel::Layers::takes_values) values.
+    /// [take values](crate::kernel::Layers::takes_values).
     pub argument: &'a mut [E],
     /// Biases, added to the argument's value.
     pub bias: &'a [E],
-    /// Output: slope of `tanh`, `[point][unit]`; given likewise.
+    /// Output (input likewise): slope of `tanh`, `[point][unit]`.
     pub slope: &'a mut [E],
     /// Output channels.
     pub output: &'a mut [E],

@@ -18,7 +18,7 @@ pub struct Weights<E: Real> {
     doubled: Option<Box<Doubled>>,
 }
 
-/// The same weights in double precision.
+/// The same parameters in double precision.
 #[derive(Debug)]
 struct Doubled {
     theta: Vec<f64>,
@@ -98,11 +98,23 @@ impl<E: Real> Weights<E> {
 
     /// Takes over parameters.
     pub fn set(&mut self, layout: &Layout, theta: &[E]) {
+        self.set_forward(layout, theta);
+        for (hidden, matrix) in self.hidden.iter_mut().zip(&layout.hidden) {
+            let w = &self.padded[matrix.padded..matrix.padded_bias];
+            hidden.backward.pack(Left::rows(w, layout.width), layout.width);
+        }
+        if let Some(doubled) = &mut self.doubled {
+            doubled.theta.iter_mut().zip(theta).for_each(|(wide, narrow)| *wide = narrow.to_f64());
+            doubled.weights.set_forward(layout, &doubled.theta);
+        }
+    }
+
+    /// Takes over parameters for the way there only.
+    fn set_forward(&mut self, layout: &Layout, theta: &[E]) {
         layout.pad(theta, &mut self.padded);
         for (hidden, matrix) in self.hidden.iter_mut().zip(&layout.hidden) {
             let w = &self.padded[matrix.padded..matrix.padded_bias];
             hidden.forward.pack(Left::transposed(w, layout.width), layout.width);
-            hidden.backward.pack(Left::rows(w, layout.width), layout.width);
         }
         if let Some(features) = &mut self.features {
             for (packed, matrix) in features.matrices.iter_mut().zip(&layout.affine) {
@@ -110,13 +122,9 @@ impl<E: Real> Weights<E> {
                 packed.pack(Left::transposed(w, matrix.padded_row), layout.width);
             }
         }
-        if let Some(doubled) = &mut self.doubled {
-            doubled.theta.iter_mut().zip(theta).for_each(|(wide, narrow)| *wide = narrow.to_f64());
-            doubled.weights.set(layout, &doubled.theta);
-        }
     }
 
-    /// The same weights in double precision, if they are kept.
+    /// Weights of the same parameters in double precision, if they are kept; for the way there only.
     pub(crate) fn doubled(&self) -> Option<&Weights<f64>> {
         self.doubled.as_deref().map(|doubled| &doubled.weights)
     }

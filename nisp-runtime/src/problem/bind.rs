@@ -11,6 +11,7 @@ use crate::network::{Architecture, Inputs, Layout};
 use crate::schema::{self, Origin};
 use crate::simd::Isa;
 use crate::solve::objective::LeastSquares;
+use crate::solve::vector;
 
 /// Why a problem cannot be solved as it is bound.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -402,10 +403,10 @@ impl Bound {
         theta: &[f64],
         points: &[f64],
     ) -> Option<(Vec<f64>, Vec<f64>)> {
-        let mut readout: Engine<f64> = self.readout(architecture, points);
+        let mut readout = self.readout(architecture, points);
         let rows = readout.row_count();
         let (mut values, mut derivatives) = (vec![0.0; rows], vec![0.0; rows * theta.len()]);
         readout.jacobian(theta, &mut values, &mut derivatives).ok()?;
-        Some((values, derivatives))
+        vector::all_finite(&derivatives).then_some((values, derivatives))
     }
 }

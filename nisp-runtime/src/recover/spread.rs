@@ -1,7 +1,5 @@
 //! What is known of an answer: the posterior of heads at a few points and of learned scalars, as a square root.
 
-use std::ops::Range;
-
 use crate::local::LocalSolution;
 use crate::network::Architecture;
 use crate::problem::Bound;
@@ -31,7 +29,6 @@ impl Spread {
         architecture: Architecture,
         curvature: &Curvature,
         theta: &[f64],
-        learned: Range<usize>,
     ) -> Option<Self> {
         let points = sample(bound);
         let (values, derivatives) = bound.sensitivities(architecture, theta, &points)?;
@@ -40,9 +37,10 @@ impl Spread {
         let count = (values.len() / bound.problem.scene().schema.heads.len().max(1)).max(1);
         let heads = values.chunks_exact(count).zip(spread.chunks_exact(count * len));
         let heads = heads.map(|(values, rows)| (values.to_vec(), rows.to_vec())).collect();
-        let scalars = learned.len();
+        let scalars = bound.learned.len();
         let mut unit = vec![0.0; scalars * len];
-        learned.enumerate().for_each(|(row, parameter)| unit[row * len + parameter] = 1.0);
+        // Learned scalars are the last parameters.
+        (0..scalars).for_each(|row| unit[row * len + len - scalars + row] = 1.0);
         Some(Self { points, heads, learned: posterior::spread(curvature, &unit), scalars })
     }
 

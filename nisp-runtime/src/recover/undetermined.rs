@@ -70,8 +70,7 @@ impl View<'_> {
     /// None where the curvature cannot be had.
     fn spread(&mut self) -> Option<Spread> {
         let curvature = Curvature::at(self.engine, self.theta, self.prior).ok()?;
-        let learned = self.engine.layout().learned.clone();
-        Spread::of_network(self.bound, self.architecture, &curvature, self.theta, learned)
+        Spread::of_network(self.bound, self.architecture, &curvature, self.theta)
     }
 }
 
@@ -83,6 +82,7 @@ pub(super) fn of_local(bound: &Bound, found: &LocalSolution) -> Vec<Warning> {
 }
 
 fn undetermined(words: &Words<'_>, spread: &Spread) -> Vec<Warning> {
-    let said = Open::all(spread).into_iter().map(|open| words.undetermined(&open, spread));
+    let all = Open::all(spread);
+    let said = all.iter().map(|open| words.undetermined(open, spread, &all));
     said.map(|message| Warning { kind: WarningKind::Undetermined, message }).collect()
 }

@@ -18,20 +18,34 @@ pub(super) struct Words<'a> {
 }
 
 impl Words<'_> {
-    /// That a direction is open.
-    pub(super) fn undetermined(&self, open: &Open, spread: &Spread) -> String {
+    /// That a direction is open, one of all that are.
+    pub(super) fn undetermined(&self, open: &Open, spread: &Spread, all: &[Open]) -> String {
         let What::Head(head) = open.what else { return self.undetermined_scalars(open, spread) };
+        let along = self.along(open, spread, all);
         let head = &self.bound.problem.scene().schema.heads[head];
         let shape = &open.direction.shape;
         let peak = vector::largest(shape);
         let size = open.direction.deviation * shape[peak] * self.bound.system.outward(&head.unit);
         let (name, at) = (head.name, self.place(spread, peak));
         format!(
-            "the data do not determine `{name}`: {} may be added to it, by about {size:.2e} {} at {at}, and only the prior \
-             decides how much; a condition on `{name}` there would settle it",
+            "the data do not determine `{name}`: {} may be added to it{along}, by about {size:.2e} {} at {at}, and only the \
+             prior decides how much; a condition on `{name}` there would settle it",
             self.shape(open, spread),
             head.unit.text,
         )
+    }
+
+    /// Heads that are open too, and move along: data know what they make together.
+    fn along(&self, open: &Open, spread: &Spread, all: &[Open]) -> String {
+        let heads = self.bound.problem.scene().schema.heads;
+        let name = |other: &Open| match other.what {
+            What::Head(at) if other.what != open.what => {
+                open.moved(&spread.heads[at].1).map(|_| format!("`{}`", heads[at].name))
+            }
+            _ => None,
+        };
+        let names: Vec<String> = all.iter().filter_map(name).collect();
+        if names.is_empty() { String::new() } else { format!(" if {} moves along", names.join(" and ")) }
     }
 
     /// That a direction would be open without a condition.

@@ -113,3 +113,20 @@ fn all_finite_loop<E: Real>(a: &[E]) -> bool {
     // No branch per element.
     a.chunks(64).all(|some| some.iter().fold(true, |all, x| all & x.is_finite()))
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_number_that_is_not_finite_is_found() {
+        assert!(all_finite::<f64>(&[]) && all_finite(&[f32::MAX; 200]));
+        for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
+            for at in [0, 63, 64, 199] {
+                let mut values = [-1.0; 200];
+                values[at] = bad;
+                assert!(!all_finite(&values), "{bad} at {at}");
+            }
+        }
+    }
+}
