@@ -21,6 +21,19 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    mod twins {
+        coordinates: s [m];
+        fields: y [mm];
+        sources: f [N/m], g [N/m];
+        parameters: T [N];
+        on inside { balance: -T * d(y, s, 2) == f + g; even: d(f, s) == 0; level: d(g, s) == 0; }
+        on probes { observe y; }
+        /// Two even loads, of which only the sum is seen.
+        scene both { }
+    }
+}
+
 const POINTS: usize = 40;
 
 /// From -1 m to 1 m.
@@ -95,4 +108,18 @@ fn two_scalars_that_scale_together_do_not_run_away() {
         assert!((load / tension / 0.0025 - 1.0).abs() < 0.05, "{learned:?}");
         assert!((4.0..400.0).contains(&tension), "{learned:?}");
     }
+}
+
+#[test]
+fn two_sources_that_are_known_as_a_sum_are_both_told_of() {
+    use twins::both::{Parameters, ProbesData, bind};
+    let data = ProbesData { y: sag(false) };
+    let problem = bind(Parameters { T: 20.0 }).inside(places()).probes(places(), data).problem();
+    let solution = solved(&problem, Optimizer::Evidence);
+    let said = said(&solution, &WarningKind::Undetermined);
+    let [f, g] = said.lines().collect::<Vec<_>>()[..] else { panic!("{said}") };
+    assert!(f.contains("do not determine `f`") && f.contains("may be added to it if `g` moves along"), "{f}");
+    assert!(g.contains("do not determine `g`") && g.contains("may be added to it if `f` moves along"), "{g}");
+    let loads = solution.evaluate(&[0.0]);
+    assert!(((loads[1].values[0] + loads[2].values[0]) / 0.05 - 1.0).abs() < 0.02, "{loads:?}");
 }

@@ -1,7 +1,8 @@
 //! Natural sizes from units, domain and data, so that no user rescales a modulus by hand.
 //!
 //! Observed heads take offset and scale from their data. The others take theirs from the balance of an equation: the
-//! size that makes their term as large as the rest of it. Rows are then divided by the sum of their terms' sizes.
+//! size that makes their term as large as the rest of it; sources that only occur together, each that size. Rows are then
+//! divided by the sum of their terms' sizes.
 
 use crate::engine::Scaling;
 use crate::kernel::{GroupKernel, SceneRef};
@@ -55,10 +56,13 @@ pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>, inpu
     for (probe, clouds) in probes.iter().zip(data.clouds) {
         probe.observe(schema, scalars, clouds, &mut heads);
     }
-    // Every pass settles at least one head or is the last.
-    for _ in 0..schema.heads.len() {
-        for probe in &probes {
-            probe.balance(schema, scalars, &half, &mut heads);
+    // One that is missing alone first: elsewhere it may be one of several.
+    for together in [false, true] {
+        // Every pass settles at least one head or is the last.
+        for _ in 0..schema.heads.len() {
+            for probe in &probes {
+                probe.balance(schema, scalars, &half, together, &mut heads);
+            }
         }
     }
     let found: Vec<(f64, f64)> = heads.iter().map(|h| h.unwrap_or((0.0, 1.0))).collect();
@@ -215,8 +219,15 @@ impl Probe {
         }
     }
 
-    /// Scales of heads that are the only unknown of some row.
-    fn balance(&self, scene: &schema::Scene, scalars: &[f64], half: &[f64], heads: &mut [Option<(f64, f64)>]) {
+    /// Scales of heads that are the only unknown of some row, or sources that are its unknowns together.
+    fn balance(
+        &self,
+        scene: &schema::Scene,
+        scalars: &[f64],
+        half: &[f64],
+        together: bool,
+        heads: &mut [Option<(f64, f64)>],
+    ) {
         for term in self.schema.terms.iter().filter(|t| matches!(t.kind, TermKind::Residual | TermKind::Observation)) {
             for row in term.first..term.first + term.rows {
                 let jets = |unknown: f64| {
@@ -243,10 +254,13 @@ impl Probe {
                     .map(|head| (head, pull(head)))
                     .filter(|&(_, pull)| pull > 0.0 && pull.is_finite())
                     .collect();
-                let [(head, pull)] = unknown[..] else { continue };
+                let is_source = |&(head, _): &(usize, f64)| scene.heads[head].source;
+                if unknown.is_empty() || unknown.len() > 1 && !(together && unknown.iter().all(is_source)) {
+                    continue;
+                }
                 let rest = self.rms(&self.rows(&jets(0.0), &scales(0.0), true)[row * self.stride..]);
                 if rest > 0.0 && rest.is_finite() {
-                    heads[head] = Some((0.0, rest / pull));
+                    unknown.into_iter().for_each(|(head, pull)| heads[head] = Some((0.0, rest / pull)));
                 }
             }
         }
