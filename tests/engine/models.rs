@@ -434,6 +434,7 @@ impl Model for Held {
     }
 }
 
+/// Runs a generic check on every model.
 macro_rules! each_model {
     ($check:ident!) => {
         $check!(&crate::models::Cart);

@@ -117,7 +117,8 @@ impl<E: Real> Buffers<E> {
 /// Lends a worker's buffers.
 pub(super) fn with_buffers<E: Real, T>(buffers: &[Mutex<Buffers<E>>], work: impl FnOnce(&mut Buffers<E>) -> T) -> T {
     let worker = rayon::current_thread_index().map_or(buffers.len() - 1, |at| at % buffers.len());
-    // A panic in another worker leaves scratch behind; what a tile in flight has borrowed of it is missed aloud.
+    // A panic in another worker leaves scratch behind, nothing that could be torn: values in double precision that a tile had
+    // taken out are gone, and the next tile that needs them panics instead of reading old ones.
     let mut own = buffers[worker].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     work(&mut own)
 }

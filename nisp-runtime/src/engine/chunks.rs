@@ -40,8 +40,8 @@ pub(super) fn tile_points<E: Real>(layout: &Layout, channels: usize, points: usi
     fit.min(share).max(4).min(points.max(1))
 }
 
-/// Does the work of all chunks, of which there is at least one, and adds their gradients up in the first: in a fixed tree, whatever the threads, and each sum as
-/// soon as both of its parts are there.
+/// Does the work of all chunks, of which there is at least one, and adds their gradients up in the first: in a fixed tree,
+/// whatever the threads, and each sum as soon as both of its parts are there.
 pub(super) fn add_up<E: Real>(chunks: &mut [Chunk<E>], work: &(impl Fn(&mut Chunk<E>) + Sync)) {
     if let [chunk] = chunks {
         return work(chunk);

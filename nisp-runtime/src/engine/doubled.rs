@@ -2,8 +2,8 @@
 //!
 //! Derivatives are taken at the layers' values, and a saturated network multiplies what these lose to rounding by thousands
 //! at sixth order; what derivatives lose themselves it multiplies by ten. So where single precision would not do
-//! ([`Real::HIGHEST_ORDER`]), values go through the network in double precision first, at the cost of two channels more on the way
-//! there, and layers begin with the activations and slopes that are found so.
+//! ([`Real::HIGHEST_ORDER`]), values go through the network in double precision first, with as many operations as two
+//! channels more on the way there, and layers begin with the activations and slopes that are found so.
 
 use super::buffers::Buffers;
 use super::reading;

@@ -74,7 +74,8 @@ pub struct Engine<E: Real> {
 }
 
 impl<E: Real> Engine<E> {
-    /// An engine for `groups`, whose kernels, points and data are bound; the layout is padded for `isa`. `scalars` are in the engine's units.
+    /// An engine for `groups`, whose kernels, points and data are bound; the layout is padded for `isa`. `scalars` are in the
+    /// engine's units.
     pub(crate) fn new(
         isa: Isa,
         layout: Layout,
