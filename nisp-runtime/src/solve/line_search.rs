@@ -1,8 +1,8 @@
 //! Line search for the strong Wolfe conditions: bracketing, then zooming in by cubic interpolation (Nocedal and
 //! Wright, Numerical Optimization, algorithms 3.5 and 3.6).
 //!
-//! Close to a minimum, where differences of the loss drown in rounding, the approximate Wolfe conditions of Hager and
-//! Zhang (2005) take over: they compare slopes, which stay accurate long after the losses are equal.
+//! Where differences of the loss drown in rounding, the approximate Wolfe conditions of Hager and Zhang (2005) take over:
+//! they compare slopes, which stay accurate long after the losses are equal.
 
 use super::fault::Fault;
 use super::objective::Objective;
@@ -174,7 +174,8 @@ impl<E: Real, O: Objective<E> + ?Sized> Line<'_, E, O> {
     fn satisfies(&self, point: Point) -> bool {
         let slope = self.start.slope;
         let wolfe = self.decreases(point) && point.slope.abs() <= -CURVATURE * slope;
-        let noise = 4.0 * E::EPSILON.to_f64() * self.start.loss.abs();
+        // Small residuals are differences of large numbers: the rounding of their squares is far more than that of one sum.
+        let noise = E::EPSILON.to_f64().sqrt() * self.start.loss.abs();
         let approximate = point.loss <= self.start.loss + noise
             && (2.0 * DECREASE - 1.0) * slope >= point.slope
             && point.slope >= CURVATURE * slope;
