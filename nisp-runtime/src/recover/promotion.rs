@@ -10,8 +10,8 @@ use crate::problem::{BindError, Bound};
 use crate::recover::weigh;
 use crate::solve::objective::Objective;
 
-/// Steps between two looks, which cost as much as three or four of them.
-const EVERY: u64 = 100;
+/// Steps before the first look, and the fewest between two; a look costs as much as three or four of them.
+const EVERY: u64 = 128;
 
 /// Error of the gradient in single precision, beside its length, that still lets a step descend well.
 const SPENT: f64 = 0.1;
@@ -38,9 +38,11 @@ impl Promotion {
         Ok(Self { single, double, narrow: vec![0.0; len], wide: vec![0.0; len], theta: vec![0.0; len], due: false })
     }
 
-    /// Looks after so many steps, if it is time to; true from when on single precision helps no more.
+    /// Looks after so many steps, if it is time to: late in a run the gradient fades slowly, and an eighth of the steps (as a
+    /// power of two) may pass between looks. True from when on single precision helps no more.
     pub(super) fn is_due(&mut self, steps: u64, theta: &[f32]) -> bool {
-        if steps > 0 && steps.is_multiple_of(EVERY) {
+        let apart = steps.checked_ilog2().map_or(EVERY, |power| ((1 << power) / 8).max(EVERY));
+        if steps > 0 && steps.is_multiple_of(apart) {
             self.theta.iter_mut().zip(theta).for_each(|(wide, narrow)| *wide = f64::from(*narrow));
             // Clouds are assigned anew, as they were for the step.
             self.single.accepted(theta);

@@ -116,9 +116,8 @@ fn ratio(name: &str, optimizer: Optimizer, width: usize) -> Row {
     let samples = format!("{SEEDS} seeds, {:.2} to {:.2}", ratios[0], ratios[ratios.len() - 1]);
     Row::new(what, samples, ratios[ratios.len() / 2], 0.6)
         .timed(
-            "a step in f32 takes .52 to .58 of the time, and where its rounding drowns the gradient up to a quarter of the \
-             steps are left to f64; to leave out pairs that rounding may have made, and to turn to f64 sooner or later, did \
-             not help",
+            "a step in f32 takes .50 to .56 of the time of one in f64, and of two runs that part early either may need a tenth \
+             more steps",
         )
 }
 

@@ -29,8 +29,8 @@ fn halfway(optimizer: Optimizer, steps: u64) -> usize {
     usize::from(second.checkpoint.to_bytes() != straight.checkpoint.to_bytes())
 }
 
-/// Steps between two looks at whether single precision still helps.
-const LOOKS: u64 = 100;
+/// Steps between two looks at whether single precision still helps, early in a run.
+const LOOKS: u64 = 128;
 
 /// What a run leaves that is broken off after a step, before, at and after each look and the turn to double precision, all gone
 /// on to the end of the run: how many there are, and how many end otherwise by a bit. Nothing of a run that does not turn, or
@@ -73,9 +73,9 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
         Optimizer::ALL.len(),
         wrong,
     )];
-    // The first turns between two looks, where single precision finds no better point; the second at a look.
-    for (width, turn, at_a_look) in [(6, "between two looks", false), (10, "at a look", true)] {
-        let (stops, wrong) = about_the_turn(width, at_a_look).unwrap_or((0, 1));
+    // Where single precision finds no better point, a run turns between two looks. Which networks do depends on the rounding.
+    for (turn, at_a_look) in [("between two looks", false), ("at a look", true)] {
+        let (stops, wrong) = (4..=16).rev().find_map(|width| about_the_turn(width, at_a_look)).unwrap_or((0, 1));
         let what =
             format!("f32 that turns f64 {turn}, broken off about each look and the turn: later bits that differ");
         rows.push(Row::count(what, stops, wrong));
