@@ -38,10 +38,10 @@ impl Promotion {
         Ok(Self { single, double, narrow: vec![0.0; len], wide: vec![0.0; len], theta: vec![0.0; len], due: false })
     }
 
-    /// Looks after so many steps, if it is time to: late in a run the gradient fades slowly, and an eighth of the steps (as a
-    /// power of two) may pass between looks. True from when on single precision helps no more.
+    /// Looks after so many steps, if it is time to: late in a run the gradient fades slowly, and from a sixteenth
+    /// to an eighth of the steps may pass between looks. True from when on single precision helps no more.
     pub(super) fn is_due(&mut self, steps: u64, theta: &[f32]) -> bool {
-        let apart = steps.checked_ilog2().map_or(EVERY, |power| ((1 << power) / 8).max(EVERY));
+        let apart = (steps / 16).next_power_of_two().max(EVERY);
         if steps > 0 && steps.is_multiple_of(apart) {
             self.theta.iter_mut().zip(theta).for_each(|(wide, narrow)| *wide = f64::from(*narrow));
             // Clouds are assigned anew, as they were for the step.
