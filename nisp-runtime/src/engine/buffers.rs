@@ -85,7 +85,11 @@ impl<E: Real> Buffers<E> {
         let rows = || AlignedVec::zeros(extent.rows * ld);
         let values = || AlignedVec::zeros(extent.points * ld);
         let quantities = |count: usize| AlignedVec::zeros(count * stride);
-        let features = if layout.is_mapped() { extent.rows * row_distance(layout.affine[0].padded_row) } else { 0 };
+        let features = if layout.is_mapped() {
+            extent.rows * row_distance(layout.affine[0].columns.next_multiple_of(POINT_LANES))
+        } else {
+            0
+        };
         Self {
             coordinates: AlignedVec::zeros(extent.points * layout.inputs),
             features: AlignedVec::zeros(features),

@@ -10,7 +10,7 @@ use super::tile::{Network, Tile};
 use crate::features::Features;
 use crate::gemm::Write;
 use crate::kernel::Layers;
-use crate::layer::{Affine, AffineAdjoint, Layer, LayerAdjoint, Shape, row_distance};
+use crate::layer::{Affine, AffineAdjoint, Layer, LayerAdjoint, Shape};
 use crate::network::{Matrix, ProductAdjoint, multiply};
 use crate::real::Real;
 
@@ -82,10 +82,11 @@ impl<E: Real> Network<'_, E> {
         parts: Parts,
     ) {
         for (j, matrix) in self.layout.affine.iter().enumerate() {
-            if self.weights.features.is_some() {
-                self.mapped_adjoint(tile, shape, buffers, gradient, parts, (j, matrix));
-            } else {
-                self.affine_adjoint(tile, shape, buffers, gradient, parts, (j, matrix));
+            match &self.weights.features {
+                None => self.affine_adjoint(tile, shape, buffers, gradient, parts, (j, matrix)),
+                Some(features) => {
+                    self.mapped_adjoint(tile, shape, buffers, gradient, parts, (j, matrix, features.shape.ld));
+                }
             }
         }
     }
@@ -125,7 +126,7 @@ impl<E: Real> Network<'_, E> {
         buffers: &mut Buffers<E>,
         gradient: &mut [E],
         parts: Parts,
-        (j, matrix): (usize, &Matrix),
+        (j, matrix, input_ld): (usize, &Matrix, usize),
     ) {
         let kernel = tile.reading.layers;
         let Buffers { bar, difference_bar, floor_bar, next_bar, output, values, slopes, features, .. } = buffers;
@@ -140,7 +141,6 @@ impl<E: Real> Network<'_, E> {
         kernel.layer_adjoint(self.isa, layer, None, false);
         for (first, count, at) in parts.ranges() {
             let row = first * kernel.channels();
-            let input_ld = row_distance(matrix.padded_row);
             let product = ProductAdjoint {
                 shape: Shape { points: count, ..shape },
                 channels: kernel.channels(),

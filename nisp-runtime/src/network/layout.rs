@@ -79,6 +79,7 @@ impl Allocator {
         let at = self.padded;
         let padded_bias = at + padded[0] * padded[1];
         self.padded = padded_bias + padded[0];
+        // A few columns would be most of a padded row, and be multiplied like it.
         let (padded_row, padded_column) = if transposed { (1, padded[0]) } else { (padded[1], 1) };
         Matrix { name, rows, columns, weights, scales, bias, padded: at, padded_row, padded_column, padded_bias }
     }
@@ -90,15 +91,10 @@ impl Layout {
         let width = architecture.width.next_multiple_of(lanes);
         let mut at = Allocator { factorised: architecture.factorised, theta: 0, padded: 0 };
         let units = architecture.width;
+        let columns = architecture.inputs.features(inputs).map_or(inputs, |(_, features)| features.len());
         let affine = ["first layer", "gate c", "gate d"][..1 + architecture.gates()]
             .iter()
-            .map(|&name| match architecture.inputs.features(inputs) {
-                None => at.matrix(name.into(), [units, inputs], [width, inputs], true),
-                Some((_, features)) => {
-                    let padded = [width, features.len().next_multiple_of(lanes)];
-                    at.matrix(name.into(), [units, features.len()], padded, false)
-                }
-            })
+            .map(|&name| at.matrix(name.into(), [units, columns], [width, columns], true))
             .collect();
         let hidden = (2..=architecture.layers)
             .map(|layer| at.matrix(format!("layer {layer}"), [units, units], [width, width], false))

@@ -43,7 +43,7 @@ pub(crate) struct Mapping<E: Real> {
 
 impl<E: Real> Mapping<E> {
     fn new(isa: Isa, layout: &Layout, (function, features): (Function, Vec<Feature>)) -> Self {
-        let width = layout.affine[0].padded_row;
+        let width = features.len().next_multiple_of(isa.lanes::<E>());
         let by_feature = |value: &dyn Fn(&Feature) -> f64| {
             let mut values = AlignedVec::zeros(width);
             values.iter_mut().zip(&features).for_each(|(to, feature)| *to = E::from_f64(value(feature)));
@@ -65,7 +65,7 @@ impl<E: Real> Mapping<E> {
             phases: by_feature(&|feature| feature.phase),
             linear: by_coordinate(&|feature| &feature.linear),
             offsets: by_feature(&|feature| feature.offset),
-            matrices: layout.affine.iter().map(|_| Packed::zeros(isa, width, layout.width)).collect(),
+            matrices: layout.affine.iter().map(|_| Packed::zeros(isa, features.len(), layout.width)).collect(),
         }
     }
 }
@@ -119,7 +119,7 @@ impl<E: Real> Weights<E> {
         if let Some(features) = &mut self.features {
             for (packed, matrix) in features.matrices.iter_mut().zip(&layout.affine) {
                 let w = &self.padded[matrix.padded..matrix.padded_bias];
-                packed.pack(Left::transposed(w, matrix.padded_row), layout.width);
+                packed.pack(Left::rows(w, layout.width), layout.width);
             }
         }
     }
@@ -179,14 +179,19 @@ pub(crate) struct ProductAdjoint<'a, E> {
 }
 
 impl<E: Real> ProductAdjoint<'_, E> {
-    /// `weights += bar^T input`, and the biases the sum of the values' adjoints, in a padded gradient.
+    /// `weights += bar^T input`, or the transpose of that where weights lie so, and the biases the sum of the values' adjoints, in a padded gradient.
     pub(crate) fn add(&self, isa: Isa, matrix: &Matrix, gradient: &mut [E]) {
         let Self { shape, channels, bar, input, input_ld } = *self;
         let (weights, biases) = gradient[matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
         let distance = channels * shape.ld;
         add_rows(&mut biases[..shape.width], &bar[..shape.points * distance], distance);
-        let extents = gemm::Shape { rows: shape.width, columns: matrix.padded_row, inner: shape.points * channels };
-        let right = Right::Rows { elements: input, stride: input_ld };
-        gemm(isa, extents, Left::transposed(bar, shape.ld), right, weights, matrix.padded_row, Write::Add);
+        let (rows, columns, [left, right], stride) = if matrix.padded_row == 1 {
+            (matrix.columns, shape.width, [(input, input_ld), (bar, shape.ld)], matrix.padded_column)
+        } else {
+            (shape.width, shape.width, [(bar, shape.ld), (input, input_ld)], matrix.padded_row)
+        };
+        let extents = gemm::Shape { rows, columns, inner: shape.points * channels };
+        let right = Right::Rows { elements: right.0, stride: right.1 };
+        gemm(isa, extents, Left::transposed(left.0, left.1), right, weights, stride, Write::Add);
     }
 }
