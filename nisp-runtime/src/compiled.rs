@@ -49,9 +49,8 @@ where
         dispatch(isa, AffineAdjointKernel::<E, H, K, D, S>(layer, PhantomData));
     }
 
-    fn features(&self, features: Features<'_, E>) {
-        // Sines and logarithms, which go element by element in any case.
-        plain(FeaturesKernel::<E, H, K, D, S>(features, PhantomData));
+    fn features(&self, isa: Isa, features: Features<'_, E>) {
+        dispatch(isa, FeaturesKernel::<E, H, K, D, S>(features, PhantomData));
     }
 
     fn layer(&self, isa: Isa, layer: Layer<'_, E>, gate: Option<Gate<'_, E>>, last: bool) {

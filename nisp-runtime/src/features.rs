@@ -20,8 +20,8 @@ pub struct Features<'a, E> {
     pub function: Function,
     /// Projections `b`, `[coordinate][feature]`, `width` apart.
     pub projections: &'a [E],
-    /// Phases, one per feature.
-    pub phases: &'a [E],
+    /// What `phi` and its derivatives are made of, `[point][2][feature]`.
+    pub table: &'a [E],
     /// Linear parts `c`, as the projections.
     pub linear: &'a [E],
     /// Offsets, one per feature.
@@ -40,24 +40,38 @@ pub(crate) struct FeaturesKernel<'a, E, R, const K: usize, const D: usize, const
 /// Smallest argument of a logarithm: features are constant below, where no point of the domain lies.
 const SMALLEST: f64 = 0.5;
 
-/// `phi(a)` and its derivatives.
+/// What the features of a point are made of, two rows with an entry for each: sine and cosine of its argument, or logarithm
+/// and argument. Points stay for many steps, and these functions go element by element.
+pub(crate) fn tabulate<E: Real>(function: Function, point: &[E], projections: &[E], phases: &[E], table: &mut [E]) {
+    let (values, others) = table.split_at_mut(phases.len());
+    for (u, (value, other)) in values.iter_mut().zip(others).enumerate() {
+        let along = point.iter().zip(projections.iter().skip(u).step_by(phases.len()));
+        let a = along.fold(phases[u], |a, (x, b)| a + *b * *x).to_f64();
+        [*value, *other] = match function {
+            Function::Sine => [E::from_f64(a.sin()), E::from_f64(a.cos())],
+            Function::Logarithm { scale } => {
+                let a = a.max(SMALLEST);
+                [E::from_f64(scale) * E::from_f64(a.ln()), E::from_f64(a)]
+            }
+        };
+    }
+}
+
+/// `phi(a)` and its derivatives, from the two entries of a table.
 #[inline(always)]
-fn derivatives<V: Simd, const D: usize>(function: Function, a: V) -> [V; D] {
-    let zero = V::splat(V::Elem::ZERO);
-    let mut phi = [zero; D];
+fn derivatives<V: Simd, const D: usize>(function: Function, [value, other]: [V; 2]) -> [V; D] {
+    let mut phi = [V::splat(V::Elem::ZERO); D];
     match function {
         Function::Sine => {
-            let (sin, cos) = (a.map(f64::sin), a.map(f64::cos));
             for (n, phi) in phi.iter_mut().enumerate() {
-                *phi = [sin, cos, zero.sub(sin), zero.sub(cos)][n % 4];
+                *phi = [value, other, value.neg(), other.neg()][n % 4];
             }
         }
         Function::Logarithm { scale } => {
-            let a = a.max(V::splat(V::Elem::from_f64(SMALLEST)));
-            let scale = V::splat(V::Elem::from_f64(scale));
-            phi[0] = scale.mul(a.map(f64::ln));
+            phi[0] = value;
             // Derivative n is scale (-1)^(n - 1) (n - 1)! / a^n.
-            let mut last = scale.div(a);
+            let a = other;
+            let mut last = V::splat(V::Elem::from_f64(scale)).div(a);
             for (n, phi) in phi.iter_mut().enumerate().skip(1) {
                 *phi = last;
                 last = last.mul(V::splat(V::Elem::from_f64(-(n as f64)))).div(a);
@@ -74,10 +88,10 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
 
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
-        let Features { shape, function, projections, phases, linear, offsets, coordinates, output } = self.0;
+        let Features { shape, function, projections, table, linear, offsets, coordinates, output } = self.0;
         shape.holds(output, K);
         assert!([projections, linear].iter().all(|x| x.len() >= S * shape.width));
-        assert!([phases, offsets].iter().all(|x| x.len() >= shape.width));
+        assert!(table.len() >= shape.points * 2 * shape.width && offsets.len() >= shape.width);
         assert!(coordinates.len() >= shape.points * S && shape.width % V::LANES == 0);
         for u in (0..shape.width).step_by(V::LANES) {
             // SAFETY: lengths were checked above; u + LANES <= width.
@@ -89,18 +103,17 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
                     c[i] = V::load(linear.as_ptr().add(i * shape.width + u));
                 }
                 for p in 0..shape.points {
-                    let mut a = V::load(phases.as_ptr().add(u));
+                    let entry = |row: usize| V::load(table.as_ptr().add((2 * p + row) * shape.width + u));
                     let mut line = [V::splat(E::ZERO); D];
                     line[0] = V::load(offsets.as_ptr().add(u));
-                    for i in 0..S {
+                    for (i, &c) in c.iter().enumerate() {
                         let x = V::splat(*coordinates.get_unchecked(p * S + i));
-                        a = b[i].mul_add(x, a);
-                        line[0] = c[i].mul_add(x, line[0]);
+                        line[0] = c.mul_add(x, line[0]);
                     }
                     if D > 1 {
                         line[1] = V::splat(E::ONE);
                     }
-                    let curved = R::affine(&derivatives::<V, D>(function, a), &b);
+                    let curved = R::affine(&derivatives::<V, D>(function, [entry(0), entry(1)]), &b);
                     for (k, y) in curved.into_iter().zip(R::affine(&line, &c)).map(|(x, y)| x.add(y)).enumerate() {
                         y.store(output.as_mut_ptr().add((p * K + k) * shape.ld + u));
                     }

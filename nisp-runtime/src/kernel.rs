@@ -60,7 +60,7 @@ pub trait Layers<E: Real>: Send + Sync {
     /// Adjoint of [`Layers::affine`].
     fn affine_adjoint(&self, isa: Isa, layer: AffineAdjoint<'_, E>);
     /// Channels of fixed features of the coordinates.
-    fn features(&self, features: Features<'_, E>);
+    fn features(&self, isa: Isa, features: Features<'_, E>);
     /// A hidden layer after its matrix product; `last` delivers only the channels that heads read, if there is a gate.
     fn layer(&self, isa: Isa, layer: Layer<'_, E>, gate: Option<Gate<'_, E>>, last: bool);
     /// Adjoint of [`Layers::layer`]. Without a gate it reads the seeds of all channels.

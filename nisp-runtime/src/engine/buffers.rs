@@ -12,7 +12,8 @@ use crate::real::Real;
 /// Scratch of one worker, large enough for a tile of any group.
 pub(crate) struct Buffers<E: Real> {
     pub(super) coordinates: AlignedVec<E>,
-    /// Channels of the features of the coordinates, if there are any.
+    /// What features of the coordinates are made of, and their channels, if there are any.
+    pub(super) table: AlignedVec<E>,
     pub(super) features: AlignedVec<E>,
     /// `tanh` of the first layer and the gates (on features of the coordinates, their arguments), and its slope.
     pub(super) values: Vec<AlignedVec<E>>,
@@ -85,14 +86,11 @@ impl<E: Real> Buffers<E> {
         let rows = || AlignedVec::zeros(extent.rows * ld);
         let values = || AlignedVec::zeros(extent.points * ld);
         let quantities = |count: usize| AlignedVec::zeros(count * stride);
-        let features = if layout.is_mapped() {
-            extent.rows * row_distance(layout.affine[0].columns.next_multiple_of(POINT_LANES))
-        } else {
-            0
-        };
+        let features = if layout.is_mapped() { layout.affine[0].columns.next_multiple_of(POINT_LANES) } else { 0 };
         Self {
             coordinates: AlignedVec::zeros(extent.points * layout.inputs),
-            features: AlignedVec::zeros(features),
+            table: AlignedVec::zeros(extent.points * 2 * features),
+            features: AlignedVec::zeros(extent.rows * row_distance(features)),
             values: layout.affine.iter().map(|_| if features == 0 { values() } else { rows() }).collect(),
             slopes: layout.affine.iter().map(|_| values()).collect(),
             lifted: layout.affine.iter().map(|_| rows()).collect(),

@@ -2,6 +2,7 @@
 
 use super::chamfer::Chamfer;
 use super::reading::Reading;
+use super::sites::Sites;
 use crate::kernel::{GroupKernel, Programs};
 use crate::problem::powers::Powers;
 use crate::real::Real;
@@ -13,10 +14,10 @@ pub struct BoundGroup<E: Real> {
     pub(crate) schema: &'static schema::Group,
     /// Number of points.
     pub(crate) points: usize,
-    /// Network coordinates, `[site][point][coordinate]`: of the points, then of their partners if they have any.
-    pub(crate) network: Vec<E>,
+    /// Where the network is evaluated.
+    pub(super) network: Sites<E>,
     /// The same in double precision, where values are needed in it.
-    pub(crate) doubled: Vec<f64>,
+    pub(super) doubled: Option<Sites<f64>>,
     /// Coordinates in the engine's units, `[site][coordinate][point]`.
     pub(crate) coordinates: Vec<E>,
     /// Data, `[column][point]`.
@@ -99,8 +100,8 @@ impl<E: Real> BoundGroup<E> {
             programs: kernel.programs,
             schema,
             points,
-            network: network().map(E::from_f64).collect(),
-            doubled: if kernel.layers.takes_values() { network().collect() } else { Vec::new() },
+            network: Sites::new(network()),
+            doubled: kernel.layers.takes_values().then(|| Sites::new(network())),
             coordinates: transposed,
             columns: columns.iter().flatten().map(|&x| E::from_f64(x)).collect(),
             terms,

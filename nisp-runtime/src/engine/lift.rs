@@ -29,13 +29,13 @@ impl<E: Real> Network<'_, E> {
                 shape: Shape { points: shape.points, ..features.shape },
                 function: features.function,
                 projections: &features.projections,
-                phases: &features.phases,
+                table: &buffers.table,
                 linear: &features.linear,
                 offsets: &features.offsets,
                 coordinates: &buffers.coordinates,
                 output: &mut buffers.features,
             };
-            kernel.features(layer);
+            kernel.features(self.isa, layer);
         }
         for (j, matrix) in self.layout.affine.iter().enumerate() {
             let (bias, slope) = (self.weights.bias(matrix), &mut buffers.slopes[j]);

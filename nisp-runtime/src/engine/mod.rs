@@ -22,6 +22,7 @@ mod objective;
 mod predict;
 mod reading;
 mod resample;
+mod sites;
 mod tile;
 mod weigh;
 
@@ -100,12 +101,22 @@ impl<E: Real> Engine<E> {
             })
             .collect();
         let extent = Extent::of(groups.iter());
+        let weights = Weights::new(isa, &layout, extent.doubled);
+        for group in &mut groups {
+            if let Some(features) = &weights.features {
+                group.network.tabulate(features);
+            }
+            let features = weights.doubled().and_then(|weights| weights.features.as_ref());
+            if let (Some(sites), Some(features)) = (&mut group.doubled, features) {
+                sites.tabulate(features);
+            }
+        }
         let workers = rayon::current_num_threads() + 1;
         let buffers = (0..workers).map(|_| Mutex::new(Buffers::new(&layout, extent))).collect();
         let integrals = Integrals::new(&groups, scalars.len(), learned.len());
         let mut engine = Self {
             isa,
-            weights: Weights::new(isa, &layout, extent.doubled),
+            weights,
             theta: vec![E::from_f64(f64::NAN); layout.len],
             is_assigned: false,
             layout,

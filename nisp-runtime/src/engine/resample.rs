@@ -75,20 +75,14 @@ impl<E: Real> Resampler<E> {
 impl<E: Real> BoundGroup<E> {
     /// Takes over the chosen points of a group that has more of them.
     fn take(&mut self, pool: &Self, chosen: &[usize]) {
-        let inputs = pool.network.len() / pool.points;
-        take_points(&mut self.network, &pool.network, inputs, chosen);
-        take_points(&mut self.doubled, &pool.doubled, inputs, chosen);
+        self.network.take(&pool.network, pool.points, chosen);
+        if let (Some(own), Some(all)) = (&mut self.doubled, &pool.doubled) {
+            own.take(all, pool.points, chosen);
+        }
         for (own, all) in [(&mut self.coordinates, &pool.coordinates), (&mut self.columns, &pool.columns)] {
             for (own, all) in own.chunks_exact_mut(self.points).zip(all.chunks_exact(pool.points)) {
                 own.iter_mut().zip(chosen).for_each(|(to, &from)| *to = all[from]);
             }
         }
-    }
-}
-
-/// Takes over coordinates, if there are any.
-fn take_points<T: Copy>(own: &mut [T], pool: &[T], inputs: usize, chosen: &[usize]) {
-    for (to, &from) in own.chunks_exact_mut(inputs).zip(chosen) {
-        to.copy_from_slice(&pool[from * inputs..][..inputs]);
     }
 }

@@ -51,14 +51,6 @@ impl<'a, E: Real> Tile<'a, E> {
         Shape { points: self.count * self.group.sites(), width: layout.width, ld: row_distance(layout.width) }
     }
 
-    /// Copies coordinates of the network, of the points, then of their partners, from those of the group.
-    pub(super) fn load_coordinates<T: Copy>(&self, from: &[T], inputs: usize, to: &mut [T]) {
-        let len = self.count * inputs;
-        for (site, to) in to.chunks_exact_mut(len).take(self.group.sites()).enumerate() {
-            to.copy_from_slice(&from[(site * self.group.points + self.first) * inputs..][..len]);
-        }
-    }
-
     /// Distance between quantities of the network's points: the tile's own, then their partners.
     pub(super) fn output_stride(&self) -> usize {
         (self.count * self.group.sites()).next_multiple_of(POINT_LANES)
@@ -120,7 +112,7 @@ impl<E: Real> Network<'_, E> {
     /// Copies a tile's points and data; lanes past the last point repeat it, so that programs stay finite there.
     fn load(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
         let group = tile.group;
-        tile.load_coordinates(&group.network, self.layout.inputs, &mut buffers.coordinates);
+        group.network.load(tile, buffers);
         for (from, to) in [(&group.coordinates, &mut buffers.points), (&group.columns, &mut buffers.columns)] {
             for (from, to) in from.chunks_exact(group.points).zip(to.chunks_exact_mut(tile.stride())) {
                 let values = &from[tile.first..][..tile.count];

@@ -13,7 +13,7 @@ pub use inputs::{Fourier, Function, Inputs, Stretched};
 pub(crate) use init::normal;
 pub use layout::{Layout, Matrix};
 pub use weights::Weights;
-pub(crate) use weights::{ProductAdjoint, multiply};
+pub(crate) use weights::{Mapping, ProductAdjoint, multiply};
 
 /// The shape of a network.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,6 +3,7 @@
 use super::inputs::{Feature, Function};
 use super::{Layout, Matrix};
 use crate::aligned::AlignedVec;
+use crate::features::tabulate;
 use crate::gemm::{self, Left, Packed, Right, Write, gemm};
 use crate::layer::{Shape, row_distance};
 use crate::real::Real;
@@ -67,6 +68,19 @@ impl<E: Real> Mapping<E> {
             offsets: by_feature(&|feature| feature.offset),
             matrices: layout.affine.iter().map(|_| Packed::zeros(isa, features.len(), layout.width)).collect(),
         }
+    }
+}
+
+impl<E: Real> Mapping<E> {
+    /// What the features at points (`[point][coordinate]`) are made of, `[point][2][feature]`.
+    pub(crate) fn table(&self, coordinates: &[E]) -> Vec<E> {
+        let width = self.shape.width;
+        let inputs = self.projections.len() / width;
+        let mut table = vec![E::ZERO; coordinates.len() / inputs * 2 * width];
+        for (point, table) in coordinates.chunks_exact(inputs).zip(table.chunks_exact_mut(2 * width)) {
+            tabulate(self.function, point, &self.projections, &self.phases, table);
+        }
+        table
     }
 }
 
