@@ -27,7 +27,7 @@ fn spread(count: usize) -> Vec<f64> {
 }
 
 /// Mean error where so many points are bound.
-fn error(points: usize, resampling: Option<Resampling>) -> f64 {
+fn error(points: usize, inputs: Inputs, resampling: Option<Resampling>) -> f64 {
     let mut problem = Problem::new(scene::<layer::forward::Scene>());
     problem.set_parameter("eps", EPS).unwrap();
     problem.set_group("line", spread(points).into(), Vec::new()).unwrap();
@@ -35,7 +35,7 @@ fn error(points: usize, resampling: Option<Resampling>) -> f64 {
     problem.set_group("right", vec![1.0].into(), Vec::new()).unwrap();
     let settings = Settings {
         optimizer: Optimizer::Broyden,
-        architecture: Architecture { inputs: Inputs::Coordinates, ..Architecture::modified(16, 2) },
+        architecture: Architecture { inputs, ..Architecture::modified(16, 2) },
         resampling,
         budget: None,
         iterations: Some(1500),
@@ -51,7 +51,8 @@ fn error(points: usize, resampling: Option<Resampling>) -> f64 {
 
 #[test]
 fn points_that_follow_the_residual_find_the_layers() {
-    let (fixed, drawn) = (error(60, None), error(1200, Some(Resampling { share: 0.05, ..Resampling::default() })));
+    let resampling = Some(Resampling { share: 0.05, ..Resampling::default() });
+    let (fixed, drawn) = (error(60, Inputs::Coordinates, None), error(1200, Inputs::Coordinates, resampling));
     assert!(drawn < 0.2 * fixed, "{drawn} drawn, {fixed} fixed");
     assert!(drawn < 2e-3, "{drawn}");
 }
@@ -59,5 +60,12 @@ fn points_that_follow_the_residual_find_the_layers() {
 #[test]
 fn the_answer_is_the_same_every_time() {
     let resampling = Some(Resampling { share: 0.1, every: 20, ..Resampling::default() });
-    assert_eq!(error(300, resampling), error(300, resampling));
+    assert_eq!(error(300, Inputs::Coordinates, resampling), error(300, Inputs::Coordinates, resampling));
+}
+
+#[test]
+fn features_go_with_the_points_that_are_drawn() {
+    let resampling = Some(Resampling { share: 0.05, ..Resampling::default() });
+    let (fixed, drawn) = (error(60, Inputs::Automatic, None), error(1200, Inputs::Automatic, resampling));
+    assert!(drawn < 0.2 * fixed, "{drawn} drawn, {fixed} fixed");
 }
