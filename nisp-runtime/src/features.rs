@@ -69,12 +69,11 @@ fn derivatives<V: Simd, const D: usize>(function: Function, [value, other]: [V; 
         }
         Function::Logarithm { scale } => {
             phi[0] = value;
-            // Derivative n is scale (-1)^(n - 1) (n - 1)! / a^n.
-            let a = other;
-            let mut last = V::splat(V::Elem::from_f64(scale)).div(a);
+            // The other is the argument a; derivative n is scale (-1)^(n - 1) (n - 1)! / a^n.
+            let mut last = V::splat(V::Elem::from_f64(scale)).div(other);
             for (n, phi) in phi.iter_mut().enumerate().skip(1) {
                 *phi = last;
-                last = last.mul(V::splat(V::Elem::from_f64(-(n as f64)))).div(a);
+                last = last.mul(V::splat(V::Elem::from_f64(-(n as f64)))).div(other);
             }
         }
     }

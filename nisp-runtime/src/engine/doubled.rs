@@ -17,7 +17,7 @@ impl<E: Real> Network<'_, E> {
         let Self { isa, layout, weights, .. } = *self;
         let weights = weights.doubled().expect("kept where layers take values");
         let layers = reading::values(layout.inputs).expect("layers take values over few coordinates only");
-        tile.group.doubled.as_ref().expect("kept likewise").load(tile, buffers);
+        tile.group.doubled.as_ref().expect("kept where layers take values").load(tile, buffers);
         Network { isa, layout, weights, scalars: &[] }.layers(layers, tile.shape(layout), buffers, None);
     }
 }

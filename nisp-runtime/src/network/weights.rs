@@ -193,7 +193,8 @@ pub(crate) struct ProductAdjoint<'a, E> {
 }
 
 impl<E: Real> ProductAdjoint<'_, E> {
-    /// `weights += bar^T input`, or the transpose of that where weights lie so, and the biases the sum of the values' adjoints, in a padded gradient.
+    /// `weights += bar^T input`, or the transpose of that where weights lie so, and the biases the sum of the values'
+    /// adjoints, in a padded gradient.
     pub(crate) fn add(&self, isa: Isa, matrix: &Matrix, gradient: &mut [E]) {
         let Self { shape, channels, bar, input, input_ld } = *self;
         let (weights, biases) = gradient[matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
