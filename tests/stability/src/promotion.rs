@@ -116,7 +116,7 @@ fn ratio(name: &str, optimizer: Optimizer, width: usize) -> Row {
     let samples = format!("{SEEDS} seeds, {:.2} to {:.2}", ratios[0], ratios[ratios.len() - 1]);
     Row::new(what, samples, ratios[ratios.len() / 2], 0.6)
         .timed(
-            "a step in f32 takes .50 to .56 of the time of one in f64, and of two runs that part early either may need a tenth \
+            "a step in f32 takes .48 to .55 of the time of one in f64, and of two runs that part early either may need a tenth \
              more steps",
         )
 }
