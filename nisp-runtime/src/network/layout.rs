@@ -79,7 +79,6 @@ impl Allocator {
         let at = self.padded;
         let padded_bias = at + padded[0] * padded[1];
         self.padded = padded_bias + padded[0];
-        // A few columns would be most of a padded row, and be multiplied like it.
         let (padded_row, padded_column) = if transposed { (1, padded[0]) } else { (padded[1], 1) };
         Matrix { name, rows, columns, weights, scales, bias, padded: at, padded_row, padded_column, padded_bias }
     }
@@ -92,6 +91,7 @@ impl Layout {
         let mut at = Allocator { factorised: architecture.factorised, theta: 0, padded: 0 };
         let units = architecture.width;
         let columns = architecture.inputs.features(inputs).map_or(inputs, |(_, features)| features.len());
+        // Transposed, for rows of a few numbers would be padding for the most part, and be multiplied like it.
         let affine = ["first layer", "gate c", "gate d"][..1 + architecture.gates()]
             .iter()
             .map(|&name| at.matrix(name.into(), [units, columns], [width, columns], true))

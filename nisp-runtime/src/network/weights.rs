@@ -69,9 +69,7 @@ impl<E: Real> Mapping<E> {
             matrices: layout.affine.iter().map(|_| Packed::zeros(isa, features.len(), layout.width)).collect(),
         }
     }
-}
 
-impl<E: Real> Mapping<E> {
     /// What the features at points (`[point][coordinate]`) are made of, `[point][2][feature]`.
     pub(crate) fn table(&self, coordinates: &[E]) -> Vec<E> {
         let width = self.shape.width;
@@ -200,13 +198,11 @@ impl<E: Real> ProductAdjoint<'_, E> {
         let (weights, biases) = gradient[matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
         let distance = channels * shape.ld;
         add_rows(&mut biases[..shape.width], &bar[..shape.points * distance], distance);
-        let (rows, columns, [left, right], stride) = if matrix.padded_row == 1 {
-            (matrix.columns, shape.width, [(input, input_ld), (bar, shape.ld)], matrix.padded_column)
-        } else {
-            (shape.width, shape.width, [(bar, shape.ld), (input, input_ld)], matrix.padded_row)
-        };
-        let extents = gemm::Shape { rows, columns, inner: shape.points * channels };
+        let (bar, input) = ((bar, shape.ld), (input, input_ld));
+        let is_transposed = matrix.padded_row == 1;
+        let (rows, left, right) = if is_transposed { (matrix.columns, input, bar) } else { (shape.width, bar, input) };
+        let extents = gemm::Shape { rows, columns: shape.width, inner: shape.points * channels };
         let right = Right::Rows { elements: right.0, stride: right.1 };
-        gemm(isa, extents, Left::transposed(left.0, left.1), right, weights, stride, Write::Add);
+        gemm(isa, extents, Left::transposed(left.0, left.1), right, weights, shape.width, Write::Add);
     }
 }
