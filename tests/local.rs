@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use nisp::local::{Local, Patches};
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Points, Problem, Settings, Solution, recover, scene};
+use nisp::{Points, Problem, SceneRef, Settings, Solution, recover, scene};
 
 nisp::pde! {
     /// A drumhead.
@@ -67,6 +67,11 @@ fn disc(count: usize) -> Vec<f64> {
 
 /// Binds a drumhead that is seen with noise of a standard deviation in millimetres.
 fn bind(problem: &mut Problem, f: f64, a: f64, noise: f64) {
+    bind_with_outliers(problem, f, a, (noise, 0));
+}
+
+/// The same, where every so many points are 8 mm too high; 0 for none.
+fn bind_with_outliers(problem: &mut Problem, f: f64, a: f64, (noise, every): (f64, usize)) {
     let (interior, rim) = (
         disc(4000),
         (0..240).flat_map(|i| {
@@ -91,10 +96,13 @@ fn bind(problem: &mut Problem, f: f64, a: f64, noise: f64) {
         };
         (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     };
-    let cloud = seen.chunks(2).flat_map(|c| [c[0], c[1], height(c[0].hypot(c[1]), f, a) + noise * normal()]);
+    let off = |i: usize| if every > 0 && i % every == 0 { 8.0 } else { 0.0 };
+    let height = |i: usize, c: &[f64]| height(c[0].hypot(c[1]), f, a) + off(i);
+    let cloud = seen.chunks(2).enumerate().flat_map(|(i, c)| [c[0], c[1], height(i, c) + noise * normal()]);
     let cloud = cloud.map(|x| unit * x).collect();
-    problem.set_cloud("surface", "cloud", cloud).unwrap();
-    problem.set_view("surface", "cloud", [0.0, 0.0, 1.0]).unwrap();
+    let term = problem.scene().schema.groups[1].terms[0].name;
+    problem.set_cloud("surface", term, cloud).unwrap();
+    problem.set_view("surface", term, [0.0, 0.0, 1.0]).unwrap();
 }
 
 fn solve(problem: &Problem, patches: Option<Patches>, threads: usize) -> Solution {
@@ -269,4 +277,93 @@ fn steps_into_places_without_a_value_are_taken_back_and_named() {
     let named = |warning: &str| warning.contains("interior.balance") && warning.contains("point");
     assert!(solution.warnings.iter().any(|warning| named(&warning.message)), "{:?}", solution.warnings);
     assert!(values(&solution.evaluate(&disc(200)), "w").iter().all(|w| w.is_finite()));
+}
+
+nisp::pde! {
+    /// A drumhead seen with declared noise.
+    pub mod seen {
+        coordinates:
+            /// place
+            x [mm],
+            /// place
+            y [mm];
+        fields:
+            /// height
+            w [mm];
+        parameters:
+            /// tension
+            T [N/m] in 1 .. 1000 = 20,
+            /// pressure from below
+            p [Pa];
+
+        on interior { balance: -T * laplacian(w) == p; }
+        on surface {
+            cloud: chamfer [x, y, w];
+            tukey: chamfer [x, y, w] with tukey(4);
+            sure: chamfer [x, y, w] within 3 [mm];
+            surer: chamfer [x, y, w] within 3 [mm] weight 4;
+        }
+        on rim { held: w == 0; }
+
+        /// Nothing declared.
+        scene plain { learn T; without surface.tukey, surface.sure, surface.surer; }
+        /// A loss.
+        scene robust { learn T; without surface.cloud, surface.sure, surface.surer; }
+        /// Noise.
+        scene noisy { learn T; without surface.cloud, surface.tukey, surface.surer; }
+        /// Noise, and a weight.
+        scene heavy { learn T; without surface.cloud, surface.tukey, surface.sure; }
+    }
+}
+
+/// Tension, its deviation, and the noise of the cloud in millimetres.
+fn tension(scene: SceneRef, noise: f64, every: usize) -> (f64, f64, f64) {
+    let mut problem = Problem::new(scene);
+    bind_with_outliers(&mut problem, 0.0, 1.0, (noise, every));
+    let mut solution = solve(&problem, None, 1);
+    let tension = solution.learned()[0].clone();
+    let terms = solution.terms();
+    let cloud = terms.iter().find(|term| term.observation).unwrap();
+    (tension.value, tension.deviation.unwrap_or(f64::NAN), cloud.noise.unwrap() * cloud.unit.factor * 1e3)
+}
+
+/// One point of six is 8 mm too high. Huber's loss counts each as three deviations; Tukey's leaves it out.
+#[test]
+fn a_declared_loss_acts_on_a_cloud() {
+    let off = |(value, ..): (f64, f64, f64)| (value / T - 1.0).abs();
+    let huber = off(tension(scene::<seen::plain::Scene>(), 0.1, 6));
+    let (value, deviation, noise) = tension(scene::<seen::robust::Scene>(), 0.1, 6);
+    let tukey = off((value, deviation, noise));
+    assert!(tukey < 2e-3 && 3.0 * tukey < huber, "{tukey} beside {huber}");
+    assert!((noise / 0.1 - 1.0).abs() < 0.1, "{noise}");
+}
+
+/// Noise that is declared is not estimated; a weight of four makes half the deviation.
+#[test]
+fn declared_noise_and_weight_act_on_a_cloud() {
+    let (_, estimated, noise) = tension(scene::<seen::plain::Scene>(), 0.1, 0);
+    let (_, declared, within) = tension(scene::<seen::noisy::Scene>(), 0.1, 0);
+    let (_, heavy, _) = tension(scene::<seen::heavy::Scene>(), 0.1, 0);
+    assert!((noise / 0.1 - 1.0).abs() < 0.1 && (within / 3.0 - 1.0).abs() < 1e-9, "{noise} {within}");
+    assert!(declared > 5.0 * estimated, "{declared} beside {estimated}");
+    assert!((heavy / declared - 0.5).abs() < 0.05, "{heavy} beside {declared}");
+}
+
+#[test]
+fn terms_say_how_well_they_are_met() {
+    let mut problem = Problem::new(scene::<seen::plain::Scene>());
+    bind(&mut problem, 0.0, 1.0, 0.1);
+    let terms = solve(&problem, None, 1).terms();
+    let names: Vec<&str> = terms.iter().map(|term| term.name.as_str()).collect();
+    assert_eq!(names, ["interior.balance", "surface.cloud", "rim.held"]);
+    let [balance, cloud, held] = &terms[..] else { panic!("three terms") };
+    assert!(cloud.observation && !balance.observation && balance.noise.is_none() && held.noise.is_none());
+    let millimetres = |term: &nisp::TermReport| term.rms * term.unit.factor * 1e3;
+    assert!((millimetres(cloud) / 0.1 - 1.0).abs() < 0.1, "{}", millimetres(cloud));
+    assert!(held.rms < 1e-2 * held.size, "{held:?}");
+    // The pressure in the unit of the equation, from which the splines are off by little.
+    assert!(
+        (balance.size * balance.unit.factor / P - 2.0).abs() < 1.5 && balance.rms < 0.05 * balance.size,
+        "{balance:?}"
+    );
 }

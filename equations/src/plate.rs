@@ -5,6 +5,7 @@
 use nisp::{Points, Problem, scene_in_both_precisions as scene};
 use nisp_data::Table;
 use nisp_data::domain::{Domain, Sampling};
+use nisp_data::input::read_text;
 use serde::Deserialize;
 
 use crate::catalogue::{Binding, Entry, Prepared, Request};
@@ -43,7 +44,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
     let path = request.data.clone().unwrap_or_else(|| entry.data.into());
     let fault = |reason: String| PrepareError::File { path: path.clone(), reason };
     let text = match &request.data {
-        Some(path) => std::fs::read_to_string(path).map_err(|error| fault(error.to_string()))?,
+        Some(path) => read_text(path)?,
         None => EXAMPLE.into(),
     };
     let sample: Sample = toml::from_str(&text).map_err(|error| fault(error.message().into()))?;

@@ -85,8 +85,8 @@ fn an_unresolved_answer_says_so() {
     };
     let solution = run(&prepared, &settings).unwrap();
     assert_eq!(solution.status, Status::Budget);
-    let said = |words: &str| solution.warnings.iter().any(|warning| warning.message.contains(words));
-    assert!(said("`psi` is not resolved"), "{:?}", solution.warnings);
+    let said = |words: &str| solution.verdict.failed().any(|check| check.message.contains(words));
+    assert!(said("`psi` is not resolved"), "{:?}", solution.verdict);
 }
 
 #[test]
@@ -103,8 +103,9 @@ fn a_rhythm_as_weak_as_the_noise_is_not_missed_in_silence() {
     // Two units a layer do not follow 25 periods.
     let settings = Settings { architecture: narrow(2), iterations: Some(30), budget: None, ..Settings::default() };
     let solution = run(&circuit, &settings).unwrap();
-    let says = |what: &str| solution.warnings.iter().any(|warning| warning.message.contains(what));
-    assert!(says("up and down 25 times") && !says("misfit"), "{:?}", solution.warnings);
+    let fails = |what: &str| solution.verdict.failed().any(|check| check.check == what);
+    let says = |what: &str| solution.verdict.failed().any(|check| check.message.contains(what));
+    assert!(says("up and down 25 times") && !fails("misfit"), "{:?}", solution.verdict);
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use clap::{Args as Group, Parser, Subcommand};
+use nisp_cli::options::{count, optimizers, precisions, seconds, seed, size};
 use nisp_data::cloud::LengthUnit;
 
 /// Recover unknown sources from noisy measurements and a known governing equation.
@@ -126,7 +127,8 @@ const DATA: &str = "Data";
 const METHOD: &str = "Method";
 const RESULTS: &str = "Results";
 
-const SEE_HELP: &str = "Exit codes: 0 solved, 2 bad input, 3 not converged. `--help` has examples.";
+const SEE_HELP: &str =
+    "Exit codes: 0 solved, 2 bad input, 3 not converged, 4 results elsewhere. `--help` has examples.";
 
 const TEACH: &str = "\
 Examples:
@@ -148,7 +150,8 @@ Examples:
 Data:
   A CSV with one header line, a time that rises, and a column for each observed quantity. For `q` in metres the headers
   `q`, `q [m]` and `q_m` are found by themselves; `q_mm` is converted. Any other header is chosen with --column. A
-  header without a unit is taken in the declared one: `nisp explain SCENE` shows units and parameters.
+  header without a unit is taken in the declared one: `nisp explain SCENE` shows units and parameters. Files may have
+  256 MiB; devices and pipes are not read.
   For contact, a cloud: PLY, PCD, NPY, NPZ, CSV or XYZ, in metres or the unit of --unit, in the frame of the sample
   (data/README.md). --column then names columns of the truth.
 
@@ -163,10 +166,13 @@ Results, in the folder of --out:
   state.csv   the fields, likewise
   plot.svg    both, with measurements, truth and a band of two standard deviations
   For contact also surface.svg, surface.vtu and surface.ply: the deformed surface, coloured by pressure.
-  All are written together at the end; files of those names are replaced.
+  All are written together at the end, or none; files of those names are replaced. One run at a time has the folder.
+  If it cannot be written any more, they go to a new one beside it or to the system's temporary folder, and the last
+  line (`files` of --json) says where; if no folder takes them, the tables go to standard output.
 
-Ctrl-C (or SIGTERM) ends the run at the best state so far, which is written together with checkpoint.nisp; the status
-is not_converged. A second Ctrl-C ends it at once.
+Ctrl-C (or SIGTERM) ends the run at the best state so far, which is written together with checkpoint.nisp and without
+error bars; the status is not_converged. If that takes more than 8 s, checkpoint.nisp alone is written. A second Ctrl-C
+ends it at once.
 
 Checkpoints (--checkpoint, Ctrl-C) hold the whole state of the solver. `nisp solve SCENE --resume DIR`, with the other
 options as before, goes on as if the run had not stopped, to the last bit on the same kind of processor; --budget counts
@@ -175,17 +181,8 @@ from now, --iterations from the first start. A checkpoint that is damaged or of 
 Exit codes:
   0  solved, or the budget is spent (status `converged`, `budget`)
   2  bad input; nothing was written
-  3  not converged, or interrupted (status `not_converged`); the best state was written";
-
-/// Names of all methods.
-pub(crate) fn optimizers() -> clap::builder::PossibleValuesParser {
-    nisp::Optimizer::ALL.map(nisp::Optimizer::name).into()
-}
-
-/// Names of all precisions.
-pub(crate) fn precisions() -> clap::builder::PossibleValuesParser {
-    nisp::Width::ALL.map(nisp::Width::name).into()
-}
+  3  not converged, or interrupted (status `not_converged`); the best state was written
+  4  the results could not be written to the folder of --out, or to standard output";
 
 fn pair(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=HEADER, for instance q=q_m_sigma0.01")?;
@@ -197,39 +194,4 @@ fn value(text: &str) -> Result<(String, f64), String> {
     let number = value.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     let number = number.ok_or("the value must be a finite number, in the declared unit and without it")?;
     Ok((name.trim().into(), number))
-}
-
-/// More of anything than this is a slip.
-const MOST: usize = 1_000_000_000;
-
-/// A whole number of at least 1.
-pub(crate) fn count(text: &str) -> Result<usize, String> {
-    let number = text.parse::<usize>().ok().filter(|number| (1..=MOST).contains(number));
-    number.ok_or_else(|| "give a whole number of at least 1".into())
-}
-
-/// Networks wider or deeper than this are a slip.
-const WIDEST: usize = 4096;
-
-/// A size of a network.
-pub(crate) fn size(text: &str) -> Result<usize, String> {
-    let number = text.parse::<usize>().ok().filter(|number| (1..=WIDEST).contains(number));
-    number.ok_or_else(|| format!("give a whole number of at least 1 and at most {WIDEST}"))
-}
-
-/// Any seed.
-pub(crate) fn seed(text: &str) -> Result<u64, String> {
-    text.parse().map_err(|_| format!("give a whole number from 0 to {}", u64::MAX))
-}
-
-/// A time above zero.
-pub(crate) fn seconds(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|number| *number > 0.0 && *number <= MOST as f64);
-    number.ok_or_else(|| "give a positive number of seconds, for instance 10".into())
-}
-
-/// A number of zero or more.
-pub(crate) fn number(text: &str) -> Result<f64, String> {
-    let number = text.parse::<f64>().ok().filter(|number| *number >= 0.0 && number.is_finite());
-    number.ok_or_else(|| "give a number of zero or more".into())
 }

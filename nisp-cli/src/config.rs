@@ -3,6 +3,7 @@
 use std::ffi::OsString;
 use std::path::Path;
 
+use nisp_data::input::read_text;
 use toml::{Table, Value};
 
 /// Options whose values are paths.
@@ -13,7 +14,7 @@ const PATHS: [&str; 5] = ["data", "sample", "truth", "out", "resume"];
 /// # Errors
 /// A file that cannot be read or is no TOML, or a value of a kind that no option has.
 pub(crate) fn flags(path: &Path) -> Result<Vec<OsString>, String> {
-    let text = std::fs::read_to_string(path).map_err(|error| format!("--config {}: {error}", path.display()))?;
+    let text = read_text(path).map_err(|error| format!("--config {error}"))?;
     let table: Table = text.parse().map_err(|error: toml::de::Error| {
         let before = error.span().map_or(0, |span| span.start);
         let line = 1 + text[..before.min(text.len())].matches('\n').count();

@@ -8,7 +8,7 @@ use nisp::schema::{Origin, Unit};
 
 /// Prints a scene's equations, units, channels and savings, and what a point costs in a network of this shape.
 pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Architecture) -> Result<ExitCode, String> {
-    let entry = crate::entry(equation)?;
+    let entry = nisp_cli::entry(equation)?;
     let schema = entry.scene(scene).map_err(|error| error.to_string())?.schema;
     let mut text = String::new();
     // Writing into a string cannot fail.
@@ -57,7 +57,7 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Archite
     for skipped in schema.skipped {
         line(format!("skipped: {skipped}"));
     }
-    crate::print(&text)?;
+    nisp_cli::terminal::print(&text)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -14,6 +14,6 @@ pub(crate) fn list() -> Result<ExitCode, String> {
             text += &format!("{:10} --scene {:widest$}  {about}\n", "", schema.name);
         }
     }
-    crate::print(&text)?;
+    nisp_cli::terminal::print(&text)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -3,7 +3,7 @@
 use nisp::Solution;
 use nisp_equations::Prepared;
 
-use crate::score::Found;
+use nisp_cli::score::Found;
 
 /// What is measured of an answer.
 #[derive(Clone, Copy, PartialEq)]

@@ -1,32 +1,37 @@
 //! Scores against a truth that no solver has seen.
 
 use nisp::schema::Origin;
-use nisp::{Estimate, LearnedValue, Solution};
+use nisp::{Estimate, LearnedValue, Solution, TermReport};
 use nisp_equations::contact::ContactScore;
 use nisp_equations::rivals::mean_abs_error;
 use nisp_equations::{Contact, Prepared, Truth};
 
 /// All that is said of an answer.
-pub(crate) struct Found {
+pub struct Found {
     /// Against the truth, where it is known.
-    pub(crate) scores: Vec<Score>,
+    pub scores: Vec<Score>,
     /// Of a contact, where the scene has one.
-    pub(crate) contact: Option<ContactScore>,
+    pub contact: Option<ContactScore>,
     /// Of the contact by a classical way.
-    pub(crate) rival: Option<Rival>,
-    pub(crate) learned: Vec<LearnedValue>,
+    pub rival: Option<Rival>,
+    /// What the scene learned.
+    pub learned: Vec<LearnedValue>,
     /// Of every source.
-    pub(crate) sizes: Vec<Size>,
-    /// Of every observation where it was found: name, standard deviation, unit.
-    pub(crate) noise: Vec<(String, f64, &'static str)>,
+    pub sizes: Vec<Size>,
+    /// What is left of every equation, condition and observation.
+    pub terms: Vec<TermReport>,
 }
 
 /// How large a source is, and how large its error bars are: root mean squares over the points of the answer.
-pub(crate) struct Size {
-    pub(crate) name: &'static str,
-    pub(crate) unit: &'static str,
-    pub(crate) value: f64,
-    pub(crate) deviation: Option<f64>,
+pub struct Size {
+    /// The source.
+    pub name: &'static str,
+    /// Its declared unit.
+    pub unit: &'static str,
+    /// Of its values.
+    pub value: f64,
+    /// Of its standard deviations, where the method gives them.
+    pub deviation: Option<f64>,
 }
 
 impl Size {
@@ -42,23 +47,24 @@ impl Size {
 }
 
 /// What a classical way finds of a contact.
-pub(crate) struct Rival {
-    pub(crate) name: &'static str,
+pub struct Rival {
+    /// The way.
+    pub name: &'static str,
     /// Mean absolute error of the pressure, where the truth is known.
-    pub(crate) mean_abs: Option<f64>,
-    pub(crate) contact: ContactScore,
+    pub mean_abs: Option<f64>,
+    /// Of the contact.
+    pub contact: ContactScore,
 }
 
 impl Found {
-    pub(crate) fn of(solution: &mut Solution, prepared: &Prepared, estimates: &[Estimate]) -> Self {
+    /// What is said of a solution; `estimates` are its values at the points of [`Prepared`].
+    pub fn of(solution: &mut Solution, prepared: &Prepared, estimates: &[Estimate]) -> Self {
         let truth = prepared.truth.as_ref();
         let scalars = solution.scene().scalars;
         let learns = scalars.iter().any(|scalar| matches!(scalar.origin, Origin::Learned { .. }));
         // Error bars take a factorisation.
         let learned = if learns { solution.learned() } else { Vec::new() };
-        let observed = solution.terms().into_iter().filter_map(|term| Some((term.noise?, term)));
-        let name = |name: &str| name.rsplit('.').next().unwrap_or(name).to_string();
-        let noise = observed.map(|(noise, term)| (name(&term.name), noise, term.unit.text)).collect();
+        let terms = solution.terms();
         let solution = &*solution;
         let values = |name: &str, points: &[f64]| {
             let estimate = solution.evaluate(points).into_iter().find(|estimate| estimate.name == name);
@@ -70,18 +76,18 @@ impl Found {
             rival: None,
             learned,
             sizes: estimates.iter().filter(|estimate| estimate.source).map(Size::of).collect(),
-            noise,
+            terms,
         }
     }
 
     /// Asks the classical way too, which is shown to people only.
-    pub(crate) fn with_rival(mut self, prepared: &Prepared) -> Self {
+    pub fn with_rival(mut self, prepared: &Prepared) -> Self {
         self.rival = prepared.contact.as_ref().and_then(|contact| rival(contact, prepared.truth.as_ref()));
         self
     }
 
     /// What could not be measured, and why.
-    pub(crate) fn warnings(&self) -> Option<String> {
+    pub fn warnings(&self) -> Option<String> {
         let against = self.contact.as_ref()?.against.as_ref()?;
         let why = "no point, or no point of the truth, counts as touched: the patches have no distance";
         against.patch_chamfer_mm2.is_none().then(|| why.into())
@@ -97,16 +103,19 @@ fn rival(contact: &Contact, truth: Option<&Truth>) -> Option<Rival> {
 }
 
 /// Mean absolute errors of one head.
-pub(crate) struct Score {
-    pub(crate) name: &'static str,
-    pub(crate) unit: &'static str,
-    pub(crate) mean_abs: f64,
+pub struct Score {
+    /// The head.
+    pub name: &'static str,
+    /// Its declared unit.
+    pub unit: &'static str,
+    /// Of the answer.
+    pub mean_abs: f64,
     /// For a source, that of the answer zero.
-    pub(crate) if_zero: Option<f64>,
+    pub if_zero: Option<f64>,
 }
 
 /// Mean absolute errors of every head that the truth has, over the truth's times; sources first.
-pub(crate) fn score(solution: &Solution, truth: &Truth) -> Vec<Score> {
+pub fn score(solution: &Solution, truth: &Truth) -> Vec<Score> {
     let scored = solution.evaluate(&truth.points).into_iter().filter_map(|estimate| {
         let values = truth.of(estimate.name)?;
         let mean = |of: &dyn Fn(usize) -> f64| (0..values.len()).map(of).sum::<f64>() / values.len() as f64;

@@ -1,26 +1,25 @@
 //! `nisp solve`: from a table or a cloud to a source.
 
-use std::io::IsTerminal;
 use std::process::ExitCode;
 use std::time::Duration;
 
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Checkpoint, Optimizer, Report, Resampling, Settings, Solution, Width, recover, resume};
+use nisp_cli::score::Found;
+use nisp_cli::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print, progress};
+use nisp_cli::{interrupt, processors};
 use nisp_data::OutDir;
 use nisp_equations::{Prepared, Request, Truth};
 
 use crate::args::Options;
 use crate::checkpoint::{self, Keeper};
-use crate::score::Found;
-use crate::{interrupt, report, results};
-
-/// Not converged.
-const NOT_CONVERGED: u8 = 3;
+use crate::report::{self, Run};
+use crate::results;
 
 /// Solves, writes the results, and says how well it went.
 pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
-    let entry = crate::entry(&options.equation)?;
+    let entry = nisp_cli::entry(&options.equation)?;
     let settings = settings(options)?;
     let request = Request {
         scene: options.scene.clone(),
@@ -37,36 +36,65 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
     let settings = prepared.suited(settings);
     let from = options.resume.as_deref().map(checkpoint::read).transpose()?;
-    let mut out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::listen()?;
-    let mut keeper = options.checkpoint.then(|| Keeper::new(&mut out));
-    let mut solution = run(&prepared, &settings, from.as_ref(), keeper.as_mut())?;
+    let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
+    interrupt::clean(out.traces());
+    let names = [results::names(&prepared), vec![checkpoint::NAME]].concat();
+    out.require_free(&names).map_err(|error| error.to_string())?;
+    let mut keeper = Keeper::new(&out, options.checkpoint);
+    let mut solution = run(&prepared, &settings, from.as_ref(), &mut keeper)?;
+    let failure = keeper.failure.take();
+    interrupt::keep(out.file(checkpoint::NAME), solution.checkpoint.clone());
+    let interrupted = solution.status == Status::Interrupted;
+    let mut answer = results::answer(&prepared, &mut solution).map_err(|error| error.to_string())?;
+    if options.checkpoint || interrupted {
+        answer.files.push((checkpoint::NAME, solution.checkpoint.to_bytes()));
+    }
+    let written = interrupt::placing(|| out.write_somewhere(&answer.files));
+    if let Some(folder) = &written.folder {
+        interrupt::kept(folder.clone());
+    }
+    let found = Found::of(&mut solution, &prepared, &answer.estimates);
+    let warnings = warnings(&prepared, &solution, &found, failure.into_iter().chain(answer.warnings.iter().cloned()));
+    let run = Run { options, settings: &settings, prepared: &prepared, answer: &answer, written: &written, warnings };
+    let text = if options.json {
+        report::json(&solution, &run, &found)
+    } else {
+        report::table(&solution, &run, &found.with_rival(&prepared))
+    };
+    if let Err(message) = print(&text) {
+        note(&format!("nisp: {message}\n"));
+        return Ok(ExitCode::from(NOT_WRITTEN));
+    }
+    let unfinished = matches!(solution.status, Status::NotConverged | Status::Interrupted);
+    let failed = unfinished || !solution.verdict.passed();
+    Ok(match (failed, &written.fault) {
+        (_, Some(_)) => ExitCode::from(NOT_WRITTEN),
+        (true, None) => ExitCode::from(NOT_CONVERGED),
+        (false, None) => ExitCode::SUCCESS,
+    })
+}
+
+/// All that the user should know, one line each; `more` is of this run's files.
+fn warnings(
+    prepared: &Prepared,
+    solution: &Solution,
+    found: &Found,
+    more: impl Iterator<Item = String>,
+) -> Vec<String> {
     let mut warnings = prepared.warnings.clone();
-    warnings.extend(keeper.and_then(|keeper| keeper.failure));
+    warnings.extend(more);
     warnings.extend(solution.warnings.iter().map(|warning| warning.message.clone()));
     // What the compiler found: one line each, without its advice to whoever writes the equations.
     let open = solution.scene().warnings.iter().filter_map(|message| message.lines().next());
     warnings.extend(open.map(|message| format!("{message}: the problem may be underdetermined")));
     if solution.status == Status::Interrupted {
-        warnings.push(format!("interrupted after {:.1} s: this is the best state so far", solution.wall_s));
+        let seconds = solution.wall_s;
+        warnings.push(format!("interrupted after {seconds:.1} s: this is the best state so far, without error bars"));
     }
     warnings.extend(prepared.truth.as_ref().and_then(unscored));
-    let (mut files, estimates) = results::files(&prepared, &mut solution).map_err(|error| error.to_string())?;
-    let found = Found::of(&mut solution, &prepared, &estimates);
     warnings.extend(found.warnings());
-    if options.checkpoint || solution.status == Status::Interrupted {
-        files.push((checkpoint::NAME, solution.checkpoint.to_bytes()));
-    }
-    out.write(&files).map_err(|error| error.to_string())?;
-    let written = report::written(&files, &out);
-    let text = if options.json {
-        report::json(&solution, options, &settings, &found, &warnings)
-    } else {
-        report::table(&solution, &prepared, &found.with_rival(&prepared), &warnings, &written)
-    };
-    crate::print(&text)?;
-    let failed = matches!(solution.status, Status::NotConverged | Status::Interrupted);
-    Ok(if failed { ExitCode::from(NOT_CONVERGED) } else { ExitCode::SUCCESS })
+    warnings
 }
 
 /// What of the truth is not scored.
@@ -94,11 +122,6 @@ fn settings(options: &Options) -> Result<Settings, String> {
     })
 }
 
-/// As many threads as the machine runs at once.
-pub(crate) fn processors() -> usize {
-    std::thread::available_parallelism().map_or(1, usize::from)
-}
-
 /// No machine has more, and asking the system for them would end badly.
 const MOST_THREADS: usize = 1024;
 
@@ -107,19 +130,16 @@ fn run(
     prepared: &Prepared,
     settings: &Settings,
     from: Option<&Checkpoint>,
-    mut keeper: Option<&mut Keeper<'_>>,
+    keeper: &mut Keeper<'_>,
 ) -> Result<Solution, String> {
-    let terminal = std::io::stderr().is_terminal();
     let budget = settings.budget.unwrap_or_default().as_secs_f64();
     let mut shown = 0.0;
     let mut monitor = |report: Report<'_>| {
-        if let Some(keeper) = &mut keeper {
-            keeper.see(&report);
-        }
-        if terminal && report.elapsed_s >= shown {
+        keeper.see(&report);
+        if report.elapsed_s >= shown {
             shown = report.elapsed_s + 0.1;
             let (now, step, loss) = (report.elapsed_s, report.iteration, report.loss);
-            eprint!("\r{now:6.1} of {budget} s  step {step}  loss {loss:.3e}\x1b[K");
+            progress(&format!("{now:6.1} of {budget} s  step {step}  loss {loss:.3e}"));
         }
         if interrupt::asked() { Flow::Stop } else { Flow::Continue }
     };
@@ -127,8 +147,6 @@ fn run(
         None => recover(&prepared.problem, settings, &mut monitor),
         Some(checkpoint) => resume(&prepared.problem, settings, checkpoint, &mut monitor),
     };
-    if terminal {
-        eprint!("\r\x1b[K");
-    }
+    progress("");
     result.map_err(|error| error.to_string())
 }

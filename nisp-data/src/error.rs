@@ -21,7 +21,7 @@ pub enum DataError {
         source: io::Error,
     },
     /// The bytes are not text.
-    #[error("{}: not UTF-8 text (byte {byte}); save it as UTF-8 CSV", .path.display())]
+    #[error("{}: not UTF-8 text (byte {byte}); save it as UTF-8", .path.display())]
     NotUtf8 {
         /// The path as given.
         path: PathBuf,
@@ -74,6 +74,14 @@ pub enum DataError {
         /// What the operating system said.
         source: io::Error,
     },
+    /// A folder that another process writes into.
+    #[error("{}: another run{process} writes into this folder; wait until it ends, or choose another with --out", .path.display())]
+    Busy {
+        /// The folder.
+        path: PathBuf,
+        /// Which process, if it says so, as ` (process 7)`.
+        process: String,
+    },
     /// A value that the caller passed makes no sense.
     #[error("{0}")]
     Invalid(String),
@@ -87,6 +95,11 @@ impl DataError {
             io::ErrorKind::NotFound => DataError::NotFound { path },
             _ => DataError::Unreadable { path, source },
         }
+    }
+
+    /// Bytes that are no text.
+    pub(crate) fn not_utf8(path: &Path, error: std::str::Utf8Error) -> DataError {
+        DataError::NotUtf8 { path: path.to_path_buf(), byte: error.valid_up_to() }
     }
 
     /// A fault of the whole file.
@@ -105,14 +118,6 @@ impl DataError {
     }
 }
 
-/// Reads a whole file, with the errors of this crate.
-pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, DataError> {
-    if path.is_dir() {
-        return Err(DataError::file(path, "is a folder; name a file inside it"));
-    }
-    std::fs::read(path).map_err(|source| DataError::reading(path, source))
-}
-
 fn working_folder() -> String {
     std::env::current_dir().map_or_else(|_| "the working folder".into(), |folder| folder.display().to_string())
 }
@@ -122,6 +127,10 @@ fn explain_write(source: &io::Error) -> String {
         io::ErrorKind::PermissionDenied => "permission denied; choose another folder with --out".into(),
         io::ErrorKind::StorageFull => "the disk is full; nothing was left half-written".into(),
         io::ErrorKind::ReadOnlyFilesystem => "the file system is read-only; choose another folder with --out".into(),
+        io::ErrorKind::IsADirectory => {
+            "a folder stands where the file is to be; move it, or choose another with --out".into()
+        }
+        io::ErrorKind::NotFound => "the folder is gone".into(),
         io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
             "a file stands where a folder is needed; choose another folder with --out".into()
         }

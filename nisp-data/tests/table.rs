@@ -88,6 +88,8 @@ fn refuses_with_what_to_do() {
         "t.csv: no column for `q_m_sigma1`; the nearest is `q_m_sigma0`: --column q=q_m_sigma0 (columns: t_s, \
          q_m_sigma0, q_m_sigma0.01)"
     );
+    let unlike = parse("v,v_V,v [V]\n0,1,2\n1,2,3\n");
+    assert_eq!(unlike.chosen("v", "v_V", "V").unwrap(), [1.0, 2.0]);
     let blanks = parse("t q\n0 1\n1 2\n").quantity("t", "s").unwrap_err().to_string();
     assert!(blanks.contains("separate cells by commas, semicolons or tabs"), "{blanks}");
     assert!(refusal(b"").contains("empty"));
@@ -98,6 +100,27 @@ fn refuses_with_what_to_do() {
     assert!(refusal(b"t,q\n0,\xff\n").contains("not UTF-8 text (byte 6)"));
     assert!(Table::read("/nowhere/t.csv").unwrap_err().to_string().contains("no such file"));
     assert!(Table::read("/").unwrap_err().to_string().contains("is a folder"));
+}
+
+#[test]
+fn columns_of_one_name_are_refused_even_where_they_are_chosen() {
+    let table = parse("t,v_V,note,v_V,note\n0,1,a,2,b\n1,2,a,3,b\n");
+    let words = "t.csv: columns 2 and 4 are both named `v_V`; rename one of them";
+    assert_eq!(table.quantity("v", "V").unwrap_err().to_string(), words);
+    assert_eq!(table.chosen("v", "v_V", "V").unwrap_err().to_string(), words);
+    assert_eq!(table.column("v_V").unwrap_err().to_string(), words);
+    assert_eq!(table.require_increasing("v").unwrap_err().to_string(), words);
+    // Remarks may have any name.
+    assert_eq!(table.column("t").unwrap(), [0.0, 1.0]);
+    let thrice = parse("v,v,v\n0,1,2\n1,2,3\n").chosen("v", "v", "V").unwrap_err().to_string();
+    assert!(thrice.contains("columns 1, 2 and 3 are named `v`"), "{thrice}");
+}
+
+#[test]
+fn a_quotation_mark_that_is_not_closed_swallows_no_rows() {
+    let message = refusal(b"t,v,note\n0,1,ok\n1,2,\"oops\n2,3,ok\n3,4,ok\n");
+    assert_eq!(message, "t.csv: line 3: a cell goes on in the next line; close its quotation mark");
+    assert_eq!(parse("\"t [s]\",v\n0,\"1\"\n1,2\n").quantity("t", "s").unwrap(), [0.0, 1.0]);
 }
 
 #[test]

@@ -3,6 +3,8 @@
 //! The macro emits one [`Scene`] per scene. The engine reads shapes from it, error messages read names, and
 //! `explain` prints it.
 
+pub use crate::loss::Loss;
+
 /// A physical unit: exponents of m, kg, s, A, K, mol, cd, the factor to SI, and the text the user wrote.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
@@ -234,15 +236,4 @@ pub enum TermKind {
         /// Only the distance across the surface, not that along it.
         plane: bool,
     },
-}
-
-/// How the misfit of a row counts; thresholds in units of the row's natural size.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Loss {
-    /// Half the square.
-    Square,
-    /// Huber's loss.
-    Huber(f64),
-    /// Welsch's loss.
-    Welsch(f64),
 }

@@ -115,7 +115,7 @@ nisp::pde! {
             cloud: symmetric chamfer [a + u, b + u * w, w] with huber(0.3) weight 2;
             flat: laplacian(w) == 0;
         }
-        on line { cloud: chamfer [a + w, u]; }
+        on line { cloud: chamfer [a + w, u] with tukey(0.9); }
         scene fit { }
     }
 }

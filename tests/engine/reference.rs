@@ -266,6 +266,12 @@ fn cost<T: Number>(term: &schema::Term, u: T) -> T {
             let x = u * T::of(1.0 / delta);
             T::of(delta * delta) * (T::of(1.0) - (-(x * x) * T::of(0.5)).exp())
         }
+        Loss::Tukey(delta) if u.value().abs() > delta => T::of(delta * delta / 6.0),
+        Loss::Tukey(delta) => {
+            let x = u * T::of(1.0 / delta);
+            let rest = T::of(1.0) - x * x;
+            T::of(delta * delta / 6.0) * (T::of(1.0) - rest * rest * rest)
+        }
         _ => u * u * T::of(0.5),
     }
 }

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use nisp_data::input::read_text;
 use nisp_data::{Cloud, Table};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
@@ -56,9 +57,7 @@ struct Observation {
 
 impl Sample {
     fn read(path: &Path) -> Result<Self, PrepareError> {
-        let text = std::fs::read_to_string(path);
-        let fault = |error: std::io::Error| PrepareError::File { path: path.into(), reason: error.to_string() };
-        Ok(Self { path: path.into(), text: text.map_err(fault)? })
+        Ok(Self { path: path.into(), text: read_text(path)? })
     }
 
     /// Those tables and keys that `T` has.

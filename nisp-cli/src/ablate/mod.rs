@@ -6,7 +6,6 @@
 mod study;
 
 use std::fmt::Write;
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Duration;
@@ -16,9 +15,10 @@ use nisp::solve::driver::Flow;
 use nisp::{Optimizer, Settings, Width, recover};
 use nisp_equations::{Prepared, Request};
 
-use crate::args::{count, seconds, size};
-use crate::interrupt;
 use crate::measure::Means;
+use nisp_cli::interrupt;
+use nisp_cli::options::{count, seconds, size};
+use nisp_cli::terminal::progress;
 use study::{Data, Study, Variation, studies};
 
 /// What to compare, and how long.
@@ -52,7 +52,7 @@ pub(crate) fn ablate(options: &Options) -> Result<ExitCode, String> {
     interrupt::listen()?;
     for study in studies() {
         if options.studies.is_empty() || options.studies.iter().any(|name| name == study.name) {
-            crate::print(&table(&study, options)?)?;
+            nisp_cli::terminal::print(&table(&study, options)?)?;
         }
     }
     Ok(ExitCode::SUCCESS)
@@ -85,9 +85,7 @@ fn means<'a>(study: &'a Study, variation: &Variation, options: &Options) -> Resu
     let samples = samples(study, variation, options)?;
     let mut means = Means::new(study.measures);
     for (at, prepared) in samples.iter().enumerate() {
-        if std::io::stderr().is_terminal() {
-            eprint!("\r{}: {}, sample {} of {}\x1b[K", study.name, variation.name, at + 1, samples.len());
-        }
+        progress(&format!("{}: {}, sample {} of {}", study.name, variation.name, at + 1, samples.len()));
         let settings = settings(study, variation, prepared, options);
         let go_on = &mut |_: nisp::Report<'_>| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
         let mut solution = recover(&prepared.problem, &settings, go_on).map_err(|error| error.to_string())?;
@@ -100,7 +98,7 @@ fn means<'a>(study: &'a Study, variation: &Variation, options: &Options) -> Resu
 /// Settings of a variation for a sample.
 fn settings(study: &Study, variation: &Variation, prepared: &Prepared, options: &Options) -> Settings {
     let settings = Settings {
-        threads: options.threads.unwrap_or_else(crate::solve::processors),
+        threads: options.threads.unwrap_or_else(nisp_cli::processors),
         budget: Some(Duration::from_secs_f64(options.budget)),
         ..Settings::default()
     };
@@ -117,7 +115,7 @@ fn settings(study: &Study, variation: &Variation, prepared: &Prepared, options: 
 
 /// The samples of a study, bound as a variation wants them.
 fn samples(study: &Study, variation: &Variation, options: &Options) -> Result<Vec<Prepared>, String> {
-    let entry = crate::entry(study.equation)?;
+    let entry = nisp_cli::entry(study.equation)?;
     let request = Request {
         scene: variation.scene.map(Into::into),
         cloud: variation.cloud,

@@ -6,7 +6,6 @@
 mod report;
 mod trial;
 
-use std::io::IsTerminal;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
@@ -14,9 +13,10 @@ use nisp::{Optimizer, Width};
 use nisp_data::OutDir;
 use nisp_equations::{Entry, PrepareError, Prepared, Request, yardsticks};
 
-use crate::args::{count, number, optimizers, precisions, seconds, seed, size};
-use crate::interrupt;
 use crate::measure::Measure;
+use nisp_cli::interrupt;
+use nisp_cli::options::{count, number, optimizers, precisions, seconds, seed, size};
+use nisp_cli::terminal::progress;
 use report::{Figures, Point};
 use trial::Trial;
 
@@ -76,7 +76,7 @@ pub(crate) struct Options {
 
 /// Tries everything, prints a table, writes it and a plot.
 pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
-    let entry = crate::entry(&options.equation)?;
+    let entry = nisp_cli::entry(&options.equation)?;
     let samples = samples(&entry, options, true)?;
     let local = samples_for_local_functions(&entry, options)?;
     let measures = measures(&samples[0])?;
@@ -84,23 +84,16 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::listen()?;
     let total: f64 = options.budgets.iter().sum::<f64>() * (trials.len() * samples.len()) as f64;
-    let terminal = std::io::stderr().is_terminal();
-    if terminal {
-        eprintln!("{} runs, {total:.0} s at most", trials.len() * samples.len() * options.budgets.len());
-    }
+    progress(&format!("{} runs, {total:.0} s at most\n", trials.len() * samples.len() * options.budgets.len()));
     let mut points = Vec::new();
     for trial in trials {
         for &budget in &options.budgets {
-            if terminal {
-                eprint!("\r{} {}, {budget} s\x1b[K", trial.name(), trial.width());
-            }
+            progress(&format!("{} {}, {budget} s", trial.name(), trial.width()));
             let outcome = trial.over(if trial.local { &local } else { &samples }, &measures, budget)?;
             points.push(Point { trial: trial.clone(), budget, outcome });
         }
     }
-    if terminal {
-        eprint!("\r\x1b[K");
-    }
+    progress("");
     let figures = Figures {
         about: about(&entry, &samples, options),
         measures,
@@ -116,7 +109,7 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
         files.extend(plot.map(|plot| (file, plot.svg().into())));
     }
     out.write(&files).map_err(|error| error.to_string())?;
-    crate::print(&report::tables(&figures))?;
+    nisp_cli::terminal::print(&report::tables(&figures))?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -151,7 +144,7 @@ fn measures(sample: &Prepared) -> Result<Vec<Measure>, String> {
 
 /// Everything to be tried, in the order of the table.
 fn trials(options: &Options, local: bool) -> Vec<Trial> {
-    let threads = options.threads.unwrap_or_else(crate::solve::processors);
+    let threads = options.threads.unwrap_or_else(nisp_cli::processors);
     let (layers, seed) = (options.layers, options.seed);
     let network =
         |optimizer, precision, width| Trial { local: false, optimizer, precision, width, layers, threads, seed };

@@ -7,8 +7,8 @@ use nisp::solve::driver::{Flow, Status};
 use nisp::{Optimizer, RecoverError, Settings, Width, recover};
 use nisp_equations::Prepared;
 
-use crate::interrupt;
 use crate::measure::{Means, Measure};
+use nisp_cli::interrupt;
 
 /// A method with its network, or local functions.
 #[derive(Clone)]

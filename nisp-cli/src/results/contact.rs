@@ -3,35 +3,51 @@
 use nisp::schema::Head;
 use nisp::{Estimate, Solution};
 use nisp_data::DataError;
-use nisp_data::atomic::Content;
 use nisp_data::colour::ColourScale;
 use nisp_data::export::Mesh;
 use nisp_data::picture::{FieldMap, Grid, MapPanel, Picture, Quantity, SurfaceView, field_map, surface_view};
 use nisp_equations::{Contact, Prepared};
 
-/// Everything that is written of a contact.
-pub(super) fn files(
-    prepared: &Prepared,
-    contact: &Contact,
-    solution: &mut Solution,
-) -> Result<(Vec<Content>, Vec<Estimate>), DataError> {
-    let estimates = solution.evaluate_with_errors(&prepared.points);
+use super::Answer;
+
+/// Files that show the deformed surface.
+pub(super) const SURFACE: [&str; 3] = ["surface.svg", "surface.vtu", "surface.ply"];
+
+/// Everything that is said of a contact.
+pub(super) fn answer(prepared: &Prepared, contact: &Contact, solution: &mut Solution) -> Result<Answer, DataError> {
+    let estimates = super::evaluate(solution, &prepared.points);
     let shown = contact.pressure.unwrap_or(contact.displacement[2]);
-    let Some(head) = solution.scene().heads.iter().find(|head| head.name == shown) else {
-        return Err(DataError::Invalid(format!("the scene has no `{shown}` to draw")));
+    let missing = || DataError::Invalid(format!("the scene has no `{shown}` to draw"));
+    let head = solution.scene().heads.iter().find(|head| head.name == shown).ok_or_else(missing)?;
+    let plot = maps(prepared, contact, solution, head, &estimates).map(|plot| plot.svg().into());
+    let mut answer = Answer::new(prepared, estimates)?;
+    answer.show(super::PLOT, plot);
+    let surface = match surface(prepared, contact, solution, head) {
+        Ok(surface) => surface,
+        Err(error) => {
+            answer.show(SURFACE[0], Err(error));
+            return Ok(answer);
+        }
     };
-    let plot = maps(prepared, contact, solution, head, &estimates)?;
-    let surface = surface(prepared, contact, solution, head)?;
+    answer.show(SURFACE[0], surface_view(&surface).map(|view| view.svg().into()));
+    match mesh(contact, solution, shown, &surface) {
+        Ok(mesh) => {
+            answer.show(SURFACE[1], Ok(mesh.vtu_bytes()));
+            answer.show(SURFACE[2], mesh.ply_bytes(Some((shown, surface.scale))));
+        }
+        Err(error) => answer.show(SURFACE[1], Err(error)),
+    }
+    Ok(answer)
+}
+
+/// The deformed surface with every head on it.
+fn mesh(contact: &Contact, solution: &Solution, shown: &str, surface: &SurfaceView) -> Result<Mesh, DataError> {
     let mut mesh = Mesh::new(surface.points.clone(), surface.triangles.clone())?;
     for estimate in solution.evaluate(&contact.surface.points) {
         let values = if estimate.name == shown { surface.values.clone() } else { estimate.values };
         mesh.push(estimate.name, estimate.unit.text, values)?;
     }
-    let mut files = super::contents(prepared, &estimates, &plot)?;
-    files.push(("surface.svg", surface_view(&surface)?.svg().into()));
-    files.push(("surface.vtu", mesh.vtu_bytes()));
-    files.push(("surface.ply", mesh.ply_bytes(Some((shown, surface.scale)))?));
-    Ok((files, estimates))
+    Ok(mesh)
 }
 
 /// The deformed surface with a head's values; a pressure is zero where none can act.

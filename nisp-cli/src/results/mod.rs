@@ -3,8 +3,9 @@
 mod contact;
 
 use nisp::{Estimate, Solution};
-use nisp_data::atomic::Content;
+use nisp_cli::interrupt;
 use nisp_data::colour::ColourScale;
+use nisp_data::out_dir::Content;
 use nisp_data::picture::{
     Curve, FieldMap, Grid, LinePanel, LinePlot, MapPanel, Picture, Quantity, field_map, line_plot,
 };
@@ -14,32 +15,70 @@ use nisp_equations::Prepared;
 /// Points of a curve: a layer between two measurements shows too.
 const CURVE: usize = 600;
 
-/// Names and contents, to be written together, and what they say at the points of [`Prepared`].
-pub(crate) fn files(prepared: &Prepared, solution: &mut Solution) -> Result<(Vec<Content>, Vec<Estimate>), DataError> {
+/// Names of the files that will be written.
+pub(crate) fn names(prepared: &Prepared) -> Vec<&'static str> {
+    let surface = prepared.contact.as_ref().map(|_| contact::SURFACE);
+    [SOURCE, STATE, PLOT].into_iter().chain(surface.into_iter().flatten()).collect()
+}
+
+const SOURCE: &str = "source.csv";
+const STATE: &str = "state.csv";
+const PLOT: &str = "plot.svg";
+
+/// What is said of a solved problem, and the files that say it.
+pub(crate) struct Answer {
+    /// Names and contents, to be written together.
+    pub(crate) files: Vec<Content>,
+    /// Every head at the points of [`Prepared`].
+    pub(crate) estimates: Vec<Estimate>,
+    /// What could not be drawn, and why.
+    pub(crate) warnings: Vec<String>,
+}
+
+impl Answer {
+    /// With the tables; pictures are added.
+    fn new(prepared: &Prepared, estimates: Vec<Estimate>) -> Result<Self, DataError> {
+        let files = vec![(SOURCE, table(prepared, &estimates, true)?), (STATE, table(prepared, &estimates, false)?)];
+        Ok(Self { files, estimates, warnings: Vec::new() })
+    }
+
+    /// Adds a file that shows what the tables say: that it cannot be made is no reason to lose them.
+    fn show(&mut self, name: &'static str, content: Result<Vec<u8>, DataError>) {
+        match content {
+            Ok(bytes) => self.files.push((name, bytes)),
+            Err(error) => self.warnings.push(format!("{name} is not drawn: {error}")),
+        }
+    }
+}
+
+/// The answer at the points of [`Prepared`]. Where the user has asked to stop it has no error bars: they take time, and do not
+/// hold for a state that the method left halfway.
+pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataError> {
     if let Some(contact) = &prepared.contact {
-        return contact::files(prepared, contact, solution);
+        return contact::answer(prepared, contact, solution);
     }
     let times = &prepared.points;
     if let [_, _] = solution.scene().coordinates {
-        let estimates = solution.evaluate_with_errors(times);
-        let plot = maps(prepared, solution, &estimates)?;
-        return Ok((contents(prepared, &estimates, &plot)?, estimates));
+        let estimates = evaluate(solution, times);
+        let plot = maps(prepared, solution, &estimates).map(|plot| plot.svg().into());
+        let mut answer = Answer::new(prepared, estimates)?;
+        answer.show(PLOT, plot);
+        return Ok(answer);
     }
     let (first, last) = (times[0], times[times.len() - 1]);
     let fine: Vec<f64> = (0..CURVE).map(|i| first + (last - first) * i as f64 / (CURVE - 1) as f64).collect();
     // Together, because the factorisation behind the error bars is the dear part.
-    let mut estimates = solution.evaluate_with_errors(&[times.as_slice(), &fine].concat());
+    let mut estimates = evaluate(solution, &[times.as_slice(), &fine].concat());
     let curves: Vec<_> = estimates.iter_mut().map(|estimate| split(estimate, times.len())).collect();
-    let plot = plot(prepared, solution, &fine, &curves)?;
-    Ok((contents(prepared, &estimates, &plot)?, estimates))
+    let plot = plot(prepared, solution, &fine, &curves).map(|plot| plot.svg().into());
+    let mut answer = Answer::new(prepared, estimates)?;
+    answer.show(PLOT, plot);
+    Ok(answer)
 }
 
-fn contents(prepared: &Prepared, estimates: &[Estimate], plot: &Picture) -> Result<Vec<Content>, DataError> {
-    Ok(vec![
-        ("source.csv", table(prepared, estimates, true)?),
-        ("state.csv", table(prepared, estimates, false)?),
-        ("plot.svg", plot.svg().into()),
-    ])
+/// Every head at points, with error bars unless the user has asked to stop.
+fn evaluate(solution: &mut Solution, points: &[f64]) -> Vec<Estimate> {
+    if interrupt::asked() { solution.evaluate(points) } else { solution.evaluate_with_errors(points) }
 }
 
 /// Cuts an estimate after its first `count` points and returns the rest.

@@ -2,6 +2,7 @@
 
 mod check;
 mod npy;
+mod npz;
 mod pcd;
 mod ply;
 mod stl;
@@ -13,7 +14,7 @@ pub use check::LengthUnit;
 pub use stl::Surface;
 
 use crate::DataError;
-use crate::error::read_bytes;
+use crate::input::{MOST_BYTES, read_bytes};
 
 /// Points in space, with a note of what had to be left out.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -38,7 +39,7 @@ impl Cloud {
     /// Reads a cloud. The format is recognised by content; the ending only matters between the text formats.
     pub fn read(path: impl AsRef<Path>) -> Result<Cloud, DataError> {
         let path = path.as_ref();
-        Cloud::parse(path, &read_bytes(path)?)
+        Cloud::parse(path, &read_bytes(path, MOST_BYTES)?)
     }
 
     /// Reads a cloud from memory; `path` names the source in errors.
@@ -49,8 +50,8 @@ impl Cloud {
         let points = match recognise(path, bytes)? {
             Format::Ply => ply::parse(path, bytes)?,
             Format::Pcd => pcd::parse(path, bytes)?,
-            Format::Npy => npy::parse(path, bytes)?,
-            Format::Npz => npy::parse_archive(path, bytes)?,
+            Format::Npy => npy::Array::new(path, bytes)?.points(path)?,
+            Format::Npz => npz::parse(path, bytes)?,
             Format::Text => text::parse(path, bytes)?,
         };
         Cloud::finite(path, points)

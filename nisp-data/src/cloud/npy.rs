@@ -1,61 +1,66 @@
-//! NumPy arrays of n rows and at least three columns, alone or in an archive.
+//! NumPy arrays of n rows and at least three columns.
 
-use std::io::{Cursor, Read};
 use std::path::Path;
 
-use npyz::npz::NpzArchive;
-use npyz::{NpyFile, Order};
+use npyz::{NpyFile, NpyHeader, Order};
 
 use crate::DataError;
 
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Vec<[f64; 3]>, DataError> {
-    let file = NpyFile::new(bytes).map_err(|error| unreadable(path, &error))?;
-    rows(path, file)
+/// Bytes of a header at most, as in NumPy itself.
+const MOST_HEADER: usize = 10_000;
+/// Brackets within brackets of a header at most: a name, a tuple and a list need three.
+const DEEPEST: usize = 16;
+
+/// An array whose numbers are all there.
+pub(super) struct Array<'a> {
+    header: NpyHeader,
+    numbers: &'a [u8],
 }
 
-/// Takes the only array that can be a cloud.
-pub(super) fn parse_archive(path: &Path, bytes: &[u8]) -> Result<Vec<[f64; 3]>, DataError> {
-    let mut archive = NpzArchive::new(Cursor::new(bytes)).map_err(|error| unreadable(path, &error))?;
-    let names: Vec<String> = archive.array_names().map(str::to_string).collect();
-    let mut fitting = Vec::new();
-    for name in &names {
-        let array = archive.by_name(name).map_err(|error| unreadable(path, &error))?;
-        if array.is_some_and(|array| array.shape().len() == 2 && array.shape()[1] >= 3) {
-            fitting.push(name);
+impl<'a> Array<'a> {
+    /// Reads the header, and compares the size that it declares with what follows.
+    pub(super) fn new(path: &Path, bytes: &'a [u8]) -> Result<Self, DataError> {
+        refuse_strange(path, bytes)?;
+        let mut numbers = bytes;
+        let header = NpyHeader::from_reader(&mut numbers).map_err(|error| unreadable(path, &error))?;
+        let each = header.dtype().num_bytes().map(|size| size as u64);
+        let size = each.and_then(|each| header.shape().iter().try_fold(each, |all, size| all.checked_mul(*size)));
+        match size {
+            Some(size) if size == numbers.len() as u64 => Ok(Self { header, numbers }),
+            Some(size) => {
+                let held = numbers.len();
+                Err(DataError::file(path, format!("declares {size} bytes of numbers and holds {held}; save it again")))
+            }
+            None => Err(DataError::file(path, "an array of objects, not of numbers; save it as float32 or float64")),
         }
     }
-    let [name] = fitting.as_slice() else {
-        let what = format!(
-            "{} of its arrays ({}) have the shape (n, 3); save the cloud alone as .npy",
-            fitting.len(),
-            names.join(", ")
-        );
-        return Err(DataError::file(path, what));
-    };
-    match archive.by_name(name).map_err(|error| unreadable(path, &error))? {
-        Some(array) => rows(path, array),
-        None => Err(DataError::file(path, format!("array `{name}` cannot be read"))),
+
+    /// Whether it may be a cloud.
+    pub(super) fn is_cloud(&self) -> bool {
+        matches!(self.header.shape(), &[_, width] if width >= 3)
+    }
+
+    /// Its points.
+    pub(super) fn points(self, path: &Path) -> Result<Vec<[f64; 3]>, DataError> {
+        let (shape, order) = (self.header.shape().to_vec(), self.header.order());
+        let &[count, width] = shape.as_slice() else {
+            return Err(DataError::file(path, format!("an array of shape {shape:?}; (n, 3) is needed")));
+        };
+        if width < 3 {
+            let what = format!("an array of shape {shape:?}; x, y and z are needed in each row");
+            return Err(DataError::file(path, what));
+        }
+        let flat = numbers(path, NpyFile::with_header(self.header, self.numbers))?;
+        let (count, width) = (count as usize, width as usize);
+        let at = |row: usize, column: usize| match order {
+            Order::C => flat[row * width + column],
+            Order::Fortran => flat[column * count + row],
+        };
+        Ok((0..count).map(|row| [at(row, 0), at(row, 1), at(row, 2)]).collect())
     }
 }
 
-fn rows<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Vec<[f64; 3]>, DataError> {
-    let (shape, order) = (file.shape().to_vec(), file.order());
-    let &[count, width] = shape.as_slice() else {
-        return Err(DataError::file(path, format!("an array of shape {shape:?}; (n, 3) is needed")));
-    };
-    if width < 3 {
-        return Err(DataError::file(path, format!("an array of shape {shape:?}; x, y and z are needed in each row")));
-    }
-    let flat = numbers(path, file)?;
-    let (count, width) = (count as usize, width as usize);
-    let at = |row: usize, column: usize| match order {
-        Order::C => flat[row * width + column],
-        Order::Fortran => flat[column * count + row],
-    };
-    Ok((0..count).map(|row| [at(row, 0), at(row, 1), at(row, 2)]).collect())
-}
-
-fn numbers<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Vec<f64>, DataError> {
+fn numbers(path: &Path, file: NpyFile<&[u8]>) -> Result<Vec<f64>, DataError> {
     let collect = |result: std::io::Result<Vec<f64>>| result.map_err(|error| unreadable(path, &error));
     let file = match file.try_data::<f64>() {
         Ok(data) => return collect(data.collect()),
@@ -68,6 +73,49 @@ fn numbers<R: Read>(path: &Path, file: NpyFile<R>) -> Result<Vec<f64>, DataError
             Err(DataError::file(path, what))
         }
     }
+}
+
+/// Refuses headers that the crate behind this would follow into a panic: too deep, or of a size that no number holds.
+fn refuse_strange(path: &Path, bytes: &[u8]) -> Result<(), DataError> {
+    let header = header(bytes).ok_or_else(|| DataError::file(path, "ends within its header; save it again"))?;
+    let mut depth = 0_usize;
+    let deepest = header.iter().map(|byte| match byte {
+        b'(' | b'[' | b'{' => {
+            depth += 1;
+            depth
+        }
+        b')' | b']' | b'}' => {
+            depth = depth.saturating_sub(1);
+            depth
+        }
+        _ => depth,
+    });
+    if header.len() > MOST_HEADER || deepest.max().unwrap_or(0) > DEEPEST {
+        return Err(DataError::file(path, "has a header that no array needs; save it again"));
+    }
+    let text = String::from_utf8_lossy(header);
+    for (at, _) in text.match_indices("shape") {
+        let tuple = text[at..].split(')').next().unwrap_or_default();
+        let sizes = tuple.split(|letter: char| !letter.is_ascii_digit()).filter(|digits| !digits.is_empty());
+        let mut all = sizes.map(|digits| digits.parse::<u64>().ok());
+        let all = all.try_fold(1_u64, |all, size| all.checked_mul(size?.max(1)));
+        if all.is_none_or(|all| all > bytes.len() as u64) {
+            let tuple = tuple.trim_start_matches(|letter| letter != '(');
+            let what = format!("declares an array of shape {tuple:.60}), more than the file holds; save it again");
+            return Err(DataError::file(path, what));
+        }
+    }
+    Ok(())
+}
+
+/// The header of a file, whose length stands before it in two bytes or, from version 2 on, in four.
+fn header(bytes: &[u8]) -> Option<&[u8]> {
+    let rest = bytes.get(8..)?;
+    let (length, rest) = match bytes[6] {
+        1 => rest.split_first_chunk().map(|(length, rest)| (usize::from(u16::from_le_bytes(*length)), rest))?,
+        _ => rest.split_first_chunk().map(|(length, rest)| (u32::from_le_bytes(*length) as usize, rest))?,
+    };
+    rest.get(..length)
 }
 
 fn unreadable(path: &Path, error: &std::io::Error) -> DataError {

@@ -4,7 +4,7 @@ use std::io::Cursor;
 use std::path::Path;
 
 use crate::DataError;
-use crate::error::read_bytes;
+use crate::input::{MOST_BYTES, read_bytes};
 
 /// Bytes before the first triangle of a binary file, and bytes per triangle.
 const HEADER: usize = 84;
@@ -23,7 +23,7 @@ impl Surface {
     /// Reads an STL file.
     pub fn read(path: impl AsRef<Path>) -> Result<Surface, DataError> {
         let path = path.as_ref();
-        Surface::parse(path, &read_bytes(path)?)
+        Surface::parse(path, &read_bytes(path, MOST_BYTES)?)
     }
 
     /// Reads STL from memory; `path` names the source in errors.

@@ -2,15 +2,17 @@
 
 use std::path::Path;
 
+use crate::input::decode;
 use crate::{DataError, Table};
 
 pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Vec<[f64; 3]>, DataError> {
-    let text = std::str::from_utf8(bytes)
-        .map_err(|error| DataError::NotUtf8 { path: path.to_path_buf(), byte: error.valid_up_to() })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let text = decode(path, bytes)?;
     let mut rows = content(text).peekable();
-    let bare = rows.peek().is_none_or(|(_, line)| words(line).all(|word| word.parse::<f64>().is_ok()));
-    if bare { rows.map(|(number, line)| bare_row(path, number, line)).collect() } else { table(path, bytes) }
+    let first = rows.peek().map_or(Vec::new(), |(_, line)| cells(line));
+    if first.iter().any(|cell| cell.parse::<f64>().is_err()) {
+        return table(path, bytes);
+    }
+    rows.map(|(number, line)| bare_row(path, number, &cells(line), first.len())).collect()
 }
 
 fn table(path: &Path, bytes: &[u8]) -> Result<Vec<[f64; 3]>, DataError> {
@@ -25,19 +27,28 @@ fn content(text: &str) -> impl Iterator<Item = (usize, &str)> {
     numbered.filter(|(_, line)| !line.is_empty() && !line.starts_with(['#', '/']))
 }
 
-fn words(line: &str) -> impl Iterator<Item = &str> {
-    line.split([',', ';', ' ', '\t']).filter(|word| !word.is_empty())
+/// The cells of a row: between semicolons, if it has some, or commas, or blanks.
+fn cells(line: &str) -> Vec<&str> {
+    match [';', ','].into_iter().find(|&mark| line.contains(mark)) {
+        Some(mark) => line.split(mark).map(str::trim).collect(),
+        None => line.split_whitespace().collect(),
+    }
 }
 
-fn bare_row(path: &Path, number: usize, line: &str) -> Result<[f64; 3], DataError> {
-    let mut row = words(line);
+fn bare_row(path: &Path, number: usize, cells: &[&str], width: usize) -> Result<[f64; 3], DataError> {
+    let fail = |what: String| Err(DataError::line(path, number, what));
+    if cells.len() != width {
+        return fail(format!("{} cells where the rows above have {width}; correct or remove this row", cells.len()));
+    }
     let mut point = [0.0; 3];
-    for (value, axis) in point.iter_mut().zip(["x", "y", "z"]) {
-        let Some(word) = row.next() else {
-            return Err(DataError::line(path, number, format!("no number for {axis}; each row needs x, y and z")));
+    for (index, axis) in ["x", "y", "z"].into_iter().enumerate() {
+        let Some(cell) = cells.get(index) else {
+            return fail(format!("no number for {axis}; each row needs x, y and z"));
         };
-        let what = || format!("`{word}` for {axis} is not a number; correct it or remove the row");
-        *value = word.parse().map_err(|_| DataError::line(path, number, what()))?;
+        let Ok(value) = cell.parse() else {
+            return fail(format!("`{cell:.24}` for {axis} is not a number; correct it or remove the row"));
+        };
+        point[index] = value;
     }
     Ok(point)
 }

@@ -31,11 +31,9 @@ impl Table {
     /// The column with a header that the user chose for `name`, in `unit`, converted as in [`Table::quantity`]. A header whose
     /// brackets hold another unit is refused.
     pub fn chosen(&self, name: &str, header: &str, unit: &str) -> Result<Vec<f64>, DataError> {
-        let Some(column) = self.columns.iter().find(|column| column.header == header) else {
-            return self
-                .find(header, None)
-                .map_err(|_| self.absent(name, header))
-                .and_then(|c| self.converted(c, name, unit));
+        let column = match self.single(name, &self.answering(header, None))? {
+            Some(column) => column,
+            None => return Err(self.absent(name, header)),
         };
         self.converted(column, name, unit)
     }
@@ -86,18 +84,40 @@ impl Table {
     }
 
     pub(super) fn find(&self, name: &str, unit: Option<&str>) -> Result<&Column, DataError> {
+        self.single(name, &self.answering(name, unit))?.ok_or_else(|| self.missing(name, unit))
+    }
+
+    /// The columns of this very header or, if there are none, those that answer to it as a name.
+    fn answering(&self, name: &str, unit: Option<&str>) -> Vec<&Column> {
         let exact = self.matching(|header| header == name);
-        let found = if exact.is_empty() { self.matching(|header| answers(header, name, unit)) } else { exact };
-        match found.as_slice() {
-            [one] => Ok(one),
-            [] => Err(self.missing(name, unit)),
-            many => {
-                let headers = list(many.iter().map(|column| column.header.as_str()));
-                let what =
-                    format!("several columns answer to `{name}`: {headers}; {}", choose(name, Some(&many[0].header)));
-                Err(DataError::Column { path: self.path.clone(), what })
-            }
-        }
+        if exact.is_empty() { self.matching(|header| answers(header, name, unit)) } else { exact }
+    }
+
+    /// The one column that was found for `name`, if any was; several are an error.
+    fn single<'a>(&self, name: &str, found: &[&'a Column]) -> Result<Option<&'a Column>, DataError> {
+        let what = match found {
+            [] => return Ok(None),
+            [one] => return Ok(Some(one)),
+            [first, ..] => self.twice(found).unwrap_or_else(|| {
+                let headers = list(found.iter().map(|column| column.header.as_str()));
+                format!("several columns answer to `{name}`: {headers}; {}", choose(name, Some(&first.header)))
+            }),
+        };
+        Err(DataError::Column { path: self.path.clone(), what })
+    }
+
+    /// Which of the columns have one header and cannot be told apart.
+    fn twice(&self, found: &[&Column]) -> Option<String> {
+        let same = |header: &str| -> Vec<usize> {
+            let all = (1..).zip(&self.columns);
+            all.filter(|(_, column)| column.header == header).map(|(number, _)| number).collect()
+        };
+        let (header, numbers) =
+            found.iter().map(|column| (&column.header, same(&column.header))).find(|(_, all)| all.len() > 1)?;
+        let (last, others) = numbers.split_last()?;
+        let both = if others.len() == 1 { "both " } else { "" };
+        let others: Vec<String> = others.iter().map(usize::to_string).collect();
+        Some(format!("columns {} and {last} are {both}named `{header}`; rename one of them", others.join(", ")))
     }
 
     fn matching(&self, test: impl Fn(&str) -> bool) -> Vec<&Column> {

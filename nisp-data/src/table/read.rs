@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::{Column, Fault, Table};
 use crate::DataError;
-use crate::error::read_bytes;
+use crate::input::{MOST_BYTES, decode, read_bytes};
 
 /// Fewer rows than this carry no equation of motion.
 const MIN_ROWS: usize = 2;
@@ -16,12 +16,15 @@ impl Table {
     /// harm.
     pub fn read(path: impl AsRef<Path>) -> Result<Table, DataError> {
         let path = path.as_ref();
-        Table::parse(path, &read_bytes(path)?)
+        Table::parse(path, &read_bytes(path, MOST_BYTES)?)
     }
 
     /// Reads CSV from memory; `path` is only used to name the source in errors.
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Table, DataError> {
         let text = decode(path, bytes)?;
+        if text.trim().is_empty() {
+            return Err(DataError::file(path, "the file is empty; a header line and rows of numbers are needed"));
+        }
         let mut reader = csv::ReaderBuilder::new()
             .delimiter(separator(text))
             .comment(Some(b'#'))
@@ -38,6 +41,10 @@ impl Table {
                 let what =
                     format!("{} cells where the header has {}; fill or remove this row", record.len(), columns.len());
                 return Err(DataError::line(path, line, what));
+            }
+            if record.iter().any(|cell| cell.contains(['\n', '\r'])) {
+                // Rows below would be taken for one long remark.
+                return Err(DataError::line(path, line, "a cell goes on in the next line; close its quotation mark"));
             }
             for (column, cell) in columns.iter_mut().zip(&record) {
                 column.push(line, cell);
@@ -77,16 +84,6 @@ fn describe(cell: &str) -> String {
     } else {
         format!("`{shown}` is not a number; correct it or remove the row")
     }
-}
-
-fn decode<'a>(path: &Path, bytes: &'a [u8]) -> Result<&'a str, DataError> {
-    let text = std::str::from_utf8(bytes)
-        .map_err(|error| DataError::NotUtf8 { path: path.to_path_buf(), byte: error.valid_up_to() })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    if text.trim().is_empty() {
-        return Err(DataError::file(path, "the file is empty; a header line and rows of numbers are needed"));
-    }
-    Ok(text)
 }
 
 /// The separator of the header line: a comma unless there is none and another one is.

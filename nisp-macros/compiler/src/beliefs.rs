@@ -7,7 +7,7 @@ use std::rc::Rc;
 
 use proc_macro2::Span;
 
-use crate::model::{Column, Group, Loss, Model, Name, Node, Parameter, Term, TermKind};
+use crate::model::{Column, Group, Model, Name, Node, Parameter, Term, TermKind};
 use crate::rational::ratio;
 
 /// Name of the group; not a Rust identifier, so that no user's group can have it. The runtime binds it under this name.
@@ -55,7 +55,7 @@ fn belief(at: usize, parameter: &Parameter, spread: f64) -> Term {
     Term {
         name: parameter.name.clone(),
         kind: TermKind::Observation { rows: vec![Rc::new(row)], columns: vec![at] },
-        loss: Loss::Square,
+        loss: None,
         weight: 1.0,
         within: Some(spread),
         unit: parameter.unit.clone(),

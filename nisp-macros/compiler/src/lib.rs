@@ -15,6 +15,7 @@
 pub mod channels;
 pub mod code;
 pub mod error;
+pub mod loss;
 pub mod model;
 pub mod plan;
 pub mod program;

@@ -6,7 +6,7 @@ use std::rc::Rc;
 
 use proc_macro2::Span;
 
-use crate::model::{Group, Loss, Model, Name, Node, Term, TermKind};
+use crate::model::{Group, Model, Name, Node, Term, TermKind};
 use crate::plan::Plan;
 
 /// Name of the group; not a Rust identifier, so that no user's group can have it.
@@ -18,7 +18,7 @@ pub(crate) fn append(model: &mut Model, plan: &Plan) {
     let terms = model.fields.iter().enumerate().map(|(at, field)| Term {
         name: name(&field.name.text),
         kind: TermKind::Residual(vec![Rc::new(Node::Field(at))]),
-        loss: Loss::Square,
+        loss: None,
         weight: 1.0,
         within: None,
         unit: field.unit.clone(),

@@ -17,7 +17,7 @@ fn is_sound(text: &str) -> bool {
 }
 
 /// Words of the language, names that are declared and some that are not, operators and stray brackets.
-const WORDS: [&str; 92] = [
+const WORDS: [&str; 93] = [
     "coordinates",
     "fields",
     "sources",
@@ -39,6 +39,7 @@ const WORDS: [&str; 92] = [
     "with",
     "huber(3)",
     "welsch(2)",
+    "tukey(4)",
     "chamfer",
     "symmetric",
     "pairs",

@@ -14,6 +14,7 @@
 use std::ops::Range;
 
 use super::fit::{Fit, Measure, fit};
+use crate::loss::Loss;
 use crate::real::Real;
 use crate::schema::{self, TermKind};
 
@@ -36,12 +37,12 @@ pub(crate) struct Chamfer<E> {
 impl<E: Real> Chamfer<E> {
     /// The rows of a term at so many points; `cloud` is flat and point by point. Nothing unless the term is a Chamfer
     /// distance in two to four dimensions and the cloud has a point.
-    pub(crate) fn new(cloud: &[f64], term: &schema::Term, points: usize) -> Option<Self> {
+    pub(crate) fn new(cloud: &[f64], (term, loss): (&schema::Term, Loss), points: usize) -> Option<Self> {
         let TermKind::Chamfer { symmetric, plane } = term.kind else { return None };
         let dimensions = term.rows;
         let zeros = |count: usize| vec![E::ZERO; count * points];
         Some(Self {
-            fit: fit(cloud, dimensions, points, Measure { symmetric, plane, loss: term.loss })?,
+            fit: fit(cloud, dimensions, points, Measure { symmetric, plane, loss })?,
             dimensions,
             plane,
             points,
@@ -64,6 +65,11 @@ impl<E: Real> Chamfer<E> {
 
     pub(crate) fn is_assigned(&self) -> bool {
         self.fit.is_assigned()
+    }
+
+    /// How far each point of the cloud is from the surface as last assigned, by coordinate or across it.
+    pub(crate) fn misfits(&self) -> Vec<f64> {
+        self.fit.misfits()
     }
 
     /// Length of the scatter row before it is scaled.

@@ -2,7 +2,7 @@
 
 use super::assign::{self, Assignment};
 use super::form::Form;
-use crate::schema::Loss;
+use crate::loss::Loss;
 
 /// How the distances between a surface and its cloud count.
 #[derive(Clone, Copy)]
@@ -29,6 +29,9 @@ pub(super) trait Fit: Send + Sync {
     /// the part of the sum of squared distances that no surface can mend, if sums have changed. A surface that is not
     /// finite changes nothing.
     fn refresh(&mut self, size: f64) -> Option<f64>;
+
+    /// How far each point of the cloud is from the surface as last assigned, by coordinate or across it.
+    fn misfits(&self) -> Vec<f64>;
 
     /// The sum at a surface point, `|R (x - o) - t|^2`: `o`, `t`, and `R` by rows, upper triangular.
     fn sum(&self, at: usize) -> (&[f64], &[f64], &[f64]);
@@ -141,6 +144,18 @@ impl<const D: usize> Fit for Fitted<D> {
         self.move_origins();
         self.add_up(size);
         Some(self.sums.iter_mut().map(Form::complete_square).sum())
+    }
+
+    fn misfits(&self) -> Vec<f64> {
+        let mut misfits = Vec::new();
+        for (point, &at) in self.assignment.points().iter().zip(self.assignment.nearest()) {
+            let distance: [f64; D] = std::array::from_fn(|i| point[i] - self.surface[at][i]);
+            match self.normals.get(at) {
+                Some(normal) => misfits.push(normal.iter().zip(&distance).map(|(n, r)| n * r).sum()),
+                None => misfits.extend(distance),
+            }
+        }
+        misfits
     }
 
     fn sum(&self, at: usize) -> (&[f64], &[f64], &[f64]) {

@@ -1,6 +1,6 @@
 //! Sums of squared distances from one point of a surface, with the square completed.
 
-use crate::schema::Loss;
+use crate::loss::Loss;
 
 /// `x^T A x - 2 b^T x + c` for a point `x` of `D` coordinates, counted from an origin.
 #[derive(Clone, Copy, Debug)]
@@ -24,7 +24,7 @@ impl<const D: usize> Form<D> {
     ) {
         let across: Option<f64> = normal.map(|n| n.iter().zip(distance).map(|(n, r)| n * r).sum());
         let square = across.map_or_else(|| distance.iter().map(|r| r * r).sum(), |across| across * across);
-        let (slope, rest) = majorant(loss, square / (size * size));
+        let (slope, rest) = loss.majorant(square.sqrt() / size);
         let weight_at = weight * slope;
         for i in 0..D {
             match (normal, across) {
@@ -61,21 +61,5 @@ impl<const D: usize> Form<D> {
             }
         }
         self.c.max(0.0)
-    }
-}
-
-/// `(w, e)` such that `2 rho(u) <= w u^2 + e` for all `u`, with equality at `u^2 = square`.
-fn majorant(loss: Loss, square: f64) -> (f64, f64) {
-    match loss {
-        Loss::Huber(delta) if square > delta * delta => {
-            let u = square.sqrt();
-            (delta / u, delta * u - delta * delta)
-        }
-        Loss::Welsch(delta) => {
-            let x = square / (2.0 * delta * delta);
-            let weight = (-x).exp();
-            (weight, -2.0 * delta * delta * (-x).exp_m1() - weight * square)
-        }
-        Loss::Square | Loss::Huber(_) => (1.0, 0.0),
     }
 }

@@ -4,6 +4,7 @@ use super::chamfer::Chamfer;
 use super::reading::Reading;
 use super::sites::Sites;
 use crate::kernel::{GroupKernel, Programs};
+use crate::loss::Loss;
 use crate::problem::powers::Powers;
 use crate::real::Real;
 use crate::schema::{self, TermKind};
@@ -33,6 +34,10 @@ pub struct BoundGroup<E: Real> {
 /// How the rows of a term count.
 pub(crate) struct BoundTerm<E> {
     pub(crate) schema: &'static schema::Term,
+    /// How misfits count.
+    pub(crate) loss: Loss,
+    /// Standard deviation of the rows, where it is declared.
+    pub(crate) within: Option<f64>,
     /// Rows are divided by this.
     pub(crate) size: f64,
     /// Rows are multiplied by this after the division.
@@ -87,6 +92,8 @@ impl<E: Real> BoundGroup<E> {
             .iter()
             .map(|schema| BoundTerm {
                 schema,
+                loss: schema.loss,
+                within: None,
                 size: 1.0,
                 factor: 1.0,
                 powers: Powers::default(),
@@ -156,48 +163,11 @@ impl<E: Real> BoundTerm<E> {
     #[inline(always)]
     pub(crate) fn row(&self, r: E, m: E) -> (E, E) {
         let scale = E::from_f64(self.scale()) * m;
-        match self.schema.loss {
-            schema::Loss::Square => (scale * r, scale),
+        match self.loss {
+            Loss::Square => (scale * r, scale),
             loss => {
-                let (value, slope) = robust(loss, r.to_f64() * m.to_f64() / self.size);
+                let (value, slope) = loss.row(r.to_f64() * m.to_f64() / self.size);
                 (E::from_f64(self.factor * value), E::from_f64(slope) * scale)
-            }
-        }
-    }
-}
-
-/// `sign(u) sqrt(2 rho(u))` and its derivative, so that half its square is the robust loss `rho`.
-fn robust(loss: schema::Loss, u: f64) -> (f64, f64) {
-    match loss {
-        schema::Loss::Huber(delta) if u.abs() > delta => {
-            let value = (2.0 * delta * (u.abs() - delta / 2.0)).sqrt();
-            (value.copysign(u), delta / value)
-        }
-        schema::Loss::Welsch(delta) => {
-            let x = (u / delta).powi(2) / 2.0;
-            let value = delta * (-2.0 * (-x).exp_m1()).sqrt();
-            if value == 0.0 { (u, 1.0) } else { (value.copysign(u), u.abs() * (-x).exp() / value) }
-        }
-        _ => (u, 1.0),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn robust_rows_square_to_their_loss() {
-        for u in [-7.0, -1.0, -1e-3, 0.0, 1e-9, 0.4, 2.0, 30.0_f64] {
-            let huber = if u.abs() <= 1.5 { u * u / 2.0 } else { 1.5 * (u.abs() - 0.75) };
-            let welsch = 4.0 * (1.0 - (-(u / 2.0).powi(2) / 2.0).exp());
-            for (loss, rho) in [(schema::Loss::Huber(1.5), huber), (schema::Loss::Welsch(2.0), welsch)] {
-                let (value, slope) = robust(loss, u);
-                // The closed form of Welsch's loss rounds at the size of one.
-                assert!((value * value / 2.0 - rho).abs() <= 1e-12 * rho + 1e-15, "{loss:?} {u}");
-                let h = 1e-6;
-                let difference = (robust(loss, u + h).0 - robust(loss, u - h).0) / (2.0 * h);
-                assert!((slope - difference).abs() < 1e-5, "{loss:?} {u}: {slope} against {difference}");
             }
         }
     }

@@ -16,6 +16,7 @@ mod grow;
 mod heads;
 mod integral;
 mod jacobian;
+mod judged;
 mod learned;
 mod lift;
 mod objective;

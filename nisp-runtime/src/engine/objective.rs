@@ -1,10 +1,15 @@
 //! The engine as solvers see it.
 
 use super::{Engine, LearnedMap};
+use crate::loss::deviation_of_clean;
 use crate::real::Real;
 use crate::schema::TermKind;
+use crate::solve::evidence::is_free;
 use crate::solve::fault::Fault;
 use crate::solve::objective::{Block, BlockKind, LeastSquares, Objective};
+
+/// Misfits beside the declared noise, up to which a network is taken to follow the data.
+const FOLLOWED: f64 = 3.0;
 
 impl<E: Real> Objective<E> for Engine<E> {
     fn len(&self) -> usize {
@@ -61,6 +66,18 @@ impl LeastSquares for Engine<f64> {
         self.is_assigned = false;
     }
 
+    fn clean_sigma(&mut self, theta: &[f64], block: usize, effective: f64) -> Option<f64> {
+        let mut terms =
+            (0..self.groups.len()).flat_map(|at| (0..self.groups[at].terms.len()).map(move |term| (at, term)));
+        let (group, at) = terms.nth(block)?;
+        let is_robust = self.groups[group].terms[at].loss.is_robust() && is_free(&self.blocks[block]);
+        let misfits = is_robust.then(|| self.misfits(group, at, theta))?;
+        let found = deviation_of_clean(misfits, effective);
+        let within = self.groups[group].terms[at].within;
+        // What is known of the noise counts as soon as the network follows the data.
+        Some(within.filter(|within| found < FOLLOWED * within).unwrap_or(found))
+    }
+
     fn jacobian_vector(&mut self, theta: &[f64], v: &[f64], out: &mut [f64]) -> Result<(), Fault> {
         // A central difference: two forward passes, and as accurate as conjugate gradients can make use of.
         let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -95,7 +112,9 @@ impl<E: Real> Engine<E> {
                 blocks.push(Block {
                     term: format!("{}.{}", group.schema.name, term.schema.name),
                     kind: match term.schema.kind {
-                        TermKind::Observation | TermKind::Chamfer { .. } if term.schema.within.is_some() => {
+                        TermKind::Observation | TermKind::Chamfer { .. }
+                            if term.within.is_some() && !term.loss.is_robust() =>
+                        {
                             BlockKind::Observation
                         }
                         TermKind::Observation | TermKind::Chamfer { .. } => BlockKind::ObservationOfUnknownNoise,

@@ -38,6 +38,17 @@ impl<E: Real> Engine<E> {
         all
     }
 
+    /// How far the points of a term are off at `theta`, in the engine's units: of a cloud as last assigned, by coordinate or
+    /// across the surface.
+    pub(crate) fn misfits(&mut self, group: usize, term: usize, theta: &[E]) -> Vec<f64> {
+        let bound = &self.groups[group].terms[term];
+        if let Some(chamfer) = bound.chamfer.as_ref().filter(|chamfer| chamfer.is_assigned()) {
+            return chamfer.misfits();
+        }
+        let (points, schema) = (self.groups[group].points, bound.schema);
+        self.raw_rows(group, theta)[schema.first * points..(schema.first + schema.rows) * points].to_vec()
+    }
+
     /// Clouds of Chamfer terms.
     pub(super) fn chamfers(&self) -> impl Iterator<Item = &Chamfer<E>> {
         self.groups.iter().flat_map(|group| &group.terms).filter_map(|term| term.chamfer.as_ref())

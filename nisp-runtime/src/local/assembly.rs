@@ -68,7 +68,9 @@ impl Solver<'_> {
         }
         for surface in &self.surfaces {
             let group = &self.groups[surface.group];
-            let blocks = surface.blocks(group, &self.heads, theta, &self.scalars, &slopes, noise);
+            // Before the equations are solved, clouds are farther off than their noise.
+            let sigma = if regress { noise } else { surface.sigma(noise) };
+            let blocks = surface.blocks(group, &self.heads, theta, &self.scalars, &slopes, sigma);
             for block in &blocks {
                 let term = || format!("{}.{}", group.schema.name, surface.term);
                 half_square(block, |_| Fault::residual(term(), None))?;
@@ -79,7 +81,7 @@ impl Solver<'_> {
             }
             self.normal.add_all(&blocks);
             rows += surface.misfits().count();
-            loss += surface.loss(noise);
+            loss += surface.loss(sigma);
         }
         for at in 0..theta.len() {
             self.normal.add_stiffness(at, RIDGE);
@@ -132,7 +134,7 @@ impl Solver<'_> {
     pub(super) fn loss(&mut self, state: &State, noise: f64) -> f64 {
         self.find_feet(&state.theta, &state.learned);
         let groups = self.groups.iter().map(|group| group.loss(&self.heads, &state.theta, &self.scalars));
-        groups.sum::<f64>() + self.surfaces.iter().map(|surface| surface.loss(noise)).sum::<f64>()
+        groups.sum::<f64>() + self.surfaces.iter().map(|surface| surface.loss(surface.sigma(noise))).sum::<f64>()
     }
 
     /// Finds the feet of all clouds on the present surface.
@@ -164,10 +166,10 @@ fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, no
     Some(Sparse { heads, head, prior, level, finer: settings.finer, dimensions: settings.source_dimensions, noise })
 }
 
-/// Half the sum of a block's squares; `fault` says of a row that it is not finite.
+/// The loss of a block's rows; `fault` says of a row that it is not finite.
 fn half_square(block: &Block, fault: impl Fn(usize) -> Fault) -> Result<f64, LocalError> {
     match block.misfits.iter().position(|misfit| !misfit.is_finite()) {
         Some(row) => Err(LocalError::Fault(fault(row))),
-        None => Ok(block.misfits.iter().map(|misfit| 0.5 * misfit * misfit).sum()),
+        None => Ok(block.misfits.iter().map(|misfit| 0.5 * misfit * misfit).sum::<f64>() + block.excess),
     }
 }

@@ -12,6 +12,8 @@ pub(super) struct Block {
     pub(super) dofs: Vec<u32>,
     /// `[row][coefficient]`
     pub(super) slopes: Vec<f64>,
+    /// What the loss of the rows has beyond half their squares, where robust losses are majorised.
+    pub(super) excess: f64,
 }
 
 /// How the rows of a point lie in a plain slice: misfits, derivatives by learned parameters, derivatives by the functions of
@@ -49,14 +51,14 @@ impl Block {
     /// The rows of a point, where `dofs` are the functions of its cell.
     pub(super) fn of(layout: Layout, record: &[f64], dofs: Vec<u32>) -> Self {
         let (misfits, by_learned, slopes) = layout.split(record);
-        Self { misfits: misfits.to_vec(), by_learned: by_learned.to_vec(), dofs, slopes: slopes.to_vec() }
+        Self { misfits: misfits.to_vec(), by_learned: by_learned.to_vec(), dofs, slopes: slopes.to_vec(), excess: 0.0 }
     }
 
     /// Rows of nothing yet.
     pub(super) fn new(layout: Layout, dofs: Vec<u32>) -> Self {
         let Layout { rows, learned, .. } = layout;
         let slopes = vec![0.0; rows * dofs.len()];
-        Self { misfits: vec![0.0; rows], by_learned: vec![0.0; rows * learned], dofs, slopes }
+        Self { misfits: vec![0.0; rows], by_learned: vec![0.0; rows * learned], dofs, slopes, excess: 0.0 }
     }
 
     /// Adds rows of a cell; for every head, the boxes of functions of the cell and of this block.

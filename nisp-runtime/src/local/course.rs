@@ -7,6 +7,7 @@ use super::place::{Place, State};
 use super::solver::Solver;
 use super::surface::Surface;
 use super::{LocalError, Progress, Stage};
+use crate::loss::deviation_of_clean;
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::method::FAULTS_IN_A_ROW;
@@ -189,18 +190,13 @@ impl Solver<'_> {
         Ok((next, Found { loss, gain: before - after, rows, factor }))
     }
 
-    /// Standard deviation of the clouds about the surface, outliers counted for little.
+    /// Standard deviation of the clouds about the surface, without outliers; the largest declared where all are.
     fn noise(&self, used: f64) -> f64 {
-        let misfits: Vec<f64> = self.surfaces.iter().flat_map(Surface::misfits).collect();
-        let mut magnitudes: Vec<f64> = misfits.iter().map(|m| m.abs()).collect();
-        magnitudes.sort_by(f64::total_cmp);
-        let middle = magnitudes.get(magnitudes.len() / 2).copied().unwrap_or(0.0) * 1.4826;
-        let (mut sum, mut count) = (0.0, 0.0f64);
-        for misfit in magnitudes.iter().filter(|m| **m <= 4.0 * middle) {
-            sum += misfit * misfit;
-            count += 1.0;
-        }
-        (sum / (count - used).max(0.2 * count).max(1.0)).sqrt().max(LEAST_NOISE * self.cell)
+        let unknown = self.surfaces.iter().filter(|surface| surface.within().is_none());
+        let misfits: Vec<f64> = unknown.flat_map(Surface::misfits).collect();
+        let declared = || self.surfaces.iter().filter_map(Surface::within).fold(0.0, f64::max);
+        let found = if misfits.is_empty() { declared() } else { deviation_of_clean(misfits, used) };
+        found.max(LEAST_NOISE * self.cell)
     }
 
     /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.

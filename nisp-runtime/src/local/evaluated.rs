@@ -20,20 +20,13 @@ pub(super) struct Evaluated {
 }
 
 impl Group {
-    /// Rows of the group at other points, and their derivatives if `slopes`.
-    pub(super) fn evaluate_at(
-        &self,
-        sites: &Sites,
-        heads: &Heads,
-        theta: &[f64],
-        scalars: &[f64],
-        slopes: bool,
-    ) -> Evaluated {
+    /// Jets at points, `[jet][point]`; of values of bounded heads, by jet and point, the derivative of what a program reads by
+    /// the head, and what the program does not see of it.
+    pub(super) fn jets_at(&self, sites: &Sites, heads: &Heads, theta: &[f64]) -> (Vec<f64>, Vec<Vec<(f64, f64)>>) {
         let stride = sites.stride;
         let count = self.schema.jets.len();
         let mut jets = vec![0.0; count * stride];
         let spread: Vec<Vec<f64>> = (0..heads.lattices.len()).map(|head| heads.spread(head, theta)).collect();
-        // Bounded heads: the slope of the jet by the head, and what the program does not see of it.
         let mut bounded: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
         jets.par_chunks_mut(stride).zip(&mut bounded).enumerate().for_each(|(at, (jets, bounded))| {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
@@ -61,6 +54,21 @@ impl Group {
             let last = jets[sites.count - 1];
             jets[sites.count..].fill(last);
         });
+        (jets, bounded)
+    }
+
+    /// Rows of the group at other points, and their derivatives if `slopes`.
+    pub(super) fn evaluate_at(
+        &self,
+        sites: &Sites,
+        heads: &Heads,
+        theta: &[f64],
+        scalars: &[f64],
+        slopes: bool,
+    ) -> Evaluated {
+        let stride = sites.stride;
+        let count = self.schema.jets.len();
+        let (jets, bounded) = self.jets_at(sites, heads, theta);
         let points = Points {
             count: sites.count,
             stride,

@@ -14,6 +14,7 @@ use super::lattice::{Exponents, Lattice, Span};
 use super::sites::Sites;
 use super::testing::{Test, tests};
 use crate::kernel::GroupKernel;
+use crate::loss::Loss;
 use crate::schema::{self, TermKind};
 
 /// A group at its points.
@@ -26,6 +27,8 @@ pub(super) struct Group {
     pub(super) sigma: Vec<f64>,
     /// By row: derivatives of that divisor's logarithm by the learned scalars; empty if it goes with none.
     pub(super) growth: Vec<Vec<f64>>,
+    /// By row: how its misfit counts, and what that is multiplied by (which its divisor has in it).
+    losses: Vec<(Loss, f64)>,
     /// Weights of the points; empty if each has rows of its own.
     pub(super) weights: Vec<f64>,
     /// What weighted points are tested with, their points cell by cell.
@@ -37,9 +40,10 @@ pub(super) struct Group {
 }
 
 impl Group {
-    /// A group at points, given flat with columns `[column][point]`, whose weights are given, or none.
+    /// A group, with how its terms' misfits count, at points, given flat with columns `[column][point]`, whose weights are
+    /// given, or none.
     pub(super) fn new(
-        schema: &'static schema::Group,
+        (schema, terms): (&'static schema::Group, &[Loss]),
         kernel: GroupKernel<f64>,
         heads: &Heads,
         (flat, columns): (&[f64], &[Vec<f64>]),
@@ -67,7 +71,11 @@ impl Group {
             test.points.sort_by(|&(p, _), &(q, _)| cells(p).cmp(cells(q)));
         }
         let (sigma, growth) = (vec![1.0; schema.rows], vec![Vec::new(); schema.rows]);
-        Self { schema, kernel, operators, sigma, growth, sites, weights, tests, degree, highest }
+        let mut losses = vec![(Loss::Square, 1.0); schema.rows];
+        for (term, loss) in schema.terms.iter().zip(terms) {
+            losses[term.first..term.first + term.rows].fill((*loss, term.weight));
+        }
+        Self { schema, kernel, operators, sigma, growth, losses, sites, weights, tests, degree, highest }
     }
 
     /// Other points than the group's own, without columns.
@@ -80,6 +88,11 @@ impl Group {
         let terms = self.schema.terms.iter();
         let own = terms.filter(|term| matches!(term.kind, TermKind::Residual | TermKind::Observation));
         own.flat_map(|term| term.first..term.first + term.rows).collect()
+    }
+
+    /// The points of every test with their shares; none if equations are asked of points.
+    pub(super) fn means(&self) -> Vec<Vec<(u32, f64)>> {
+        self.tests.iter().map(|test| test.points.clone()).collect()
     }
 
     /// False where a cloud is all that the group is compared with.
@@ -120,6 +133,7 @@ impl Group {
             let at_point = |p: usize| {
                 let mut block = Block::of(layout, record(p), self.dofs(heads, |head| self.cell(heads, p, head)));
                 block.divide(rows.iter().map(|&row| self.sigma[row]));
+                self.majorise(&mut block, &rows);
                 block
             };
             return (0..self.sites.count).into_par_iter().map(at_point).collect();
@@ -139,9 +153,36 @@ impl Group {
                 block.add(layout, sum, boxes, dimensions);
             }
             block.divide(rows.iter().map(|&row| self.sigma[row] / test.weight));
+            self.majorise(&mut block, &rows);
             block
         };
         self.tests.par_iter().map_init(Vec::new, tested).collect()
+    }
+
+    /// Multiplies rows over their tolerances so that their squares have the slopes of robust losses.
+    fn majorise(&self, block: &mut Block, rows: &[usize]) {
+        let robust = |row: usize| Some(self.losses[row]).filter(|(loss, _)| loss.is_robust());
+        if rows.iter().all(|&row| robust(row).is_none()) {
+            return;
+        }
+        let majorants = rows.iter().zip(&block.misfits).map(|(&row, misfit)| {
+            robust(row).map_or((1.0, 0.0), |(loss, times)| {
+                let (weight, rest) = loss.majorant(misfit / times.sqrt());
+                (weight, 0.5 * times * rest)
+            })
+        });
+        let (weights, excess): (Vec<f64>, Vec<f64>) = majorants.unzip();
+        block.divide(weights.into_iter().map(|weight| weight.sqrt().recip()));
+        block.excess = excess.into_iter().sum();
+    }
+
+    /// What the misfit of a row costs.
+    fn cost(&self, row: usize, misfit: f64) -> f64 {
+        let over = misfit / self.sigma[row];
+        match self.losses[row] {
+            (Loss::Square, _) => 0.5 * over.powi(2),
+            (loss, times) => times * loss.rho(over / times.sqrt()),
+        }
     }
 
     /// Heads that the group reads.
@@ -154,25 +195,27 @@ impl Group {
         Layout { rows, learned, width: self.read().map(|head| heads.lattices[head].per_cell()).sum() }
     }
 
-    /// Half the sum of squares of the rows over their tolerances, integrals among them.
+    /// What the rows over their tolerances cost, integrals among them.
     pub(super) fn loss(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> f64 {
         if !self.has_rows() {
             return 0.0;
         }
         let evaluated = self.evaluate(heads, theta, scalars, false);
-        let square = |row: usize, value: f64| 0.5 * (value / self.sigma[row]).powi(2);
         let mut own = 0.0;
         for row in self.own_rows() {
             own += match self.weights.is_empty() {
-                true => (0..self.sites.count).map(|p| square(row, evaluated.row(row, p))).sum::<f64>(),
-                false => self.tests.iter().map(|test| square(row, test.weight * evaluated.mean(test, row))).sum(),
+                true => (0..self.sites.count).map(|p| self.cost(row, evaluated.row(row, p))).sum::<f64>(),
+                false => self.tests.iter().map(|test| self.cost(row, test.weight * evaluated.mean(test, row))).sum(),
             };
         }
-        let integrals = self.targets(scalars).into_iter().map(|(row, target)| {
-            let sum: f64 = (0..self.sites.count).map(|p| self.weight(p) * evaluated.row(row, p)).sum();
-            square(row, sum - target)
-        });
+        let integrals = self.sums(&evaluated, scalars).into_iter().map(|(row, misfit)| self.cost(row, misfit));
         own + integrals.sum::<f64>()
+    }
+
+    /// Rows of integral terms, and how far their sums are from what they are to be.
+    pub(super) fn sums(&self, evaluated: &Evaluated, scalars: &[f64]) -> Vec<(usize, f64)> {
+        let sum = |row: usize| (0..self.sites.count).map(|p| self.weight(p) * evaluated.row(row, p)).sum::<f64>();
+        self.targets(scalars).into_iter().map(|(row, target)| (row, sum(row) - target)).collect()
     }
 
     /// Weight of a point in integrals.

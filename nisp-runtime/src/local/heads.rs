@@ -79,7 +79,13 @@ impl Heads {
     /// A head's row at a point whose misfit is what `theta` would have to be changed by for this head to equal another's.
     pub(super) fn difference(&self, head: usize, point: &[f64], other: &Heads, theta: &[f64], learned: usize) -> Block {
         let (dofs, slopes) = self.parts(head, point).into_iter().map(|(at, value)| (at as u32, value)).unzip();
-        Block { misfits: vec![-other.sum(head, point, theta)], by_learned: vec![0.0; learned], dofs, slopes }
+        Block {
+            misfits: vec![-other.sum(head, point, theta)],
+            by_learned: vec![0.0; learned],
+            dofs,
+            slopes,
+            excess: 0.0,
+        }
     }
 
     /// Value of a head, within its bound.

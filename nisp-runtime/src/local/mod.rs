@@ -16,8 +16,10 @@ mod draws;
 mod evaluated;
 mod group;
 mod heads;
+mod judged;
 mod lattice;
 mod meshes;
+mod misfits;
 mod normal;
 mod phase;
 mod place;
@@ -34,6 +36,7 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
+use crate::facts::Answer;
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status, Warning};
 use crate::solve::fault::Fault;
@@ -105,8 +108,12 @@ pub(crate) struct LocalSolution {
     factor: Option<Factor>,
     /// Where the solver stopped.
     pub(crate) checkpoint: State,
+    /// What the verdict is made from.
+    pub(crate) answer: Answer,
     /// Of all unknowns, drawn from their posterior; none where there was no time for it.
     deviations: Deviations,
+    /// By group and term.
+    pub(crate) misfits: Vec<Vec<misfits::Misfits>>,
 }
 
 /// What the caller sees after every step.
@@ -164,6 +171,8 @@ pub(crate) fn solve(
     if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
         end.warnings.extend(solver.unresolved(&end.state, settings.cells));
     }
+    let answer = solver.answer(&end.state);
+    let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     Ok(LocalSolution {
         heads: solver.heads,
@@ -175,7 +184,9 @@ pub(crate) fn solve(
         warnings,
         factor,
         checkpoint,
+        answer,
         deviations,
+        misfits,
     })
 }
 

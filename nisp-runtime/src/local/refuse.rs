@@ -24,7 +24,7 @@ pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) 
         (schema.groups.iter().flat_map(|g| g.jets).any(derived), "derivatives of bounded heads"),
         (terms().any(|t| t.kind == TermKind::Observation && t.within.is_none()), "measurements without `within`"),
         (terms().any(|t| t.kind == TermKind::Chamfer { symmetric: true, plane: false }), "symmetric Chamfer distances"),
-        (terms().any(|t| !cloud(t) && t.loss != schema::Loss::Square), "robust losses of equations"),
+        (terms().any(|t| t.kind == TermKind::Integral && t.loss.is_robust()), "robust losses of integrals"),
         (terms().any(|t| cloud(t) && (t.rows != 3 || !(2..=3).contains(&inputs))), "clouds that are not in space"),
         (settings.cells <= settings.tests || settings.finer == 0, "lattices of fewer cells than a test is spread over"),
         (settings.degree > HIGHEST_DEGREE, "splines of such a degree"),

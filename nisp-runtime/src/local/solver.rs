@@ -7,7 +7,7 @@ use super::meshes::{base, lattice, together};
 use super::normal::Normal;
 use super::place::{Place, State};
 use super::refuse::refuse_what_networks_do;
-use super::surface::{Feet, Surface};
+use super::surface::{Counting, Feet, Surface};
 use super::{Local, LocalError};
 use crate::problem::Bound;
 use crate::schema::TermKind;
@@ -53,13 +53,15 @@ impl<'a> Solver<'a> {
             let points = (flat.as_slice(), bound.columns[at].as_slice());
             let measure = schema.terms.iter().find_map(|term| term.measure.as_ref());
             let weights = bound.weights(at, measure);
-            let group = Group::new(schema, kernel, &heads, points, weights, (&base, settings.tests));
-            for (term, cloud) in schema.terms.iter().zip(&bound.clouds[at]) {
+            let losses = &bound.losses[at];
+            let group = Group::new((schema, losses), kernel, &heads, points, weights, (&base, settings.tests));
+            for (index, (term, cloud)) in schema.terms.iter().zip(&bound.clouds[at]).enumerate() {
                 if !matches!(term.kind, TermKind::Chamfer { .. }) {
                     continue;
                 }
                 let view = bound.view(at, term.name);
-                surfaces.push(Surface::new(at, term, cloud, view, flat, inputs, cell));
+                let counting = Counting::of(term, bound.losses[at][index], bound.sizes[at][index]);
+                surfaces.push(Surface::new(at, term, cloud, view, flat, inputs, (cell, counting)));
             }
             groups.push(group);
         }

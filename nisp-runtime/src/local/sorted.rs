@@ -112,6 +112,7 @@ mod tests {
             by_learned: Vec::new(),
             dofs: vec![7, 3, crate::local::lattice::NONE, 4, 5],
             slopes: vec![1.0, 2.0, 9.0, 3.0, 0.5, -1.0, 4.0, 9.0, 0.0, 2.0],
+            excess: 0.0,
         };
         let sorted = Sorted::of(&block);
         assert_eq!(

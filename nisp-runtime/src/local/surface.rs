@@ -2,6 +2,8 @@
 //!
 //! A point's foot is the place at rest whose image it is compared with: where the line through the point, along the
 //! direction, meets the surface. Feet are found by Newton's method before every step and held during it.
+//!
+//! A robust loss is minimised by weights that every step renews.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::{DMatrix, Matrix3, Vector3};
@@ -9,6 +11,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use super::block::Block;
 use super::group::Group;
 use super::heads::Heads;
+use crate::loss::Loss;
 use crate::schema;
 
 /// Newton steps for the feet, at most.
@@ -38,6 +41,29 @@ pub(super) struct Surface {
     /// What rows are measured along, scaled so that they are distances along the view.
     normals: Vec<Vector3<f64>>,
     misfits: Vec<f64>,
+    counting: Counting,
+}
+
+/// How the misfits of a cloud's points count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Counting {
+    /// Of a misfit over its standard deviation.
+    pub(super) loss: Loss,
+    /// The standard deviation, where it is declared.
+    pub(super) within: Option<f64>,
+    /// What the loss is multiplied by.
+    pub(super) weight: f64,
+}
+
+impl Counting {
+    /// As declared; `size` is the standard deviation of a term that says `within`. Clouds have outliers, so that one of which
+    /// nothing is said has Huber's loss.
+    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64) -> Self {
+        /// Deviations from which on a point counts as an outlier.
+        const OUTLIER: f64 = 3.0;
+        let loss = if declared.is_robust() { declared } else { Loss::Huber(OUTLIER) };
+        Self { loss, within: term.within.map(|_| size), weight: term.weight }
+    }
 }
 
 /// Feet of a cloud's points; none before the first search.
@@ -57,7 +83,7 @@ impl Surface {
         view: Option<[f64; 3]>,
         samples: &[f64],
         inputs: usize,
-        reach: f64,
+        (reach, counting): (f64, Counting),
     ) -> Self {
         let cloud: Vec<Vector3<f64>> = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
         let flat: Vec<[f64; 3]> = samples.chunks_exact(inputs).map(padded).collect();
@@ -81,6 +107,7 @@ impl Surface {
             found: vec![false; count],
             normals: vec![Vector3::zeros(); count],
             misfits: vec![0.0; count],
+            counting,
         }
     }
 
@@ -104,9 +131,35 @@ impl Surface {
         self.misfits.iter().zip(&self.found).filter(|(_, found)| **found).map(|(misfit, _)| *misfit)
     }
 
-    /// Half the sum of the points' losses.
+    /// The points of the cloud.
+    pub(super) fn cloud(&self) -> Vec<[f64; 3]> {
+        self.cloud.iter().map(|&point| point.into()).collect()
+    }
+
+    /// The feet of all points.
+    pub(super) fn places(&self) -> Vec<[f64; 3]> {
+        self.feet.chunks_exact(self.inputs).map(padded).collect()
+    }
+
+    /// Signed misfits of all points; nothing where the foot was lost.
+    pub(super) fn signed(&self) -> Vec<Option<f64>> {
+        self.misfits.iter().zip(&self.found).map(|(misfit, found)| found.then_some(*misfit)).collect()
+    }
+
+    /// Standard deviation of the points: as declared, or as estimated.
+    pub(super) fn sigma(&self, estimated: f64) -> f64 {
+        self.counting.within.unwrap_or(estimated)
+    }
+
+    /// The declared standard deviation.
+    pub(super) fn within(&self) -> Option<f64> {
+        self.counting.within
+    }
+
+    /// Sum of the points' losses.
     pub(super) fn loss(&self, sigma: f64) -> f64 {
-        self.misfits().map(|misfit| 0.5 * loss(misfit / sigma)).sum()
+        let Counting { loss, weight, .. } = self.counting;
+        self.misfits().map(|misfit| weight * loss.rho(misfit / sigma)).sum()
     }
 
     /// Positions of places, given flat.
@@ -208,7 +261,7 @@ impl Surface {
         self.feet = self.nearest.iter().flat_map(|&at| self.samples[at * inputs..(at + 1) * inputs].to_vec()).collect();
     }
 
-    /// Rows of all points with a foot, over `sigma`; those far off count less (Huber's weights).
+    /// Rows of all points with a foot, over `sigma`; those far off count less.
     pub(super) fn blocks(
         &self,
         group: &Group,
@@ -224,25 +277,12 @@ impl Surface {
         kept.map(|i| {
             let seed = |bar| (0..3).map(|c| self.normals[i][c] * evaluated.bar(self.first + c, bar, i)).sum();
             let mut block = group.at_point(heads, (&sites, i), learned, self.misfits[i], seed);
-            block.divide(std::iter::once(sigma / weight(self.misfits[i] / sigma).sqrt()));
+            let weight = self.counting.weight * self.counting.loss.weight(self.misfits[i] / sigma);
+            block.divide(std::iter::once(sigma / weight.sqrt()));
             block
         })
         .collect()
     }
-}
-
-/// Deviations from which on a point counts as an outlier.
-const OUTLIER: f64 = 3.0;
-
-/// Huber's weight of a misfit in standard deviations.
-fn weight(deviations: f64) -> f64 {
-    (OUTLIER / deviations.abs()).min(1.0)
-}
-
-/// Twice Huber's loss of a misfit in standard deviations.
-fn loss(deviations: f64) -> f64 {
-    let u = deviations.abs();
-    if u <= OUTLIER { u * u } else { OUTLIER * (2.0 * u - OUTLIER) }
 }
 
 /// A place at rest in three numbers.

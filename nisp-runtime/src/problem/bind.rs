@@ -7,6 +7,7 @@ use super::scale::{Data, Scales, scales};
 use super::{Binding, Problem, UnitSystem};
 use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling, is_exchangeable};
 use crate::kernel::Precision;
+use crate::loss::Loss;
 use crate::network::{Architecture, Inputs, Layout};
 use crate::schema::{self, Origin};
 use crate::simd::Isa;
@@ -119,6 +120,8 @@ pub(crate) struct Bound {
     pub(crate) learned: Vec<Learned>,
     /// Natural size of each term's rows, by group and term.
     pub(crate) sizes: Vec<Vec<f64>>,
+    /// How misfits count, by group and term.
+    pub(crate) losses: Vec<Vec<Loss>>,
     /// Powers of the learned scalars that the sizes of equations go with, by group and term; see [`super::powers`].
     pub(crate) powers: Vec<Vec<Powers>>,
     /// Coordinates by group, in the engine's units, point by point.
@@ -287,7 +290,21 @@ impl Bound {
         }
         let learned = learned(schema, &system, &scalars);
         let powers = powers(&problem.scene, &scalars, data, inputs, &learned);
-        Ok(Self { problem, system, scaling, scalars, learned, sizes, powers, coordinates, partners, columns, clouds })
+        let losses = schema.groups.iter().map(|group| group.terms.iter().map(|term| term.loss).collect()).collect();
+        Ok(Self {
+            problem,
+            system,
+            scaling,
+            scalars,
+            learned,
+            sizes,
+            losses,
+            powers,
+            coordinates,
+            partners,
+            columns,
+            clouds,
+        })
     }
 
     /// The engine of this problem in precision `E`, for a network of the given shape.
@@ -319,15 +336,16 @@ impl Bound {
                 &self.partners[at],
                 &self.columns[at],
             );
-            let bound = self.sizes[at].iter().zip(&self.powers[at]).zip(&self.clouds[at]);
-            for (term, ((size, powers), cloud)) in group.terms.iter_mut().zip(bound) {
-                term.size = *size;
+            let bound = self.sizes[at].iter().zip(&self.losses[at]).zip(&self.powers[at]).zip(&self.clouds[at]);
+            for (term, (((size, loss), powers), cloud)) in group.terms.iter_mut().zip(bound) {
+                (term.size, term.loss) = (*size, *loss);
+                term.within = term.schema.within.map(|_| size / term.schema.weight.sqrt());
                 term.powers = powers.clone();
                 if term.schema.kind == schema::TermKind::Integral && !self.raw_weights(at).is_empty() {
                     let weights = self.weights(at, term.schema.measure.as_ref());
                     term.point_weights = Some(weights.into_iter().map(E::from_f64).collect());
                 }
-                term.chamfer = Chamfer::new(cloud, term.schema, group.points);
+                term.chamfer = Chamfer::new(cloud, (term.schema, term.loss), group.points);
             }
             groups.push(group);
         }

@@ -1,6 +1,6 @@
 //! Error bars of a network: what noise adds to the answer, and what smoothing takes from it.
 
-use super::noise::Noise;
+use crate::noise::Noise;
 use crate::solve::posterior::Posterior;
 
 /// Standard deviations of quantities, and the part of them that comes from smoothing.
@@ -33,7 +33,7 @@ impl Distrust {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::recover::noise::ObservationNoise;
+    use crate::noise::ObservationNoise;
 
     #[test]
     fn noise_that_hides_the_signal_doubts_the_prior_most() {

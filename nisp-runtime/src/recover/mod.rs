@@ -8,7 +8,6 @@ mod checkpoint;
 mod course;
 mod layers;
 mod network;
-mod noise;
 mod open;
 mod place;
 mod promotion;
@@ -16,7 +15,6 @@ mod resolution;
 mod settings;
 mod solution;
 mod spread;
-mod swing;
 mod undetermined;
 pub(crate) mod weigh;
 mod words;
@@ -154,9 +152,12 @@ fn solve(
     let limits =
         Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() };
     let course = Course::new(fingerprint, limits, start, checkpoint.map(|c| &c.state), monitor);
-    pool.install(|| match &settings.local {
-        Some(local) => solve_local(bound, local, settings, start, course),
-        None => network::solve(bound, settings, start, course),
+    pool.install(|| {
+        let solution = match &settings.local {
+            Some(local) => solve_local(bound, local, settings, start, course),
+            None => network::solve(bound, settings, start, course),
+        };
+        solution.map(Solution::judged)
     })
 }
 

@@ -4,7 +4,6 @@ use std::time::Instant;
 
 use super::bars::Distrust;
 use super::course::Course;
-use super::noise::{self, Noise};
 use super::promotion::Promotion;
 use super::settings::{Optimizer, Resampling, Settings, Width};
 use super::solution::Run;
@@ -13,6 +12,7 @@ use super::{BELIEF, RecoverError, Solution, resolution, weigh};
 use crate::engine::Engine;
 use crate::kernel::Precision;
 use crate::network::initialise;
+use crate::noise::{self, Noise};
 use crate::problem::{BindError, Bound};
 use crate::solve::adam::{Adam, AdamSettings};
 use crate::solve::broyden::{Broyden, Update};
@@ -164,6 +164,7 @@ impl<'a> Fit<'a> {
     fn weigh(&mut self, optimizer: Optimizer) -> Result<(), Fault> {
         if optimizer.counts_noise() {
             weigh::by_noise(&mut self.engine, self.bound, &self.noise);
+            weigh::begin_wide(&mut self.engine, self.bound, &self.noise);
             return Ok(());
         }
         weigh::by_size(&mut self.engine);

@@ -1,23 +1,14 @@
-//! Where the answer does not fit: data that the network does not follow or follows too closely, and places where an
-//! equation fails.
+//! Where a network is the wrong size: data that it follows too closely, and places where an equation fails.
 
-use super::noise::{Noise, ObservationNoise, in_order, is_exact};
 use super::place::place;
-use super::swing::{self, Swing};
 use crate::engine::Engine;
+use crate::noise::{Noise, ObservationNoise};
 use crate::problem::Bound;
 use crate::schema::{Loss, Term, TermKind};
 use crate::solve::driver::{Warning, WarningKind};
 
-/// Misfit beside the noise, above which data are not resolved; its square is chi^2 per datum.
-const LOOSE: f64 = 1.5;
 /// Misfit beside the noise, below which the noise is followed: three quarters of the data are used up by the fit.
 const TIGHT: f64 = 0.5;
-/// Misfit of exact data beside their own spread, above which they are not resolved.
-const COARSE: f64 = 1e-3;
-
-/// Longest gap of a record that counts as evenly sampled, beside the mean.
-const LONGEST: f64 = 2.0;
 
 /// Points of a term at least for some of them to stand out.
 const MANY: usize = 50;
@@ -42,15 +33,15 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
                     if let Some(message) = too_few(term, points, noise.of(at, number)) {
                         warnings.push(Warning { kind: WarningKind::Unresolved, message });
                     }
-                    noise.of(at, number).and_then(|level| {
-                        let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
-                        let unit = term.unit.text;
-                        let Some(said) = misfit(rms, level.deviation, level.spread) else {
-                            let swing = swing(&bound.coordinates[at], own, level)?;
-                            return Some(smoothed_away(term.name, swing, outward, unit));
-                        };
-                        let (rms, sigma) = (rms * outward, level.deviation * outward);
-                        Some(format!("`{}` {said} (rms {rms:.2e} {unit}, noise {sigma:.2e} {unit})", term.name))
+                    let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
+                    let level = noise.of(at, number).filter(|level| follows_noise(rms, *level));
+                    level.map(|level| {
+                        let (rms, sigma, unit) = (rms * outward, level.deviation * outward, term.unit.text);
+                        format!(
+                            "`{}` follows its noise: the misfit is far below that of the data; take the optimizer `evidence`, \
+                             or a smaller network (rms {rms:.2e} {unit}, noise {sigma:.2e} {unit})",
+                            term.name
+                        )
                     })
                 }
                 TermKind::Residual => hot_spot(own, points, bound.sizes[at][number]).map(|(point, share)| {
@@ -75,6 +66,11 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
     warnings
 }
 
+/// True where a misfit is far below the noise of the data.
+fn follows_noise(rms: f64, level: ObservationNoise) -> bool {
+    !level.is_exact() && rms < TIGHT * level.deviation
+}
+
 /// Says so where measurements are too few to tell noise from signal, and nobody says how noisy they are.
 fn too_few(term: &Term, points: usize, level: Option<ObservationNoise>) -> Option<String> {
     (level.is_none() && term.within.is_none() && !term.columns.is_empty()).then(|| {
@@ -85,48 +81,6 @@ fn too_few(term: &Term, points: usize, level: Option<ObservationNoise>) -> Optio
         )
     })
 }
-
-/// What a misfit says, where it is not that of noise.
-fn misfit(rms: f64, noise: f64, spread: f64) -> Option<&'static str> {
-    let exact = is_exact(noise, spread);
-    if exact && rms > COARSE * spread {
-        Some("is not resolved, though its data are all but exact: give more time, a wider network or another seed")
-    } else if !exact && rms > LOOSE * noise {
-        Some(
-            "is not resolved: the misfit is above the noise of the data; give more time, a wider network or another seed",
-        )
-    } else if !exact && rms < TIGHT * noise {
-        Some(
-            "follows its noise: the misfit is far below that of the data; take the optimizer `evidence`, or a smaller network",
-        )
-    } else {
-        None
-    }
-}
-
-/// An oscillation in what is left of a noisy record, if that is evenly sampled.
-fn swing(times: &[f64], residuals: &[f64], noise: ObservationNoise) -> Option<Swing> {
-    let is_record = times.len() == residuals.len() && is_even(times) && !is_exact(noise.deviation, noise.spread);
-    is_record.then(|| swing::strongest(&in_order(times, residuals))).flatten()
-}
-
-/// True where no gap is much longer than the others.
-fn is_even(times: &[f64]) -> bool {
-    let sorted = in_order(times, times);
-    let longest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-    let whole = sorted.last().zip(sorted.first()).map_or(0.0, |(last, first)| last - first);
-    longest <= LONGEST * whole / (sorted.len().max(2) - 1) as f64
-}
-
-fn smoothed_away(name: &str, swing: Swing, outward: f64, unit: &str) -> String {
-    format!(
-        "`{name}` is not resolved: what is left of its data goes up and down {} times over the record by {:.2e} {unit}, which \
-         noise does not; the answer misses that, and its error bars do not know of it; give another seed",
-        swing.periods,
-        swing.amplitude * outward,
-    )
-}
-
 /// The worst point and its residual beside `size`, where few points have most of the sum of squares. Rows come one after
 /// the other, each over all points.
 fn hot_spot(rows: &[f64], points: usize, size: f64) -> Option<(usize, f64)> {
@@ -159,19 +113,10 @@ mod tests {
     }
 
     #[test]
-    fn a_record_with_a_gap_is_not_even() {
-        let even: Vec<f64> = (0..50).rev().map(|i| 0.1 * f64::from(i) + 0.02 * f64::from(i % 3)).collect();
-        assert!(is_even(&even) && is_even(&[]) && is_even(&[1.0]));
-        let gap: Vec<f64> = even.iter().map(|t| if *t > 2.0 { t + 1.0 } else { *t }).collect();
-        assert!(!is_even(&gap));
-    }
-
-    #[test]
-    fn misfits_are_compared_with_the_noise() {
-        assert_eq!(misfit(0.011, 0.01, 1.0), None);
-        assert!(misfit(0.02, 0.01, 1.0).unwrap().contains("not resolved"));
-        assert!(misfit(0.004, 0.01, 1.0).unwrap().contains("follows its noise"));
-        assert_eq!(misfit(1e-4, 1e-8, 1.0), None);
-        assert!(misfit(1e-2, 1e-8, 1.0).unwrap().contains("exact"));
+    fn a_misfit_far_below_the_noise_follows_it() {
+        let level = |deviation| ObservationNoise { group: 0, term: 0, deviation, spread: 1.0 };
+        assert!(follows_noise(0.004, level(0.01)));
+        assert!(!follows_noise(0.011, level(0.01)));
+        assert!(!follows_noise(1e-9, level(1e-8)), "exact data");
     }
 }

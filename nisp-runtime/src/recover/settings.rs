@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use super::noise::Noise;
 use crate::local::Local;
 use crate::network::{Architecture, Inputs};
+use crate::noise::Noise;
 
 /// How a problem is solved.
 #[derive(Clone, Debug, PartialEq)]

@@ -5,14 +5,16 @@ use std::time::Instant;
 use super::bars::{Bars, Distrust};
 use super::{Checkpoint, Optimizer, Settings, Width};
 use crate::engine::{Engine, Learned};
-use crate::local::LocalSolution;
+use crate::local::{Local, LocalSolution};
+use crate::noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::simd::Isa;
 use crate::solve::curvature::Curvature;
-use crate::solve::driver::{Outcome, Status, Warning};
+use crate::solve::driver::{Outcome, Status, Warning, WarningKind};
 use crate::solve::posterior::posterior;
 use crate::solve::prior::WeightPrior;
+use crate::verdict::{Verdict, judge, patches};
 
 /// A solved problem.
 pub struct Solution {
@@ -33,6 +35,8 @@ pub struct Solution {
     pub settings: Settings,
     /// Where the method stopped, for [`resume`](super::resume).
     pub checkpoint: Checkpoint,
+    /// What is left of the equations, conditions and data.
+    pub verdict: Verdict,
     bound: Bound,
     carrier: Carrier,
 }
@@ -123,6 +127,7 @@ impl Solution {
             precision,
             settings: settings.clone(),
             checkpoint: Checkpoint::new(&bound.problem, settings, outcome.state),
+            verdict: Verdict::default(),
             bound,
             carrier: Carrier::Network(Box::new(Network { engine, theta: outcome.theta, prior, distrust })),
         }
@@ -139,9 +144,68 @@ impl Solution {
             precision: Width::F64,
             settings: settings.clone(),
             checkpoint: Checkpoint::new(&bound.problem, settings, found.checkpoint.clone()),
+            verdict: Verdict::default(),
             bound,
             carrier: Carrier::Local(Box::new(found)),
         }
+    }
+
+    /// Judges the answer by what is left of the problem, and calls it by its name.
+    pub(super) fn judged(mut self) -> Self {
+        let noise = noise::estimate(&self.bound);
+        let values = self.values_over_domain();
+        let judge = |bound, answer: &_| judge(bound, answer, &values, &noise);
+        self.verdict = match &mut self.carrier {
+            Carrier::Network(network) => judge(&self.bound, &network.engine.answer(&network.theta, &self.bound.clouds)),
+            Carrier::Local(local) => judge(&self.bound, &local.answer),
+        };
+        let everywhere = |local: &&Local| local.source_dimensions == self.scene().coordinates.len();
+        if let Some(prior) = self.settings.local.as_ref().filter(everywhere).and_then(|local| local.patches) {
+            for (head, values) in self.scene().heads.iter().zip(&values).filter(|(head, _)| head.source) {
+                let level = prior.level * self.bound.system.inward(&head.unit);
+                self.verdict.checks.push(patches(head.name, values, level));
+            }
+        }
+        match (self.status, self.verdict.passed()) {
+            (Status::Converged, false) => self.status = Status::Inconsistent,
+            // A minimum at the floor of rounding has no gradient to speak of, whatever the method made of it.
+            (Status::NotConverged, true) if self.is_at_floor() => {
+                self.status = Status::Converged;
+                self.warnings.retain(|warning| warning.kind != WarningKind::Stagnation);
+            }
+            _ => {}
+        }
+        self
+    }
+
+    /// Values of all heads at points of all groups, `[head][point]` in the engine's units.
+    fn values_over_domain(&self) -> Vec<Vec<f64>> {
+        /// Points of a group that say how large a head is, at most.
+        const MOST: usize = 2000;
+        let inputs = self.scene().coordinates.len();
+        let units: Vec<f64> = self.scene().coordinates.iter().map(|c| self.bound.system.outward(&c.unit)).collect();
+        let some = |group: &Vec<f64>| {
+            let points = group.chunks_exact(inputs);
+            let step = points.len().div_ceil(MOST).max(1);
+            points.step_by(step).flatten().zip(units.iter().cycle()).map(|(x, unit)| x * unit).collect::<Vec<f64>>()
+        };
+        let points: Vec<f64> = self.bound.coordinates.iter().flat_map(some).collect();
+        let inward = |estimate: Estimate| {
+            let inward = self.bound.system.inward(&estimate.unit);
+            estimate.values.into_iter().map(|x| x * inward).collect()
+        };
+        self.evaluate(&points).into_iter().map(inward).collect()
+    }
+
+    /// True where rows are met to the root of the precision: their squares drown in rounding.
+    fn is_at_floor(&self) -> bool {
+        let rows: usize = self.groups().map(|(group, points)| group.rows * points).sum();
+        self.loss <= f64::EPSILON * rows as f64
+    }
+
+    /// True where the answer may be relied on: it met all checks, and error bars mean something.
+    pub fn is_sound(&self) -> bool {
+        self.verdict.passed()
     }
 
     /// The scene that was solved.
@@ -187,6 +251,9 @@ impl Solution {
     /// functions take a source's patches as they were found: they say how well the source is known within them, not whether
     /// a patch may be elsewhere.
     pub fn evaluate_with_errors(&mut self, points: &[f64]) -> Vec<Estimate> {
+        if !self.is_sound() {
+            return self.evaluate(points);
+        }
         if let Carrier::Local(local) = &self.carrier {
             let inward = self.bound.inward(points);
             let mut estimates = self.evaluate(points);
@@ -247,7 +314,7 @@ impl Solution {
             .map(|(learned, (value, deviation))| {
                 let scalar = &self.scene().scalars[learned.slot];
                 let outward = self.bound.system.outward(&scalar.unit);
-                let deviation = deviation.map(|deviation| deviation * outward);
+                let deviation = deviation.filter(|_| self.verdict.passed()).map(|deviation| deviation * outward);
                 LearnedValue { name: scalar.name, unit: scalar.unit, value: value * outward, deviation }
             })
             .collect()
@@ -256,24 +323,19 @@ impl Solution {
     /// How well every term is met.
     pub fn terms(&mut self) -> Vec<TermReport> {
         let mut reports = Vec::new();
-        let Carrier::Network(network) = &mut self.carrier else { return reports };
-        let Network { engine, theta, prior, .. } = &mut **network;
-        for group in 0..engine.groups.len() {
-            let rows = engine.raw_rows(group, theta);
-            let bound = &engine.groups[group];
-            for (at, term) in bound.terms.iter().enumerate() {
-                let outward = self.bound.system.outward(&term.schema.unit);
-                let range = term.schema.first * bound.points..(term.schema.first + term.schema.rows) * bound.points;
-                let own = &rows[range];
-                let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
-                let observation = matches!(term.schema.kind, TermKind::Observation | TermKind::Chamfer { .. });
+        for (group, schema) in self.scene().groups.iter().enumerate() {
+            for (at, term) in schema.terms.iter().enumerate() {
+                let outward = self.bound.system.outward(&term.unit);
+                let observation = matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. });
+                let (misfits, noise) = self.carrier.misfits(group, at);
+                let rms = (misfits.iter().map(|x| x * x).sum::<f64>() / misfits.len().max(1) as f64).sqrt();
                 reports.push(TermReport {
-                    name: format!("{}.{}", bound.schema.name, term.schema.name),
-                    equation: term.schema.equation,
-                    unit: term.schema.unit,
+                    name: format!("{}.{}", schema.name, term.name),
+                    equation: term.equation,
+                    unit: term.unit,
                     rms: rms * outward,
                     size: self.bound.sizes[group][at] * outward,
-                    noise: (observation && prior.is_some()).then_some(term.size * outward),
+                    noise: noise.filter(|_| observation).map(|noise| noise * outward),
                     observation,
                 });
             }
@@ -290,6 +352,20 @@ impl Solution {
     /// Name of the instruction set in use.
     pub fn isa(&self) -> &'static str {
         Isa::detect().name()
+    }
+}
+
+impl Carrier {
+    /// How far the rows of a term are off, and what they count as known to, in the engine's units.
+    fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
+        match self {
+            Self::Network(network) => {
+                let Network { engine, theta, prior, .. } = &mut **network;
+                let noise = prior.is_some().then_some(engine.groups[group].terms[term].size);
+                (engine.misfits(group, term, theta), noise)
+            }
+            Self::Local(local) => local.misfits[group][term].clone(),
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 //! How much each term counts.
 
 use crate::engine::Engine;
+use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::real::Real;
-use crate::recover::noise::Noise;
 use crate::schema::TermKind;
+use crate::solve::evidence;
 use crate::solve::fault::Fault;
 use crate::solve::objective::LeastSquares;
 
@@ -60,6 +61,20 @@ pub(super) fn by_noise(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
             };
             engine.set_sigma(block, sigma);
             block += 1;
+        }
+    }
+}
+
+/// Begins robust measurements with all of their spread as noise: a loss that leaves outliers out would leave out everything
+/// that the first network is off from. The evidence narrows it as the network comes nearer.
+pub(super) fn begin_wide(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
+    let groups = bound.problem.scene().schema.groups.iter().enumerate();
+    let terms = groups.flat_map(|(at, group)| (0..group.terms.len()).map(move |term| (at, term)));
+    for (block, (at, term)) in terms.enumerate() {
+        if bound.losses[at][term].is_robust() && evidence::is_free(&engine.blocks()[block]) {
+            let sigma = engine.blocks()[block].sigma;
+            let spread = noise.of(at, term).map_or(bound.sizes[at][term], |observed| observed.spread);
+            engine.set_sigma(block, sigma.max(spread));
         }
     }
 }

@@ -67,6 +67,8 @@ pub enum Status {
     NotConverged,
     /// The monitor said so.
     Interrupted,
+    /// The method ended at a minimum, and what is left of the equations, conditions or data says that it is not the answer.
+    Inconsistent,
 }
 
 /// The end of a run.

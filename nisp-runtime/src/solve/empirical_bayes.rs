@@ -102,8 +102,11 @@ impl EmpiricalBayes {
             }
         }
         let mut sigmas = Vec::new();
+        let clean: Vec<Option<f64>> = (found.blocks.iter().enumerate())
+            .map(|(index, block)| objective.clean_sigma(theta, index, block.effective))
+            .collect();
         for (index, block) in objective.blocks().iter().enumerate() {
-            let new = found.blocks[index].sigma;
+            let new = clean[index].unwrap_or(found.blocks[index].sigma);
             if evidence::is_free(block) && new > 0.0 && new.is_finite() {
                 sigmas.push((index, limited(block.sigma, new, LARGEST_CHANGE.sqrt())));
             }

@@ -70,6 +70,13 @@ pub trait LeastSquares: Objective<f64> {
     /// Sets the scale that the rows of a block are divided by (see [`Block::sigma`]).
     fn set_sigma(&mut self, block: usize, sigma: f64);
 
+    /// The scale that the rows of a block speak for at `theta` apart from outliers, where `effective` degrees of freedom are
+    /// fitted; nothing of a block that is not to be robust against them.
+    fn clean_sigma(&mut self, theta: &[f64], block: usize, effective: f64) -> Option<f64> {
+        let _ = (theta, block, effective);
+        None
+    }
+
     /// `out = J v` at `theta`, with `v` as long as `theta` and `out` one per row, without forming `J`.
     ///
     /// # Errors

@@ -1,9 +1,10 @@
 //! The schema of a scene: static data that the engine and `explain` read.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
 use crate::channels::{ChannelSet, Operator};
+use crate::loss::Robust;
 use crate::model::{self, Model, Role};
 use crate::plan::{GroupPlan, Jet, Plan, RowKind, Scalar, ScenePlan, SetPlan, TermPlan};
 use crate::rational::Rational;
@@ -196,9 +197,11 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
         }
     };
     let loss = match plan.loss {
-        model::Loss::Square => quote!(schema::Loss::Square),
-        model::Loss::Huber(at) => quote!(schema::Loss::Huber(#at)),
-        model::Loss::Welsch(at) => quote!(schema::Loss::Welsch(#at)),
+        None => quote!(schema::Loss::Square),
+        Some(Robust { variant, threshold }) => {
+            let variant = Ident::new(variant, Span::call_site());
+            quote!(schema::Loss::#variant(#threshold))
+        }
     };
     let weight = declared.weights[group.group][plan.term];
     let within = optional(term.within);

@@ -1,5 +1,6 @@
 //! What errors say, in one place so that they say it alike: what was expected, what was found, what to do.
 
+use crate::loss;
 use crate::unit::{Dimension, known_symbols, look_up};
 
 mod model;
@@ -214,7 +215,7 @@ pub(crate) fn expected_tilde(found: &str) -> String {
 }
 
 pub(crate) fn unknown_loss(name: &str) -> String {
-    help(format!("`{}` is not a loss", shorten(name)), "there are `huber(threshold)` and `welsch(threshold)`")
+    help(format!("`{}` is not a loss", shorten(name)), format!("there are {}", loss::words().join(", ")))
 }
 
 pub(crate) fn expected_positive(what: &str) -> String {

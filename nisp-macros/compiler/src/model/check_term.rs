@@ -2,7 +2,7 @@
 
 use super::elaborate::Elaborator;
 use super::value::{Dim, Extent, Reads, Scalar, Value};
-use super::{Column, Expr, Field, Loss, Term, TermKind, build};
+use super::{Column, Expr, Field, Term, TermKind, build};
 use crate::error::{Checked, catalogue};
 use crate::syntax::{self, Comparison, Condition, ExprKind, Relation, TermBody, print_latex, print_text};
 use crate::unit::{Dimension, Unit};
@@ -32,15 +32,10 @@ impl TermInput<'_, '_> {
             }
             TermBody::Chamfer { point, symmetric, plane } => self.chamfer(point, *symmetric, *plane)?,
         };
-        let loss = match &term.loss {
-            None => Loss::Square,
-            Some((name, threshold)) if name.text == "welsch" => Loss::Welsch(*threshold),
-            Some((_, threshold)) => Loss::Huber(*threshold),
-        };
         Ok(Term {
             name: term.name.clone(),
             kind: body.kind,
-            loss,
+            loss: term.loss,
             weight: term.weight.unwrap_or(1.0),
             within: term.within.as_ref().map(|within| self.within(within, &body.unit)).transpose()?,
             unit: body.unit,

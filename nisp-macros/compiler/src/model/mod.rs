@@ -7,6 +7,7 @@ use std::rc::Rc;
 
 use proc_macro2::{Span, TokenStream};
 
+use crate::loss::Robust;
 use crate::rational::Rational;
 pub use crate::syntax::Name;
 use crate::unit::{Dimension, Unit};
@@ -219,7 +220,7 @@ pub struct Term {
     /// What it asks.
     pub kind: TermKind,
     /// How a row's misfit counts.
-    pub loss: Loss,
+    pub loss: Option<Robust>,
     /// The user's weight (1 if none is written).
     pub weight: f64,
     /// How far rows may be off, in SI units: the noise of data, the tolerance of a condition, the spread of a prior.
@@ -280,17 +281,6 @@ pub enum TermKind {
         /// Only the distance across the surface, not that along it.
         plane: bool,
     },
-}
-
-/// How the misfit of a row counts.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Loss {
-    /// Half the square.
-    Square,
-    /// Huber with this threshold, in units of the row's natural size.
-    Huber(f64),
-    /// Welsch with this threshold, in units of the row's natural size.
-    Welsch(f64),
 }
 
 /// A specialisation: which terms are used, what is fixed, what is learned.

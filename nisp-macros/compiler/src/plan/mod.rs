@@ -14,7 +14,7 @@ mod skipped;
 pub use self::sets::rule_programs;
 
 use crate::channels::{ChannelSet, Operator};
-use crate::model::Loss;
+use crate::loss::Robust;
 use crate::model::Model;
 use crate::program::Program;
 use crate::rational::Rational;
@@ -163,7 +163,7 @@ pub struct TermPlan {
     /// How its rows are meant.
     pub kind: RowKind,
     /// Loss of each row.
-    pub loss: Loss,
+    pub loss: Option<Robust>,
     /// First row.
     pub first: usize,
     /// Number of rows.

@@ -7,6 +7,7 @@ use super::stream::{Context, Stream};
 use super::tree::{Comparison, Condition, Expr, ExprKind, GroupItem, Name, Relation, Term, TermBody, Within};
 use super::{parse_expression, parse_number, parse_unit};
 use crate::error::{Checked, Place, catalogue};
+use crate::loss::{self, Robust};
 
 /// `NAME: BODY SUFFIXES;`
 pub(super) fn named(stream: &mut Stream<'_>, context: &mut Context<'_>, docs: Vec<String>) -> Checked<GroupItem> {
@@ -88,11 +89,11 @@ fn finish(
 }
 
 /// What stands after `with`, after `weight` and after `within`.
-type Suffixes = (Option<(Name, f64)>, Option<f64>, Option<Within>);
+type Suffixes = (Option<Robust>, Option<f64>, Option<Within>);
 
 /// `with huber(3)`, `weight 2`, `within 5 [mm]`.
 fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffixes> {
-    let (mut loss, mut weight, mut within) = (None, None, None);
+    let (mut robust, mut weight, mut within) = (None, None, None);
     loop {
         if stream.take_word("weight") {
             weight = Some(positive(stream, context)?);
@@ -106,9 +107,9 @@ fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffi
             within = Some(Within { value, unit, place });
         } else if stream.take_word("with") {
             let name = recover::name(stream, context, "a loss")?;
-            if !["huber", "welsch"].contains(&name.text.as_str()) {
+            let Some(variant) = loss::variant(&name.text) else {
                 return Err(context.errors.report(name.span, catalogue::unknown_loss(&name.text)));
-            }
+            };
             let Some((mut inside, place)) = stream.take_group(Delimiter::Parenthesis) else {
                 let message = catalogue::expected_operator("(threshold)", &name.text, &stream.found());
                 return Err(context.errors.report(stream.place(), message));
@@ -117,9 +118,9 @@ fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffi
             if threshold == 0.0 || !inside.at_end() {
                 return Err(context.errors.report(place, catalogue::expected_positive("the threshold")));
             }
-            loss = Some((name, threshold));
+            robust = Some(Robust { variant, threshold });
         } else {
-            return Ok((loss, weight, within));
+            return Ok((robust, weight, within));
         }
     }
 }

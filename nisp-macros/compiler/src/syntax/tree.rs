@@ -5,6 +5,7 @@ use std::collections::BTreeSet;
 use proc_macro2::{Span, TokenStream};
 
 use crate::error::Place;
+use crate::loss::Robust;
 use crate::rational::Rational;
 use crate::unit::Unit;
 
@@ -146,7 +147,7 @@ pub struct Term {
     /// What it asks.
     pub body: TermBody,
     /// The robust loss after `with`.
-    pub loss: Option<(Name, f64)>,
+    pub loss: Option<Robust>,
     /// The number after `weight`.
     pub weight: Option<f64>,
     /// The quantity after `within`: how far rows may be off.

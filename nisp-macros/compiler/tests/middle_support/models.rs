@@ -3,7 +3,7 @@
 use std::rc::Rc;
 
 use nisp_compiler::model::{
-    Column, Coordinate, Expr, Field, Function, Group, Loss, Model, Name, Node, Parameter, Role, Scene, Term, TermKind,
+    Column, Coordinate, Expr, Field, Function, Group, Model, Name, Node, Parameter, Role, Scene, Term, TermKind,
 };
 use nisp_compiler::rational::ratio;
 use nisp_compiler::unit::{Dimension, Unit};
@@ -146,7 +146,7 @@ impl Build for Model {
         let term = |(text, kind)| Term {
             name: name(text),
             kind,
-            loss: Loss::Square,
+            loss: None,
             weight: 1.0,
             within: None,
             unit: unit(NONE),

@@ -1,29 +1,18 @@
-//! What a run says of itself: a table for people, one JSON object for programs.
+//! A run as a table for people.
 
 use std::fmt::Write;
 
+use nisp::Solution;
 use nisp::solve::driver::Status;
-use nisp::{Settings, Solution};
-use nisp_data::OutDir;
-use nisp_data::atomic::Content;
-use nisp_data::cloud::LengthUnit;
+use nisp_cli::score::{Found, Rival, Score};
 use nisp_equations::Prepared;
 use nisp_equations::contact::ContactScore;
 use nisp_equations::rivals::mean_abs_error;
 
-use crate::args::Options;
-use crate::score::{Found, Rival, Score};
+use super::Run;
 
 /// Rivals have no way to be quick on more measurements than this.
 const ROWS_FOR_RIVALS: usize = 2000;
-
-fn status(solution: &Solution) -> &'static str {
-    match solution.status {
-        Status::Converged => "converged",
-        Status::Budget => "budget",
-        Status::NotConverged | Status::Interrupted => "not_converged",
-    }
-}
 
 /// How the run ended, in words.
 fn end(solution: &Solution) -> &'static str {
@@ -32,79 +21,13 @@ fn end(solution: &Solution) -> &'static str {
         Status::Budget => "budget spent",
         Status::NotConverged => "not converged",
         Status::Interrupted => "interrupted",
+        Status::Inconsistent => "ended, but inconsistent,",
     }
-}
-
-/// The object of `--json`, on one line.
-pub(crate) fn json(
-    solution: &Solution,
-    options: &Options,
-    settings: &Settings,
-    found: &Found,
-    warnings: &[String],
-) -> String {
-    let mut errors = serde_json::Map::new();
-    for score in &found.scores {
-        errors.insert(score.name.into(), score.mean_abs.into());
-        if let Some(if_zero) = score.if_zero {
-            errors.insert(format!("{}_if_zero", score.name), if_zero.into());
-        }
-    }
-    for learned in &found.learned {
-        errors.insert(learned.name.into(), learned.value.into());
-        errors.insert(format!("{}_sd", learned.name), learned.deviation.into());
-    }
-    if let Some(contact) = &found.contact {
-        errors.insert("force_N".into(), contact.force.into());
-        if let Some(against) = &contact.against {
-            errors.insert("iou".into(), against.iou.into());
-            errors.insert("patch_chamfer_mm2".into(), against.patch_chamfer_mm2.into());
-            errors.insert("force_error_N".into(), against.force_error.into());
-        }
-    }
-    let object = serde_json::json!({
-        "scene": options.equation,
-        "status": status(solution),
-        "seed": settings.seed,
-        "precision": solution.precision(),
-        "optimizer": solution.method(),
-        "threads": settings.threads,
-        "wall_s": solution.wall_s,
-        "iterations": solution.iterations,
-        "loss": solution.loss,
-        "warnings": warnings,
-        "errors": errors,
-        "settings": {
-            "scene": solution.scene().name,
-            "data": options.data,
-            "sample": options.sample,
-            "cloud": options.cloud,
-            "unit": options.unit.map(LengthUnit::symbol),
-            "truth": options.truth,
-            "columns": options.column.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
-            "parameters": options.set.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
-            "optimizer": settings.optimizer.name(),
-            "precision": settings.precision.name(),
-            "width": options.width,
-            "layers": options.layers,
-            "budget_s": options.budget,
-            "iterations": options.iterations,
-            "out": options.out,
-            "resume": options.resume,
-            "isa": solution.isa(),
-        },
-    });
-    format!("{object}\n")
 }
 
 /// A short table: errors beside those of simpler answers, time, points, channels, what was skipped.
-pub(crate) fn table(
-    solution: &Solution,
-    prepared: &Prepared,
-    found: &Found,
-    warnings: &[String],
-    written: &str,
-) -> String {
+pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String {
+    let Run { prepared, warnings, .. } = run;
     let mut text = String::new();
     let scene = solution.scene();
     // Writing into a string cannot fail.
@@ -157,11 +80,14 @@ pub(crate) fn table(
         let deviation = learned.deviation.map_or_else(String::new, |deviation| format!(" ± {deviation:.2e}"));
         line(format!("learned {} = {:.6e}{deviation} {}", learned.name, learned.value, learned.unit.text));
     }
+    for check in solution.verdict.failed() {
+        line(format!("failed: {}", check.message));
+    }
     for warning in warnings {
         line(format!("warning: {warning}"));
     }
-    line(written.into());
-    text
+    line(run.files_in_words());
+    text + &run.tables()
 }
 
 /// What was found, where no truth is known.
@@ -172,17 +98,12 @@ fn found_rows(found: &Found) -> Vec<String> {
             .map_or_else(String::new, |deviation| format!(", standard deviation {deviation:.2e} {}", size.unit));
         (size.name.to_string(), format!("{:.2e} {}{bars}", size.value, size.unit))
     });
-    let noise =
-        found.noise.iter().map(|(name, value, unit)| (format!("noise of {name}"), format!("{value:.2e} {unit}")));
+    let noise = found.terms.iter().filter_map(|term| {
+        let name = term.name.rsplit('.').next().unwrap_or(&term.name);
+        Some((format!("noise of {name}"), format!("{:.2e} {}", term.noise?, term.unit.text)))
+    });
     let rows: Vec<String> = sizes.chain(noise).map(|(name, value)| format!("  {name:26} {value}")).collect();
     if rows.is_empty() { rows } else { [vec!["root mean square".into()], rows].concat() }
-}
-
-/// Which files were written, and where.
-pub(crate) fn written(files: &[Content], out: &OutDir) -> String {
-    let names: Vec<_> = files.iter().map(|(name, _)| *name).collect();
-    let (last, others) = names.split_last().unwrap_or((&"", &[]));
-    format!("wrote {} and {last} to {}", others.join(", "), out.path().display())
 }
 
 /// A contact's net force and how well it was found, beside those of a classical way.

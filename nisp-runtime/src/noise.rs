@@ -24,6 +24,13 @@ pub(crate) struct ObservationNoise {
 /// Noise below this share of the data's spread is taken for rounding: that of numbers with five digits and more.
 const EXACT: f64 = 1e-5;
 
+impl ObservationNoise {
+    /// True if the data are exact but for rounding.
+    pub(crate) fn is_exact(self) -> bool {
+        is_exact(self.deviation, self.spread)
+    }
+}
+
 impl Noise {
     /// True if no observation shows noise.
     pub(crate) fn is_exact(&self) -> bool {
@@ -32,7 +39,7 @@ impl Noise {
 
     /// Share of the data's variance that is noise, the mean over observations: 0 for exact data. One, the worst, where
     /// nothing can be judged.
-    pub(super) fn share(&self) -> f64 {
+    pub(crate) fn share(&self) -> f64 {
         let shares = self.observations.iter().map(|o| (o.deviation / o.spread.max(o.deviation)).powi(2));
         let sum: f64 = shares.map(|share| if share.is_nan() { 0.0 } else { share }).sum();
         if self.observations.is_empty() { 1.0 } else { sum / self.observations.len() as f64 }
@@ -45,7 +52,7 @@ impl Noise {
 }
 
 /// True where noise of some deviation is no more than rounding, for data of some spread.
-pub(super) fn is_exact(deviation: f64, spread: f64) -> bool {
+pub(crate) fn is_exact(deviation: f64, spread: f64) -> bool {
     deviation <= EXACT * spread
 }
 
@@ -56,13 +63,15 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
     let mut observations = Vec::new();
     for (at, group) in schema.groups.iter().enumerate() {
         let places = &bound.coordinates[at];
-        let noise_of = |values: &[f64]| match inputs {
-            1 => by_differences(&in_order(places, values)),
-            _ => by_fits(places, inputs, values),
-        };
         for (term, _) in group.terms.iter().enumerate().filter(|(_, term)| !term.columns.is_empty()) {
             let columns = || group.terms[term].columns.iter().map(|&column| &bound.columns[at][column][..]);
             let spread = root_mean_square(columns().map(deviation));
+            let outliers = bound.losses[at][term].is_robust();
+            let noise_of = |values: &[f64]| match (inputs, outliers) {
+                (1, false) => by_differences(&in_order(places, values)),
+                (1, true) => by_few_differences(&in_order(places, values)),
+                _ => by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF }),
+            };
             let found: Option<Vec<f64>> = columns().map(noise_of).collect();
             let deviation = found.map(|found| root_mean_square(found.into_iter()));
             observations.extend(deviation.map(|deviation| ObservationNoise { group: at, term, deviation, spread }));
@@ -77,7 +86,7 @@ fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
 }
 
 /// Values in the order of their only coordinate.
-pub(super) fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
+pub(crate) fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| coordinates[a].total_cmp(&coordinates[b]));
     order.into_iter().map(|at| values[at]).collect()
@@ -89,22 +98,48 @@ fn deviation(values: &[f64]) -> f64 {
     (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count).sqrt()
 }
 
+/// The median magnitude of a standard normal number.
+const MEDIAN: f64 = 0.674_489_75;
+
 /// From eighth differences, of which a signal that is sampled well has none: their median magnitude, so that a layer or an
 /// outlier does not count. Noise of deviation s gives differences of deviation `sqrt(12870) s`.
 fn by_differences(values: &[f64]) -> Option<f64> {
     const EIGHTH: [f64; 9] = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0];
     let difference = |window: &[f64]| window.iter().zip(EIGHTH).map(|(y, c)| c * y).sum::<f64>().abs();
     let differences: Vec<f64> = values.windows(EIGHTH.len()).map(difference).collect();
-    // The median magnitude of a standard normal number.
-    const MEDIAN: f64 = 0.674_489_75;
     Some(median(differences)? / (MEDIAN * 12870.0_f64.sqrt()))
+}
+
+/// The same where outliers are expected: with one value of ten off, most eighth differences are. Low differences have fewer
+/// values in them and more of the signal; the order that leaves least is taken.
+fn by_few_differences(values: &[f64]) -> Option<f64> {
+    let mut differences = values.to_vec();
+    // Sum of the squares of binomial coefficients: C(2 order, order).
+    let mut squares = 1.0;
+    let mut least: Option<f64> = None;
+    for order in 1..=8 {
+        differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        let count = f64::from(order);
+        squares *= 2.0 * (2.0 * count - 1.0) / count;
+        let found = median(differences.iter().map(|x| x.abs()).collect())? / (MEDIAN * f64::sqrt(squares));
+        least = Some(least.map_or(found, |least| least.min(found)));
+    }
+    least
 }
 
 /// Places that are looked at where there are several coordinates.
 const PLACES: usize = 300;
 
-/// From quadratic fits to the values around some of the places: what the median fit leaves over.
-fn by_fits(coordinates: &[f64], inputs: usize, values: &[f64]) -> Option<f64> {
+/// A share of fits, and the standard normal number that has this share below it.
+type Quantile = (f64, f64);
+
+/// The median.
+const HALF: Quantile = (0.5, 0.0);
+/// Where outliers are expected, few fits have none among their values.
+const FEW_CLEAN: Quantile = (0.1, -1.281_551_57);
+
+/// From quadratic fits to the values around some of the places: what the fit at a quantile leaves over.
+fn by_fits(coordinates: &[f64], inputs: usize, values: &[f64], (share, deviate): Quantile) -> Option<f64> {
     let unknowns = (inputs + 1) * (inputs + 2) / 2;
     // As many left over as fitted.
     let neighbours = 2 * unknowns;
@@ -127,9 +162,10 @@ fn by_fits(coordinates: &[f64], inputs: usize, values: &[f64]) -> Option<f64> {
         let fit = design.clone().svd(true, true).solve(&data, 1e-10).ok()?;
         Some((data - design * fit).norm_squared() / unknowns as f64)
     });
-    // The median of chi^2 over its degrees of freedom (Wilson and Hilferty 1931).
-    let middle = (1.0 - 2.0 / (9.0 * unknowns as f64)).powi(3);
-    Some((median(left.collect())? / middle).sqrt())
+    // The quantile of chi^2 over its degrees of freedom (Wilson and Hilferty 1931).
+    let part = 2.0 / (9.0 * unknowns as f64);
+    let expected = (1.0 - part + deviate * part.sqrt()).powi(3);
+    Some((quantile(left.collect(), share)? / expected).sqrt())
 }
 
 /// Products of at most two of the numbers.
@@ -140,10 +176,14 @@ fn monomials(x: &[f64]) -> Vec<f64> {
 }
 
 /// Nothing where there are too few to mean anything.
-fn median(mut values: Vec<f64>) -> Option<f64> {
+fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
     const FEW: usize = 8;
     values.sort_by(f64::total_cmp);
-    (values.len() >= FEW).then(|| values[values.len() / 2])
+    (values.len() >= FEW).then(|| values[(share * values.len() as f64) as usize])
+}
+
+fn median(values: Vec<f64>) -> Option<f64> {
+    quantile(values, 0.5)
 }
 
 #[cfg(test)]
@@ -168,10 +208,27 @@ mod tests {
         let mut uniform = || random.random::<f64>();
         let coordinates: Vec<f64> = (0..4000).map(|_| uniform()).collect();
         let smooth: Vec<f64> = coordinates.chunks_exact(2).map(|p| 3.0 * p[0] + (2.0 * p[1]).sin()).collect();
-        assert!(by_fits(&coordinates, 2, &smooth).unwrap() < 1e-4);
+        assert!(by_fits(&coordinates, 2, &smooth, HALF).unwrap() < 1e-4);
         let noisy: Vec<f64> = smooth.iter().map(|y| y + 0.03 * normal(&mut random)).collect();
-        let found = by_fits(&coordinates, 2, &noisy).unwrap();
-        assert!((found / 0.03 - 1.0).abs() < 0.1, "{found}");
+        for quantile in [HALF, FEW_CLEAN] {
+            let found = by_fits(&coordinates, 2, &noisy, quantile).unwrap();
+            assert!((found / 0.03 - 1.0).abs() < 0.1, "{found}");
+        }
+        let dirty: Vec<f64> = noisy.iter().enumerate().map(|(i, y)| if i % 10 == 3 { y + 2.0 } else { *y }).collect();
+        let found = by_fits(&coordinates, 2, &dirty, FEW_CLEAN).unwrap();
+        assert!((0.7..1.6).contains(&(found / 0.03)), "{found}");
+    }
+
+    #[test]
+    fn few_differences_see_the_noise_among_outliers() {
+        let mut random = StdRng::seed_from_u64(2);
+        let clean: Vec<f64> = (0..400).map(|i| (i as f64 * 0.02).sin() + 0.03 * normal(&mut random)).collect();
+        for share in [0.0, 0.05, 0.1, 0.2] {
+            let mut off = |y: &f64| if random.random::<f64>() < share { y + 2.0 * normal(&mut random) } else { *y };
+            let dirty: Vec<f64> = clean.iter().map(&mut off).collect();
+            let found = by_few_differences(&dirty).unwrap();
+            assert!((0.7..2.2).contains(&(found / 0.03)), "{share}: {found}");
+        }
     }
 
     #[test]

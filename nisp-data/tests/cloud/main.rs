@@ -1,13 +1,14 @@
 //! Clouds: every format gives the same points, and no bytes make a reader panic.
 
-use std::io::Write;
+mod damaged;
+mod samples;
+
 use std::path::Path;
 
 use nisp_data::Cloud;
 use nisp_data::cloud::{LengthUnit, Surface};
 use proptest::prelude::*;
-
-const POINTS: [[f64; 3]; 3] = [[0.5, -1.25, 2.0], [0.0, 4.0, -8.0], [1.0, 2.0, 3.0]];
+use samples::{POINTS, flat, npy, npz, pcd_ascii, pcd_binary, pcd_head, ply, ply_ascii, ply_binary};
 
 fn read(name: &str, bytes: &[u8]) -> Cloud {
     Cloud::parse(Path::new(name), bytes).unwrap()
@@ -19,36 +20,17 @@ fn refusal(name: &str, bytes: &[u8]) -> String {
     message
 }
 
-fn flat() -> impl Iterator<Item = f64> {
-    POINTS.into_iter().flatten()
-}
-
-fn ply(format: &str, body: &[u8]) -> Vec<u8> {
-    let mut out = format!(
-        "ply\nformat {format} 1.0\ncomment from a camera\nelement vertex 3\nproperty float x\nproperty uchar red\n\
-         property double y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
-    )
-    .into_bytes();
-    out.extend(body);
-    out
-}
-
 #[test]
 fn ply_of_all_kinds() {
-    let mut ascii = Vec::new();
-    let (mut little, mut big) = (Vec::new(), Vec::new());
+    let mut big = Vec::new();
     for [x, y, z] in POINTS {
-        writeln!(ascii, "{x} 7 {y} {z}").unwrap();
-        little.extend(
-            (x as f32).to_le_bytes().into_iter().chain([7]).chain(y.to_le_bytes()).chain((z as f32).to_le_bytes()),
-        );
-        big.extend(
-            (x as f32).to_be_bytes().into_iter().chain([7]).chain(y.to_be_bytes()).chain((z as f32).to_be_bytes()),
-        );
+        big.extend((x as f32).to_be_bytes());
+        big.push(7);
+        big.extend(y.to_be_bytes());
+        big.extend((z as f32).to_be_bytes());
     }
-    writeln!(ascii, "3 0 1 2").unwrap();
-    little.extend([3, 0, 0, 0, 0, 1, 0, 0, 0, 2, 0, 0, 0]);
     big.extend([3, 0, 0, 0, 0, 0, 0, 0, 1, 0, 0, 0, 2]);
+    let (ascii, little) = (ply_ascii(), ply_binary());
     for (format, body) in [("ascii", ascii), ("binary_little_endian", little), ("binary_big_endian", big)] {
         assert_eq!(read("a.ply", &ply(format, &body)).points, POINTS, "{format}");
     }
@@ -64,38 +46,22 @@ fn ply_of_all_kinds() {
 
 #[test]
 fn pcd_ascii_and_binary() {
-    let head = |data: &str| {
-        format!(
-            "# .PCD v0.7\nVERSION 0.7\nFIELDS rgb x y z\nSIZE 4 4 8 4\nTYPE U F F F\nCOUNT 1 1 1 1\nWIDTH 3\nHEIGHT 1\nVIEWPOINT 0 0 0 1 0 0 0\nPOINTS 3\nDATA {data}\n"
-        )
-    };
-    let mut ascii = head("ascii").into_bytes();
-    let mut binary = head("binary").into_bytes();
-    for [x, y, z] in POINTS {
-        writeln!(ascii, "255 {x} {y} {z}").unwrap();
-        binary.extend(
-            [1, 2, 3, 4]
-                .into_iter()
-                .chain((x as f32).to_le_bytes())
-                .chain(y.to_le_bytes())
-                .chain((z as f32).to_le_bytes()),
-        );
-    }
-    assert_eq!(read("a.pcd", &ascii).points, POINTS);
+    let binary = pcd_binary();
+    assert_eq!(read("a.pcd", &pcd_ascii()).points, POINTS);
     assert_eq!(read("a.pcd", &binary).points, POINTS);
-    assert!(refusal("a.pcd", &binary[..binary.len() - 4]).contains("ends after 2 of 3 points"));
-    assert!(refusal("a.pcd", head("binary_compressed").as_bytes()).contains("save it as binary or ascii"));
+    assert!(refusal("a.pcd", &binary[..binary.len() - 4]).contains("holds 2 points and declares 3"));
+    assert!(refusal("a.pcd", pcd_head("binary_compressed").as_bytes()).contains("save it as binary or ascii"));
 }
 
 #[test]
 fn text_with_and_without_header() {
-    assert_eq!(read("a.xyz", b"# frame 1\n0.5 -1.25 2 99\n0\t4\t-8 1\n\n1 2 3 1\n").points, POINTS);
+    assert_eq!(read("a.xyz", b"# frame 1\n0.5 -1.25 2 99\n0\t4\t-8 1\n\n 1  2 3 1\n").points, POINTS);
     assert_eq!(read("a.csv", b"z_m,x_m,y_m\n2,0.5,-1.25\n-8,0,4\n3,1,2\n").points, POINTS);
     let holes = read("a.csv", b"x,y,z\n1,2,nan\n1,2,3\ninf,0,0\n");
     assert_eq!(holes.points, [[1.0, 2.0, 3.0]]);
     assert_eq!(holes.warnings, ["a.csv: 2 of 3 points were not finite and left out"]);
     assert!(refusal("a.csv", b"x,y\n1,2\n3,4\n").contains("no column for `z`"));
-    assert!(refusal("a.xyz", b"1 2 3\n1 2\n").contains("line 2: no number for z"));
+    assert!(refusal("a.xyz", b"1 2 3\n1 2\n").contains("line 2: 2 cells where the rows above have 3"));
     assert!(refusal("a.xyz", b"nan nan nan\n").contains("none of the 1 points is finite"));
     assert!(refusal("a.xyz", b"# nothing\n").contains("no points"));
     assert!(refusal("a.xyz", b"").contains("empty"));
@@ -104,28 +70,14 @@ fn text_with_and_without_header() {
 
 #[test]
 fn numpy_arrays_in_both_orders() {
-    use npyz::WriterBuilder;
-    let write = |order: npyz::Order, values: Vec<f32>| {
-        let mut bytes = Vec::new();
-        let options = npyz::WriteOptions::<f32>::new().default_dtype().shape(&[3, 3]).order(order);
-        let mut writer = options.writer(&mut bytes).begin_nd().unwrap();
-        writer.extend(values).unwrap();
-        writer.finish().unwrap();
-        bytes
-    };
-    let rows: Vec<f32> = flat().map(|value| value as f32).collect();
-    let columns = (0..9).map(|i| rows[(i % 3) * 3 + i / 3]).collect();
-    assert_eq!(read("a.npy", &write(npyz::Order::C, rows.clone())).points, POINTS);
-    assert_eq!(read("a.npy", &write(npyz::Order::Fortran, columns)).points, POINTS);
-    assert!(refusal("a.npy", &write(npyz::Order::C, rows)[..140]).contains("not a readable NumPy file"));
-
-    let mut archive = npyz::npz::NpzWriter::new(std::io::Cursor::new(Vec::new()));
-    let mut options =
-        archive.array("cloud", Default::default()).unwrap().default_dtype().shape(&[3, 3]).begin_nd().unwrap();
-    options.extend(flat()).unwrap();
-    options.finish().unwrap();
-    let zipped = archive.zip_writer().finish().unwrap().into_inner();
-    assert_eq!(read("a.npz", &zipped).points, POINTS);
+    let rows: Vec<f64> = flat().collect();
+    let columns = (0..9).map(|i| rows[(i % 3) * 3 + i / 3]);
+    let array = npy(npyz::Order::C, flat());
+    assert_eq!(read("a.npy", &array).points, POINTS);
+    assert_eq!(read("a.npy", &npy(npyz::Order::Fortran, columns)).points, POINTS);
+    for method in [zip::CompressionMethod::Stored, zip::CompressionMethod::Deflated] {
+        assert_eq!(read("a.npz", &npz(&[("cloud.npy", &array)], method)).points, POINTS);
+    }
 }
 
 #[test]

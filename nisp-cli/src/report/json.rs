@@ -1,0 +1,188 @@
+//! A run as one JSON object for programs.
+
+use std::path::Path;
+
+use nisp::solve::driver::Status;
+use nisp::{Estimate, LearnedValue, Solution, TermReport};
+use nisp_cli::score::Found;
+use nisp_data::cloud::LengthUnit;
+use serde_json::{Map, Value, json};
+
+use super::Run;
+
+/// The object of `--json`, on one line.
+pub(crate) fn json(solution: &Solution, run: &Run<'_>, found: &Found) -> String {
+    let heads = |source: bool| -> Vec<Value> {
+        run.answer.estimates.iter().filter(|estimate| estimate.source == source).map(head).collect()
+    };
+    let object = json!({
+        "scene": run.options.equation,
+        "status": status(solution),
+        "seed": run.settings.seed,
+        "precision": solution.precision(),
+        "optimizer": solution.method(),
+        "threads": run.settings.threads,
+        "wall_s": solution.wall_s,
+        "iterations": solution.iterations,
+        "loss": solution.loss,
+        "warnings": run.warnings,
+        "verdict": verdict(solution),
+        "errors": errors(found),
+        "coordinates": coordinates(solution, run),
+        "sources": heads(true),
+        "state": heads(false),
+        "learned": found.learned.iter().map(learned).collect::<Vec<_>>(),
+        "terms": found.terms.iter().map(term).collect::<Vec<_>>(),
+        "groups": groups(solution),
+        "skipped": solution.scene().skipped,
+        "data": data(run),
+        "files": files(run),
+        "settings": settings(solution, run),
+    });
+    format!("{object}\n")
+}
+
+fn status(solution: &Solution) -> &'static str {
+    match solution.status {
+        Status::Converged => "converged",
+        Status::Budget => "budget",
+        Status::NotConverged | Status::Interrupted => "not_converged",
+        Status::Inconsistent => "inconsistent",
+    }
+}
+
+/// Every check of the answer.
+fn verdict(solution: &Solution) -> Vec<Value> {
+    let checks = solution.verdict.checks.iter().map(|check| {
+        json!({
+            "check": check.check,
+            "group": check.group,
+            "term": check.term,
+            "value": check.value,
+            "limit": check.limit,
+            "passed": check.passed,
+            "message": check.message,
+        })
+    });
+    checks.collect()
+}
+
+/// Everything that was scored, by name.
+fn errors(found: &Found) -> Map<String, Value> {
+    let mut errors = Map::new();
+    for score in &found.scores {
+        errors.insert(score.name.into(), score.mean_abs.into());
+        if let Some(if_zero) = score.if_zero {
+            errors.insert(format!("{}_if_zero", score.name), if_zero.into());
+        }
+    }
+    for learned in &found.learned {
+        errors.insert(learned.name.into(), learned.value.into());
+        errors.insert(format!("{}_sd", learned.name), learned.deviation.into());
+    }
+    if let Some(contact) = &found.contact {
+        errors.insert("force_N".into(), contact.force.into());
+        if let Some(against) = &contact.against {
+            errors.insert("iou".into(), against.iou.into());
+            errors.insert("patch_chamfer_mm2".into(), against.patch_chamfer_mm2.into());
+            errors.insert("force_error_N".into(), against.force_error.into());
+        }
+    }
+    errors
+}
+
+/// The points of the answer, coordinate by coordinate.
+fn coordinates(solution: &Solution, run: &Run<'_>) -> Vec<Value> {
+    let coordinates = solution.scene().coordinates;
+    let values =
+        |at: usize| -> Vec<f64> { run.prepared.points.iter().skip(at).step_by(coordinates.len()).copied().collect() };
+    let numbered = coordinates.iter().enumerate();
+    numbered.map(|(at, own)| json!({ "name": own.name, "unit": own.unit.text, "values": values(at) })).collect()
+}
+
+/// A source or a field at the points of the answer.
+fn head(estimate: &Estimate) -> Value {
+    json!({
+        "name": estimate.name,
+        "unit": estimate.unit.text,
+        "values": estimate.values,
+        "deviations": estimate.deviations,
+    })
+}
+
+fn learned(learned: &LearnedValue) -> Value {
+    json!({
+        "name": learned.name,
+        "unit": learned.unit.text,
+        "value": learned.value,
+        "deviation": learned.deviation,
+    })
+}
+
+/// What is left of an equation, a condition or an observation.
+fn term(term: &TermReport) -> Value {
+    json!({
+        "name": term.name,
+        "equation": term.equation,
+        "observation": term.observation,
+        "unit": term.unit.text,
+        "rms": term.rms,
+        "size": term.size,
+        "noise": term.noise,
+    })
+}
+
+fn groups(solution: &Solution) -> Vec<Value> {
+    let groups = solution.groups();
+    groups.map(|(own, points)| json!({ "name": own.name, "points": points, "channels": own.channels })).collect()
+}
+
+/// Where the data come from, and what was taken as declared beside them.
+fn data(run: &Run<'_>) -> Value {
+    let assumed = run.prepared.assumed.iter();
+    let assumed = assumed.map(|own| json!({ "name": own.name, "value": own.value, "unit": own.unit }));
+    json!({ "source": run.prepared.source, "assumed": assumed.collect::<Vec<_>>() })
+}
+
+/// What was written, where, and why that is not the folder that was asked for.
+fn files(run: &Run<'_>) -> Value {
+    let folder = run.written.folder.as_deref().map(text);
+    let names: Vec<_> = run.answer.files.iter().map(|(name, _)| *name).collect();
+    json!({
+        "names": folder.as_ref().map_or(Vec::new(), |_| names),
+        "folder": folder,
+        "fault": run.written.fault.as_ref().map(ToString::to_string),
+    })
+}
+
+fn settings(solution: &Solution, run: &Run<'_>) -> Value {
+    let (options, settings) = (run.options, run.settings);
+    let pairs = |own: &[(String, String)]| own.iter().cloned().collect::<std::collections::BTreeMap<_, _>>();
+    json!({
+        "scene": solution.scene().name,
+        "data": options.data.as_deref().map(text),
+        "sample": options.sample.as_deref().map(text),
+        "cloud": options.cloud,
+        "unit": options.unit.map(LengthUnit::symbol),
+        "truth": options.truth.as_deref().map(text),
+        "columns": pairs(&options.column),
+        "parameters": options.set.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),
+        "optimizer": settings.optimizer.name(),
+        "precision": settings.precision.name(),
+        "network": options.network,
+        "width": options.width,
+        "layers": options.layers,
+        "resample": options.resample,
+        "budget_s": options.budget,
+        "iterations": options.iterations,
+        "out": text(&options.out),
+        "checkpoint": options.checkpoint,
+        "resume": options.resume.as_deref().map(text),
+        "isa": solution.isa(),
+    })
+}
+
+/// A path as text; letters that are none are replaced.
+fn text(path: &Path) -> String {
+    path.display().to_string()
+}

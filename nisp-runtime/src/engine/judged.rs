@@ -1,0 +1,77 @@
+//! What a network says at the points of its groups, for the verdict.
+
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use std::num::NonZero;
+
+use super::Engine;
+use super::tile::POINT_LANES;
+use crate::facts::{Answer, CloudFacts, Facts};
+use crate::schema::TermKind;
+
+impl Engine<f64> {
+    /// What the network says, of clouds given by group and term, flat.
+    pub(crate) fn answer(&mut self, theta: &[f64], clouds: &[Vec<Vec<f64>>]) -> Answer {
+        let facts: Vec<Facts> = (0..self.groups.len()).map(|group| self.facts(group, theta)).collect();
+        let mut seen = Vec::new();
+        for (group, (bound, clouds)) in self.groups.iter().zip(clouds).enumerate() {
+            let rows = || facts[group].rows(bound.programs, bound.schema, &self.scalars);
+            for (term, cloud) in bound.schema.terms.iter().zip(clouds) {
+                if matches!(term.kind, TermKind::Chamfer { .. }) && (2..=3).contains(&term.rows) {
+                    let surface = rows()[term.first..term.first + term.rows].to_vec();
+                    seen.extend(beside(group, term.name, &surface, cloud));
+                }
+            }
+        }
+        Answer { facts, clouds: seen, scalars: self.scalars.clone() }
+    }
+
+    /// Values and derivatives at the points of a group.
+    pub(crate) fn facts(&mut self, group: usize, theta: &[f64]) -> Facts {
+        self.set(theta);
+        let bound = &self.groups[group];
+        let points = bound.points;
+        let stride = points.next_multiple_of(POINT_LANES);
+        let mut facts = Facts {
+            points,
+            stride,
+            jets: vec![0.0; bound.schema.jets.len() * stride],
+            coordinates: vec![0.0; bound.coordinates.len() / points.max(1) * stride],
+            columns: vec![0.0; bound.schema.columns.len() * stride],
+            means: Vec::new(),
+        };
+        self.each_tile(group, |tile, buffers| {
+            let parts: [(&mut [f64], &[f64]); 3] = [
+                (&mut facts.jets, &buffers.jets),
+                (&mut facts.coordinates, &buffers.points),
+                (&mut facts.columns, &buffers.columns),
+            ];
+            for (all, own) in parts {
+                for (all, own) in all.chunks_exact_mut(stride).zip(own.chunks_exact(tile.stride())) {
+                    all[tile.first..tile.first + tile.count].copy_from_slice(&own[..tile.count]);
+                    // What vectors read beyond the last point.
+                    all[tile.first + tile.count..].fill(own[tile.count - 1]);
+                }
+            }
+        });
+        facts
+    }
+}
+
+/// A cloud beside a surface of points, `[coordinate][point]`: distances to the nearest of them.
+fn beside(group: usize, term: &'static str, surface: &[Vec<f64>], cloud: &[f64]) -> Option<CloudFacts> {
+    const TWO: NonZero<usize> = NonZero::new(2).unwrap();
+    let padded = |of: &dyn Fn(usize) -> f64| std::array::from_fn(|i| if i < surface.len() { of(i) } else { 0.0 });
+    let places: Vec<[f64; 3]> = (0..surface[0].len()).map(|p| padded(&|i| surface[i][p])).collect();
+    let tree = ImmutableKdTree::<f64, 3>::new_from_slice(&places).ok()?;
+    let apart = places.iter().filter_map(|place| {
+        tree.query(place).nearest_n::<SquaredEuclidean<f64>>(TWO).execute().last().map(|found| found.distance.sqrt())
+    });
+    let mut apart: Vec<f64> = apart.collect();
+    apart.sort_by(f64::total_cmp);
+    let points: Vec<[f64; 3]> = cloud.chunks_exact(surface.len()).map(|point| padded(&|i| point[i])).collect();
+    let nearest = |point: &[f64; 3]| tree.query(point).nearest_one::<SquaredEuclidean<f64>>().execute();
+    let misfits = points.iter().map(|point| Some(nearest(point).distance.sqrt())).collect();
+    let feet = points.iter().map(|point| places[nearest(point).item as usize]).collect();
+    let resolution = apart.get(apart.len() / 2).copied().unwrap_or(0.0);
+    Some(CloudFacts { group, term, points, places: feet, misfits, signed: false, resolution })
+}

@@ -1,0 +1,112 @@
+//! What an answer says at the points of a group, and what its programs make of it.
+
+use crate::kernel::Programs;
+use crate::residual::Points;
+use crate::schema;
+use crate::simd::Isa;
+
+/// Values and derivatives of an answer at a group's points, in the engine's units.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Facts {
+    /// Number of points.
+    pub(crate) points: usize,
+    /// Distance between quantities: a multiple of every vector length.
+    pub(crate) stride: usize,
+    /// `[jet][point]`
+    pub(crate) jets: Vec<f64>,
+    /// `[coordinate][point]`, then those of partners.
+    pub(crate) coordinates: Vec<f64>,
+    /// `[column][point]`
+    pub(crate) columns: Vec<f64>,
+    /// Weighted means that equations are asked of instead of points; empty if of points.
+    pub(crate) means: Vec<Vec<(u32, f64)>>,
+}
+
+impl Facts {
+    /// Raw rows, `[row][place]`: places are points, or means over points.
+    pub(crate) fn rows(&self, programs: &dyn Programs<f64>, group: &schema::Group, scalars: &[f64]) -> Vec<Vec<f64>> {
+        self.rows_with(programs, group, (&self.jets, &self.columns), scalars)
+    }
+
+    /// Raw rows with other jets and columns.
+    pub(crate) fn rows_with(
+        &self,
+        programs: &dyn Programs<f64>,
+        group: &schema::Group,
+        (jets, columns): (&[f64], &[f64]),
+        scalars: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut rows = vec![0.0; group.rows * self.stride];
+        programs.residual(Isa::detect(), self.inputs(jets, columns, scalars, &[]), &mut rows);
+        (0..group.rows).map(|row| self.at_places(&rows[row * self.stride..][..self.stride])).collect()
+    }
+
+    /// Raw rows at all points, `[row][point]`.
+    pub(crate) fn plain_rows(
+        &self,
+        programs: &dyn Programs<f64>,
+        group: &schema::Group,
+        scalars: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut rows = vec![0.0; group.rows * self.stride];
+        programs.residual(Isa::detect(), self.inputs(&self.jets, &self.columns, scalars, &[]), &mut rows);
+        rows.chunks_exact(self.stride).map(|row| row[..self.points].to_vec()).collect()
+    }
+
+    /// Derivatives of a row by the jets, `[jet][point]`.
+    pub(crate) fn slopes(
+        &self,
+        programs: &dyn Programs<f64>,
+        group: &schema::Group,
+        row: usize,
+        scalars: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut seeds = vec![0.0; group.rows * self.stride];
+        seeds[row * self.stride..][..self.stride].fill(1.0);
+        let mut bars = vec![0.0; (group.jets.len() + scalars.len()) * self.stride];
+        programs.adjoint(Isa::detect(), self.inputs(&self.jets, &self.columns, scalars, &seeds), &mut bars);
+        (0..group.jets.len()).map(|jet| bars[jet * self.stride..][..self.points].to_vec()).collect()
+    }
+
+    fn inputs<'a>(
+        &'a self,
+        jets: &'a [f64],
+        columns: &'a [f64],
+        scalars: &'a [f64],
+        seeds: &'a [f64],
+    ) -> Points<'a, f64> {
+        let Self { points, stride, ref coordinates, .. } = *self;
+        Points { count: points, stride, jets, coordinates, columns, scalars, seeds }
+    }
+
+    fn at_places(&self, values: &[f64]) -> Vec<f64> {
+        if self.means.is_empty() {
+            return values[..self.points].to_vec();
+        }
+        self.means.iter().map(|mean| mean.iter().map(|&(p, share)| share * values[p as usize]).sum()).collect()
+    }
+}
+
+/// A cloud, and how far its points are off a surface, in the engine's units.
+pub(crate) struct CloudFacts {
+    pub(crate) group: usize,
+    pub(crate) term: &'static str,
+    pub(crate) points: Vec<[f64; 3]>,
+    /// Where on the surface at rest each point belongs: neighbours there are neighbours whatever the noise.
+    pub(crate) places: Vec<[f64; 3]>,
+    /// Distance of every point to the surface; nothing where the surface has no place for it.
+    pub(crate) misfits: Vec<Option<f64>>,
+    /// True if distances have a sign, by the side of the surface.
+    pub(crate) signed: bool,
+    /// Distances that the carrier cannot resolve.
+    pub(crate) resolution: f64,
+}
+
+/// What a carrier says of its answer, in the engine's units.
+pub(crate) struct Answer {
+    /// By group.
+    pub(crate) facts: Vec<Facts>,
+    pub(crate) clouds: Vec<CloudFacts>,
+    /// Scalars that programs read, learned ones at their found values.
+    pub(crate) scalars: Vec<f64>,
+}

@@ -1,0 +1,36 @@
+//! What local functions say at the points of their groups and of their clouds, for the verdict.
+
+use super::place::State;
+use super::solver::Solver;
+use crate::facts::{Answer, CloudFacts, Facts};
+
+/// Distances to a cloud that splines do not follow, as a share of a cell.
+const UNRESOLVED: f64 = 0.03;
+
+impl Solver<'_> {
+    /// What a state says.
+    pub(super) fn answer(&mut self, state: &State) -> Answer {
+        self.find_feet(&state.theta, &state.learned);
+        let facts = self.groups.iter().map(|group| {
+            let sites = &group.sites;
+            Facts {
+                points: sites.count,
+                stride: sites.stride,
+                jets: group.jets_at(sites, &self.heads, &state.theta).0,
+                coordinates: sites.coordinates.clone(),
+                columns: sites.columns.clone(),
+                means: group.means(),
+            }
+        });
+        let clouds = self.surfaces.iter().map(|surface| CloudFacts {
+            group: surface.group,
+            term: surface.term,
+            points: surface.cloud(),
+            places: surface.places(),
+            misfits: surface.signed(),
+            signed: true,
+            resolution: UNRESOLVED * self.cell,
+        });
+        Answer { facts: facts.collect(), clouds: clouds.collect(), scalars: self.scalars.clone() }
+    }
+}

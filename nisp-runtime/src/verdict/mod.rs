@@ -1,0 +1,100 @@
+//! Whether an answer deserves to be called right, judged from the problem and the data alone.
+//!
+//! A solver knows how its steps went. That says little about the answer: a loss can be at its minimum while a condition is
+//! ignored or the equations do not describe the data. The checks here see only what the answer leaves of every equation,
+//! condition, observation and cloud, whatever carries the answer and whatever found it.
+
+mod clouds;
+mod equations;
+mod learned;
+mod observations;
+
+use crate::facts::Answer;
+use crate::noise::Noise;
+use crate::problem::Bound;
+
+/// One thing that was looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Check {
+    /// What was looked at: `equation`, `condition`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`, `distance`, `seen`,
+    /// `patch` or `range`.
+    pub check: &'static str,
+    /// The group of points; empty for learned scalars.
+    pub group: &'static str,
+    /// The term, or the learned scalar.
+    pub term: &'static str,
+    /// What was found, without unit.
+    pub value: f64,
+    /// The largest value that passes.
+    pub limit: f64,
+    /// Whether it passes. A value that is not finite does not.
+    pub passed: bool,
+    /// What was found, and what to do where it does not pass.
+    pub message: String,
+}
+
+/// All checks of an answer.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Verdict {
+    /// In the order of groups and terms.
+    pub checks: Vec<Check>,
+}
+
+impl Verdict {
+    /// True if every check passes.
+    pub fn passed(&self) -> bool {
+        self.checks.iter().all(|check| check.passed)
+    }
+
+    /// The checks that do not pass.
+    pub fn failed(&self) -> impl Iterator<Item = &Check> {
+        self.checks.iter().filter(|check| !check.passed)
+    }
+}
+
+impl Check {
+    fn new(check: &'static str, place: (&'static str, &'static str), (value, limit): (f64, f64), said: String) -> Self {
+        let (group, term) = place;
+        Self { check, group, term, value, limit, passed: value <= limit, message: said }
+    }
+}
+
+/// Judges an answer, whose heads have these values over the domain, `[head][point]` in the engine's units.
+pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: &Noise) -> Verdict {
+    let schema = bound.problem.scene().schema;
+    let sizes = equations::Sizes::of(values);
+    let kernels = bound.problem.scene().double();
+    let mut checks = Vec::new();
+    for (at, (group, facts)) in schema.groups.iter().zip(&answer.facts).enumerate() {
+        if group.is_beliefs() {
+            continue;
+        }
+        let programs = kernels[at].programs;
+        let rows = facts.rows(programs, group, &answer.scalars);
+        checks.extend(equations::checks(bound, at, (facts, &rows), programs, (&sizes, &answer.scalars)));
+        checks.extend(observations::checks(bound, at, &rows, noise));
+    }
+    checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
+    checks.extend(learned::checks(bound, &answer.scalars));
+    Verdict { checks }
+}
+
+/// Whether a source that is known to be zero nearly everywhere is that: values over the domain, and the least that it is where
+/// it acts. Meant for sources that may act anywhere in the domain.
+pub(crate) fn patches(name: &'static str, values: &[f64], level: f64) -> Check {
+    /// A tool that covers more than this share of a body has no edge to find.
+    const LARGEST: f64 = 0.5;
+    let acting = values.iter().filter(|value| value.abs() >= level / 2.0).count();
+    let share = acting as f64 / values.len().max(1) as f64;
+    let said = format!(
+        "`{name}` acts on {:.0} % of the surface, where contacts are patches: check the sign and the pose of the data, and the \
+         parameters that balance it",
+        100.0 * share
+    );
+    Check::new("patch", ("", name), (share, LARGEST), said)
+}
+
+fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), x| (sum + x * x, count + 1.0));
+    if count == 0.0 { 0.0 } else { (sum / count).sqrt() }
+}

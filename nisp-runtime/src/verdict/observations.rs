@@ -1,0 +1,127 @@
+//! What an answer leaves of observations: it should be noise, no larger than the data's own, without a pattern.
+
+use super::{Check, root_mean_square};
+use crate::noise::{Noise, in_order};
+use crate::problem::Bound;
+use crate::rhythm::rhythm;
+use crate::schema::{Loss, TermKind};
+
+/// Misfit over the noise that differences between neighbouring data show.
+const MISFIT: f64 = 1.6;
+/// Misfit over a declared tolerance.
+const TOLERANCE: f64 = 1.5;
+/// Misfit of data that are exact but for rounding, over their spread.
+const EXACT: f64 = 2e-3;
+/// Correlation of neighbouring misfits in its own standard deviations.
+const PATTERN: f64 = 5.0;
+/// Patterns with less than this share of the misfit's square do not matter.
+const SLIGHT: f64 = 0.15;
+/// Values that say something of a correlation, at least.
+const FEW: usize = 16;
+
+/// Checks of the observations of a group.
+pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noise) -> Vec<Check> {
+    let schema = &bound.problem.scene().schema.groups[group];
+    let mut checks = Vec::new();
+    let terms = schema.terms.iter().enumerate();
+    for (at, term) in terms.filter(|(_, term)| term.kind == TermKind::Observation) {
+        let place = (schema.name, term.name);
+        let own = &rows[term.first..term.first + term.rows];
+        let of = noise.of(group, at);
+        let robust = term.loss != Loss::Square;
+        let rms = if robust { middle(own) } else { root_mean_square(own.iter().flatten().copied()) };
+        let exact = of.is_some_and(|of| of.is_exact());
+        let outward = bound.system.outward(&term.unit);
+        let unit = term.unit.text;
+        if let Some(within) = term.within.map(|within| within / bound.system.size(&term.unit)) {
+            let said = format!(
+                "`{}` is not resolved: it is missed by {:.2e} {unit} (rms), where {:.2e} {unit} is declared: check the equations, the parameters \
+                 and the tolerance",
+                term.name,
+                rms * outward,
+                within * outward
+            );
+            checks.push(Check::new("misfit", place, (rms / within, TOLERANCE), said));
+        } else if let Some(of) = of {
+            let (scale, limit) = if exact { (of.spread, EXACT) } else { (of.deviation, MISFIT) };
+            let said = format!(
+                "`{}` is not resolved: it is missed by {:.2e} {unit} (rms), while the data's noise is {:.2e} {unit}: the equations or a parameter \
+                 do not fit these data, or the carrier is too coarse (more --width, another --seed, more --budget)",
+                term.name,
+                rms * outward,
+                of.deviation * outward
+            );
+            // Data that do not vary are met exactly or not at all.
+            let value = if scale > 0.0 {
+                rms / scale
+            } else if rms > 0.0 {
+                f64::INFINITY
+            } else {
+                0.0
+            };
+            checks.push(Check::new("misfit", place, (value, limit), said));
+        }
+        let record = bound.problem.scene().schema.coordinates.len() == 1;
+        if !record || robust || exact {
+            continue;
+        }
+        for row in own.iter().filter(|row| row.len() >= FEW) {
+            let ordered = in_order(&bound.coordinates[group], row);
+            let correlation = correlation(&ordered);
+            let z = correlation * (row.len() as f64).sqrt();
+            let value = if correlation > SLIGHT { z } else { z.min(PATTERN) };
+            let said = format!(
+                "what is left of `{}` is no noise: neighbours correlate by {correlation:.2}, so a part of the data is smoothed \
+                 away or not described by the equations",
+                term.name
+            );
+            checks.push(Check::new("pattern", place, (value, PATTERN), said));
+        }
+        if let Some(swing) = of.and_then(|of| rhythm(&bound.coordinates[group], &own[0], of)) {
+            let said = format!(
+                "what is left of `{}` goes up and down {} times over the record by {:.2e} {unit}, which noise does not: a rhythm \
+                 was smoothed away (another --seed, more --width)",
+                term.name,
+                swing.periods,
+                swing.amplitude * outward
+            );
+            checks.push(Check::new("rhythm", place, (swing.amplitude / of.map_or(1.0, |of| of.deviation), 0.0), said));
+        }
+    }
+    checks
+}
+
+/// The size of values by their median magnitude, in standard deviations of normal numbers: outliers count for nothing.
+fn middle(rows: &[Vec<f64>]) -> f64 {
+    let mut magnitudes: Vec<f64> = rows.iter().flatten().map(|x| x.abs()).collect();
+    magnitudes.sort_by(f64::total_cmp);
+    magnitudes.get(magnitudes.len() / 2).copied().unwrap_or(0.0) * 1.4826
+}
+
+/// Correlation of neighbours, less what a single large value makes of it.
+fn correlation(values: &[f64]) -> f64 {
+    let square: f64 = values.iter().map(|x| x * x).sum();
+    let products: f64 = values.windows(2).map(|pair| pair[0] * pair[1]).sum();
+    if square > 0.0 { products / square } else { 0.0 }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_wave_correlates_and_an_alternation_does_not() {
+        let wave: Vec<f64> = (0..200).map(|i| (0.1 * f64::from(i)).sin()).collect();
+        assert!(correlation(&wave) > 0.9);
+        let alternation: Vec<f64> = (0..200).map(|i| f64::from(1 - 2 * (i % 2))).collect();
+        assert!(correlation(&alternation) < -0.9);
+    }
+
+    #[test]
+    fn outliers_do_not_move_the_median() {
+        let mut row: Vec<f64> = (0..101).map(|i| (f64::from(i) - 50.0) / 50.0).collect();
+        let clean = middle(&[row.clone()]);
+        row[0] = 1e6;
+        assert!((middle(&[row]) - clean).abs() < 0.05);
+    }
+}
