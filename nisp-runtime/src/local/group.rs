@@ -95,6 +95,14 @@ impl Group {
         self.tests.iter().map(|test| test.points.clone()).collect()
     }
 
+    /// A row where it is asked for: at every point, or in the mean over every test.
+    pub(super) fn asked(&self, evaluated: &Evaluated, row: usize) -> Vec<f64> {
+        match self.tests.is_empty() {
+            true => (0..self.sites.count).map(|p| evaluated.row(row, p)).collect(),
+            false => self.tests.iter().map(|test| evaluated.mean(test, row)).collect(),
+        }
+    }
+
     /// False where a cloud is all that the group is compared with.
     pub(super) fn has_rows(&self) -> bool {
         self.schema.terms.iter().any(|term| !matches!(term.kind, TermKind::Chamfer { .. }))

@@ -9,7 +9,7 @@ pub(crate) type Misfits = (Vec<f64>, Option<f64>);
 
 impl Solver<'_> {
     /// Misfits of all terms, by group: of a cloud's points from the surface, of an integral from its target, of everything
-    /// else at every point.
+    /// else at every point, or in the mean over every test.
     pub(super) fn misfits(&mut self, state: &State) -> Vec<Vec<Misfits>> {
         self.find_feet(&state.theta, &state.learned);
         (0..self.groups.len()).map(|at| self.misfits_of(at, state)).collect()
@@ -31,8 +31,7 @@ impl Solver<'_> {
             }
             TermKind::Residual | TermKind::Observation => {
                 let rows = term.first..term.first + term.rows;
-                let misfits = rows.flat_map(|row| (0..group.sites.count).map(move |p| (row, p)));
-                (misfits.map(|(row, p)| evaluated.row(row, p)).collect(), Some(group.sigma[term.first]))
+                (rows.flat_map(|row| group.asked(&evaluated, row)).collect(), Some(group.sigma[term.first]))
             }
         };
         group.schema.terms.iter().map(of).collect()

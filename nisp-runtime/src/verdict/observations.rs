@@ -41,9 +41,9 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
                 rms * outward,
                 within * outward
             );
-            checks.push(Check::new("misfit", place, (rms / within, TOLERANCE), said));
+            checks.push(Check::new("misfit", place, (rms / within, TOLERANCE.max(by_chance(own))), said));
         } else if let Some(of) = of {
-            let (scale, limit) = if exact { (of.spread, EXACT) } else { (of.deviation, MISFIT) };
+            let (scale, limit) = if exact { (of.spread, EXACT) } else { (of.deviation, MISFIT.max(by_chance(own))) };
             let said = format!(
                 "`{}` is not resolved: it is missed by {:.2e} {unit} (rms), while the data's noise is {:.2e} {unit}: the equations or a parameter \
                  do not fit these data, or the carrier is too coarse (more --width, another --seed, more --budget)",
@@ -91,6 +91,13 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
     checks
 }
 
+/// Root mean square of so many normal numbers of deviation one that four deviations of chance allow (Wilson and Hilferty
+/// 1931): few misfits may be large by chance.
+fn by_chance(rows: &[Vec<f64>]) -> f64 {
+    let part = 2.0 / (9.0 * rows.iter().map(Vec::len).sum::<usize>().max(1) as f64);
+    (1.0 - part + 4.0 * part.sqrt()).powf(1.5)
+}
+
 /// The size of values by their median magnitude, in standard deviations of normal numbers: outliers count for nothing.
 fn middle(rows: &[Vec<f64>]) -> f64 {
     let mut magnitudes: Vec<f64> = rows.iter().flatten().map(|x| x.abs()).collect();
@@ -115,6 +122,15 @@ mod tests {
         assert!(correlation(&wave) > 0.9);
         let alternation: Vec<f64> = (0..200).map(|i| f64::from(1 - 2 * (i % 2))).collect();
         assert!(correlation(&alternation) < -0.9);
+    }
+
+    /// Chi squared over its degrees of freedom has mean 1 and deviation sqrt(2 / n).
+    #[test]
+    fn chance_allows_less_to_many() {
+        let rows = |count| vec![vec![0.0; count]];
+        let exact = |count: f64| (1.0 + 4.0 * (2.0 / count).sqrt()).sqrt();
+        assert!((by_chance(&rows(10_000)) - exact(1e4)).abs() < 1e-3);
+        assert!(by_chance(&rows(4)) > 2.3 && by_chance(&rows(4)) < 2.8);
     }
 
     #[test]
