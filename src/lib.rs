@@ -9,8 +9,8 @@ pub use nisp_macros::pde;
 pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene, scene_in_both_precisions};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
-    Checkpoint, CheckpointError, Estimate, LearnedValue, Optimizer, RecoverError, Report, Resampling, Settings,
-    Solution, TermReport, Width, recover, resume,
+    Carrier, Checkpoint, CheckpointError, Estimate, LearnedValue, Optimizer, RecoverError, Report, Resampling,
+    Settings, Solution, TermReport, Width, recover, resume,
 };
 pub use nisp_runtime::{engine, local, network, peak, real, schema, simd, solve};
 

@@ -4,8 +4,8 @@
 
 use std::path::PathBuf;
 
-use nisp::Settings;
 use nisp::local::Local;
+use nisp::{Carrier, Settings};
 use nisp::{Problem, SceneRef};
 use nisp_data::cloud::LengthUnit;
 use nisp_data::nearest_name;
@@ -166,7 +166,10 @@ pub struct Assumed {
 impl Prepared {
     /// Settings with what suits the scene.
     pub fn suited(&self, settings: Settings) -> Settings {
-        Settings { local: self.local, ..settings }
+        match self.local {
+            Some(local) if settings.carrier == Carrier::Auto => Settings { carrier: Carrier::Local(local), ..settings },
+            _ => settings,
+        }
     }
 
     /// What the classical rivals answer at times `at`, where `truth` is true; nothing where none knows this scene. They

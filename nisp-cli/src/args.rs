@@ -82,9 +82,11 @@ pub(crate) struct Options {
     /// Element type of the network; auto is f32 as long as that helps, with methods that work in it, and then f64.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = precisions(), help_heading = METHOD)]
     pub(crate) precision: String,
-    /// A network even where local functions suit the scene better (membrane, sponge); so does --optimizer.
-    #[arg(long, help_heading = METHOD)]
-    pub(crate) network: bool,
+    /// What carries state and source: a network, or splines (records over time); auto looks at the scene and the data.
+    /// --optimizer means a network.
+    #[arg(long, value_name = "NAME", default_value = "auto", value_parser = ["auto", "network", "splines"],
+          help_heading = METHOD)]
+    pub(crate) carrier: String,
     /// Method of minimisation; auto chooses by noise and size, and for wide networks by a short trial.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = optimizers(), help_heading = METHOD)]
     pub(crate) optimizer: String,

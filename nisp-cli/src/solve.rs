@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Checkpoint, Optimizer, Report, Resampling, Settings, Solution, Width, recover, resume};
+use nisp::{Carrier, Checkpoint, Optimizer, Report, Resampling, Settings, Solution, Width, recover, resume};
 use nisp_cli::score::Found;
 use nisp_cli::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print, progress};
 use nisp_cli::{interrupt, processors};
@@ -28,8 +28,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         cloud: options.cloud,
         unit: options.unit,
         truth: options.truth.clone(),
-        // Whoever names a method means one of those that train networks.
-        network: options.network || settings.optimizer != Optimizer::Auto,
+        network: settings.carrier == Carrier::Network,
         columns: options.column.clone(),
         parameters: options.set.clone(),
     };
@@ -109,9 +108,18 @@ fn settings(options: &Options) -> Result<Settings, String> {
     if threads > MOST_THREADS {
         return Err(format!("--threads {threads}: at most {MOST_THREADS}; leave it out for one per processor"));
     }
+    let optimizer = Optimizer::from_name(&options.optimizer).unwrap_or(Optimizer::Auto);
+    let carrier = match options.carrier.as_str() {
+        "network" => Carrier::Network,
+        "splines" => Carrier::Splines,
+        // Methods are those that train networks.
+        _ if optimizer != Optimizer::Auto => Carrier::Network,
+        _ => Carrier::Auto,
+    };
     Ok(Settings {
+        carrier,
         precision: Width::from_name(&options.precision).unwrap_or(Width::Auto),
-        optimizer: Optimizer::from_name(&options.optimizer).unwrap_or(Optimizer::Auto),
+        optimizer,
         architecture: Architecture { width: options.width, layers: options.layers, ..Settings::default().architecture },
         resampling: options.resample.map(|every| Resampling { every: every as u64, ..Resampling::default() }),
         seed: options.seed,

@@ -22,7 +22,7 @@ const FILES: [&str; 6] = ["plot.svg", "source.csv", "state.csv", "surface.ply", 
 #[test]
 fn a_contact_is_scored_beside_a_classical_way_and_its_surface_is_written() {
     let place = Place::new();
-    let ran = place.run("solve membrane --network --iterations 3 --width 6 --out out");
+    let ran = place.run("solve membrane --carrier network --iterations 3 --width 6 --out out");
     assert_eq!(ran.code, Some(3), "{}", ran.stderr);
     for row in ["y_shape_1_cloud_1.ply", "net force", "overlap of the patch (IoU)", "spline of the cloud"] {
         assert!(ran.stdout.contains(row), "no `{row}` in: {}", ran.stdout);
@@ -41,7 +41,7 @@ fn a_contact_is_scored_beside_a_classical_way_and_its_surface_is_written() {
 fn the_object_has_the_promised_errors() {
     let place = Place::new();
     let errors = |line: &str| {
-        let ran = place.run(&format!("solve {line} --network --iterations 2 --width 4 --json"));
+        let ran = place.run(&format!("solve {line} --carrier network --iterations 2 --width 4 --json"));
         assert!(matches!(ran.code, Some(0 | 3)), "{}", ran.stderr);
         object(&ran.stdout)["errors"].clone()
     };
@@ -82,7 +82,7 @@ fn the_truth_in_a_sample_is_not_read() {
         place.put("bare.toml", &table.to_string());
         let answer = |sample: &str| {
             let ran = place.run(&format!(
-                "solve {scene} --sample {sample}.toml --cloud 1 --network --iterations 3 --width 4 --threads 1 --json --out {sample}"
+                "solve {scene} --sample {sample}.toml --cloud 1 --carrier network --iterations 3 --width 4 --threads 1 --json --out {sample}"
             ));
             assert!(matches!(ran.code, Some(0 | 3)), "{}", ran.stderr);
             let files: Vec<_> = FILES.iter().filter(|name| !name.ends_with(".svg")).collect();
@@ -103,7 +103,8 @@ fn copy(place: &Place, names: &[&str]) {
 
 /// What a short run answers, up to its last digit.
 fn source(place: &Place, line: &str) -> String {
-    let ran = place.run(&format!("solve {line} --network --iterations 3 --width 4 --threads 1 --json --out out"));
+    let ran =
+        place.run(&format!("solve {line} --carrier network --iterations 3 --width 4 --threads 1 --json --out out"));
     assert!(matches!(ran.code, Some(0 | 3)), "{line}: {}", ran.stderr);
     fs::read_to_string(place.path("out/source.csv")).unwrap()
         + &fs::read_to_string(place.path("out/state.csv")).unwrap()
@@ -173,7 +174,7 @@ fn units_and_missing_points_are_taken_care_of() {
     place.put("holes.csv", &cloud(1.0, "nan,nan,nan\n0,0,nan\n"));
     let ran = |line: &str| {
         let ran = place.run(&format!(
-            "solve membrane --data {line} --set p=5000 --network --iterations 3 --width 4 --threads 1 --json"
+            "solve membrane --data {line} --set p=5000 --carrier network --iterations 3 --width 4 --threads 1 --json"
         ));
         assert!(matches!(ran.code, Some(0 | 3)), "{line}: {}", ran.stderr);
         object(&ran.stdout)

@@ -40,7 +40,7 @@ fn a_condition_that_settles_it_is_named() {
 /// Only the ratio of modulus and pressure shapes a membrane without bending, which the truth has as 341260 to 5670.
 #[test]
 fn a_modulus_whose_pressure_is_unknown_is_open() {
-    for carrier in ["", "--network"] {
+    for carrier in ["", "--carrier network"] {
         let found = solved(&format!("membrane --scene identify_unknown_pressure {carrier}"));
         let warnings = found["warnings"].to_string();
         assert!(

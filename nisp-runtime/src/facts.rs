@@ -88,6 +88,7 @@ impl Facts {
 }
 
 /// A cloud, and how far its points are off a surface, in the engine's units.
+#[derive(Clone)]
 pub(crate) struct CloudFacts {
     pub(crate) group: usize,
     pub(crate) term: &'static str,
@@ -103,6 +104,7 @@ pub(crate) struct CloudFacts {
 }
 
 /// What a carrier says of its answer, in the engine's units.
+#[derive(Clone)]
 pub(crate) struct Answer {
     /// By group.
     pub(crate) facts: Vec<Facts>,

@@ -24,6 +24,7 @@ mod rhythm;
 pub mod schema;
 pub mod simd;
 pub mod solve;
+mod splines;
 pub mod tanh;
 pub mod values;
 pub mod verdict;

@@ -1,8 +1,8 @@
 //! The studies: what is varied, on what, and what the paper found (its appendix of ablations).
 
-use nisp::Settings;
 use nisp::local::{Local, Patches};
 use nisp::network::{Architecture, Fourier, Inputs, Kind};
+use nisp::{Carrier, Settings};
 
 use crate::measure::Measure;
 
@@ -71,7 +71,11 @@ fn inputs(inputs: Inputs) -> impl Fn(&mut Settings) {
 }
 
 fn prior(change: impl Fn(&mut Local) + 'static) -> impl Fn(&mut Settings) + 'static {
-    move |settings| settings.local.iter_mut().for_each(&change)
+    move |settings| {
+        if let Carrier::Local(local) = &mut settings.carrier {
+            change(local);
+        }
+    }
 }
 
 /// Frequencies of about one wave over the domain, as in the reference code.

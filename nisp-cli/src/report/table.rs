@@ -46,6 +46,7 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
         if threads == 1 { "" } else { "s" },
         solution.loss
     ));
+    line(format!("  carrier    {}: {}", solution.carrier, solution.carrier_reason));
     for (group, points) in solution.groups() {
         let points = if points == 1 { "1 point".into() } else { format!("{points} points") };
         line(format!("  {:10} {points}, channels {}", group.name, group.channels.join(" ")));

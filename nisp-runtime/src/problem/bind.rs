@@ -371,6 +371,20 @@ impl Bound {
         thinned
     }
 
+    /// The same with the points of an interval of the only coordinate alone, for scenes without clouds, pairs and weights.
+    pub(crate) fn between(&self, low: f64, high: f64) -> Self {
+        let mut part = self.clone();
+        for (at, all) in self.coordinates.iter().enumerate() {
+            let is_inside: Vec<bool> = all.iter().map(|x| (low..=high).contains(x)).collect();
+            let inside = |values: &[f64]| -> Vec<f64> {
+                values.iter().zip(&is_inside).filter(|(_, inside)| **inside).map(|(x, _)| *x).collect()
+            };
+            part.coordinates[at] = inside(all);
+            part.columns[at] = self.columns[at].iter().map(|column| inside(column)).collect();
+        }
+        part
+    }
+
     fn raw_weights(&self, group: usize) -> &[f64] {
         self.problem.groups[group].as_ref().map_or(&[], |binding| &binding.points.weights)
     }

@@ -133,10 +133,10 @@ impl Reader<'_> {
 /// threads, is not among the settings, since no iterate depends on it.
 pub(super) fn fingerprint(problem: &Problem, settings: &Settings) -> u64 {
     let mut hash = Fnv::new();
-    let Settings { precision, optimizer, architecture, local, resampling, data_first, seed, .. } = settings;
+    let Settings { precision, optimizer, architecture, carrier, resampling, data_first, seed, .. } = settings;
     // The text of a float has all of its bits. Hashing cannot fail.
     let _ = write!(hash, "{:?}{problem:?}", problem.scene().schema);
-    let _ = write!(hash, "{precision:?}{optimizer:?}{architecture:?}{local:?}{resampling:?}{data_first:?}{seed}");
+    let _ = write!(hash, "{precision:?}{optimizer:?}{architecture:?}{carrier:?}{resampling:?}{data_first:?}{seed}");
     hash.0
 }
 

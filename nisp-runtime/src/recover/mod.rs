@@ -4,7 +4,9 @@
 //! answer back in the user's units.
 
 mod bars;
+mod carried;
 mod checkpoint;
+mod choice;
 mod course;
 mod layers;
 mod network;
@@ -24,16 +26,19 @@ use std::time::Instant;
 use thiserror::Error;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
-pub use settings::{Optimizer, Resampling, Settings, Width};
+pub use settings::{Carrier, Optimizer, Resampling, Settings, Width};
 pub use solution::{Estimate, LearnedValue, Solution, TermReport};
 
+use choice::Chosen;
 use course::Course;
 
 use crate::local::{self, Local, LocalError};
+use crate::noise;
 use crate::problem::{BindError, Bound, Problem};
 use crate::solve::driver::{Flow, Limits};
 use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
+use crate::splines;
 
 /// What is believed of the precision of weights before any row is seen: a network whose heads change by a few times their
 /// natural size. Worth so few parameters, it matters only where the data say next to nothing.
@@ -76,6 +81,9 @@ pub enum RecoverError {
     /// Local functions that cannot do it.
     #[error(transparent)]
     Local(#[from] LocalError),
+    /// Splines over one coordinate that cannot do it.
+    #[error("splines do not do {0}; choose a network")]
+    Splines(&'static str),
     /// Threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -153,10 +161,13 @@ fn solve(
         Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() };
     let course = Course::new(fingerprint, limits, start, checkpoint.map(|c| &c.state), monitor);
     pool.install(|| {
-        let solution = match &settings.local {
-            Some(local) => solve_local(bound, local, settings, start, course),
-            None => network::solve(bound, settings, start, course),
+        let (chosen, why) = choice::of(&bound, settings);
+        let solution = match chosen {
+            Chosen::Local(local) => solve_local(bound, &local, settings, start, course),
+            Chosen::Splines => solve_on_splines(bound, settings, start, course),
+            Chosen::Network => network::solve(bound, settings, start, course),
         };
+        let solution = solution.map(|solution| solution.carried_by(chosen.name(), why));
         solution.map(Solution::judged)
     })
 }
@@ -180,4 +191,27 @@ fn solve_local(
     })?;
     found.warnings.extend(undetermined::of_local(&bound, &found));
     Ok(Solution::of_local(bound, found, settings, start))
+}
+
+fn solve_on_splines(
+    bound: Bound,
+    settings: &Settings,
+    start: Instant,
+    course: Course<'_, '_>,
+) -> Result<Solution, RecoverError> {
+    if let Some(what) = splines::refused(bound.problem.scene().schema) {
+        return Err(RecoverError::Splines(what));
+    }
+    let limits = course.left();
+    let Course { fingerprint, from, monitor, .. } = course;
+    let noise = noise::estimate(&bound);
+    let found = splines::solve(&bound, &noise, limits, from, &mut |progress| {
+        monitor(Report {
+            iteration: progress.iteration,
+            elapsed_s: progress.elapsed_s,
+            loss: progress.loss,
+            checkpoint: &|| Checkpoint { fingerprint, state: (progress.checkpoint)() },
+        })
+    })?;
+    Ok(Solution::of_splines(bound, found, settings, start))
 }

@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
-use crate::local::Local;
+use crate::local::{Local, Patches};
 use crate::network::{Architecture, Inputs};
 use crate::noise::Noise;
+use crate::schema;
 
 /// How a problem is solved.
 #[derive(Clone, Debug, PartialEq)]
@@ -15,8 +16,8 @@ pub struct Settings {
     pub optimizer: Optimizer,
     /// Shape of the network.
     pub architecture: Architecture,
-    /// Local functions instead of a network.
-    pub local: Option<Local>,
+    /// What carries the heads.
+    pub carrier: Carrier,
     /// Points of equations drawn anew where the equations are most off, of a network; otherwise all are used always.
     pub resampling: Option<Resampling>,
     /// How many times longer than that of the equations the gradient of the data is at first, at least, for Adam: data are
@@ -38,13 +39,36 @@ impl Default for Settings {
             precision: Width::Auto,
             optimizer: Optimizer::Auto,
             architecture: Architecture { inputs: Inputs::Automatic, ..Architecture::modified(16, 2) },
-            local: None,
+            carrier: Carrier::Auto,
             resampling: None,
             data_first: 50.0,
             seed: 0,
             budget: Some(Duration::from_secs(10)),
             iterations: None,
             threads: 0,
+        }
+    }
+}
+
+/// What carries the heads of a scene.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Carrier {
+    /// Splines for records that they can carry and a small network cannot, else a network.
+    Auto,
+    /// A network.
+    Network,
+    /// Splines over the only coordinate.
+    Splines,
+    /// Splines on a lattice of cells, over two or three coordinates.
+    Local(Local),
+}
+
+impl Carrier {
+    /// The prior of patches, of sources that may act anywhere in the domain.
+    pub(super) fn patches_everywhere(&self, scene: &schema::Scene) -> Option<Patches> {
+        match self {
+            Self::Local(local) if local.source_dimensions == scene.coordinates.len() => local.patches,
+            _ => None,
         }
     }
 }

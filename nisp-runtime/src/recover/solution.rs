@@ -2,18 +2,18 @@
 
 use std::time::Instant;
 
-use super::bars::{Bars, Distrust};
+use super::bars::Distrust;
+use super::carried::{Carried, Network, Values};
 use super::{Checkpoint, Optimizer, Settings, Width};
-use crate::engine::{Engine, Learned};
-use crate::local::{Local, LocalSolution};
+use crate::engine::Engine;
+use crate::local::LocalSolution;
 use crate::noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::simd::Isa;
-use crate::solve::curvature::Curvature;
 use crate::solve::driver::{Outcome, Status, Warning, WarningKind};
-use crate::solve::posterior::posterior;
 use crate::solve::prior::WeightPrior;
+use crate::splines::SplineSolution;
 use crate::verdict::{Verdict, judge, patches};
 
 /// A solved problem.
@@ -37,22 +37,13 @@ pub struct Solution {
     pub checkpoint: Checkpoint,
     /// What is left of the equations, conditions and data.
     pub verdict: Verdict,
+    /// What carries the heads: `network`, `splines` or `local functions`.
+    pub carrier: &'static str,
+    /// Why it was chosen.
+    pub carrier_reason: String,
     bound: Bound,
-    carrier: Carrier,
-}
-
-/// What carries the heads.
-enum Carrier {
-    Network(Box<Network>),
-    Local(Box<LocalSolution>),
-}
-
-/// A trained network.
-struct Network {
-    engine: Engine<f64>,
-    theta: Vec<f64>,
-    prior: Option<WeightPrior>,
-    distrust: Distrust,
+    method: &'static str,
+    carried: Box<dyn Carried>,
 }
 
 /// A head at some points.
@@ -128,8 +119,17 @@ impl Solution {
             settings: settings.clone(),
             checkpoint: Checkpoint::new(&bound.problem, settings, outcome.state),
             verdict: Verdict::default(),
+            carrier: "",
+            carrier_reason: String::new(),
             bound,
-            carrier: Carrier::Network(Box::new(Network { engine, theta: outcome.theta, prior, distrust })),
+            method: optimizer.name(),
+            carried: Box::new(Network {
+                architecture: settings.architecture,
+                engine,
+                theta: outcome.theta,
+                prior,
+                distrust,
+            }),
         }
     }
 
@@ -145,22 +145,46 @@ impl Solution {
             settings: settings.clone(),
             checkpoint: Checkpoint::new(&bound.problem, settings, found.checkpoint.clone()),
             verdict: Verdict::default(),
+            carrier: "",
+            carrier_reason: String::new(),
             bound,
-            carrier: Carrier::Local(Box::new(found)),
+            method: "gauss-newton",
+            carried: Box::new(found),
         }
+    }
+
+    pub(super) fn of_splines(bound: Bound, found: SplineSolution, settings: &Settings, start: Instant) -> Self {
+        Self {
+            status: found.status,
+            loss: found.loss,
+            iterations: found.iterations,
+            wall_s: start.elapsed().as_secs_f64(),
+            warnings: found.warnings.clone(),
+            optimizer: Optimizer::Evidence,
+            precision: Width::F64,
+            settings: settings.clone(),
+            checkpoint: Checkpoint::new(&bound.problem, settings, found.checkpoint.clone()),
+            verdict: Verdict::default(),
+            carrier: "",
+            carrier_reason: String::new(),
+            bound,
+            method: "gauss-newton",
+            carried: Box::new(found),
+        }
+    }
+
+    /// Says what carries it, and why.
+    pub(super) fn carried_by(self, carrier: &'static str, carrier_reason: String) -> Self {
+        Self { carrier, carrier_reason, ..self }
     }
 
     /// Judges the answer by what is left of the problem, and calls it by its name.
     pub(super) fn judged(mut self) -> Self {
         let noise = noise::estimate(&self.bound);
         let values = self.values_over_domain();
-        let judge = |bound, answer: &_| judge(bound, answer, &values, &noise);
-        self.verdict = match &mut self.carrier {
-            Carrier::Network(network) => judge(&self.bound, &network.engine.answer(&network.theta, &self.bound.clouds)),
-            Carrier::Local(local) => judge(&self.bound, &local.answer),
-        };
-        let everywhere = |local: &&Local| local.source_dimensions == self.scene().coordinates.len();
-        if let Some(prior) = self.settings.local.as_ref().filter(everywhere).and_then(|local| local.patches) {
+        let answer = self.carried.answer(&self.bound);
+        self.verdict = judge(&self.bound, &answer, &values, &noise);
+        if let Some(prior) = self.settings.carrier.patches_everywhere(self.scene()) {
             for (head, values) in self.scene().heads.iter().zip(&values).filter(|(head, _)| head.source) {
                 let level = prior.level * self.bound.system.inward(&head.unit);
                 self.verdict.checks.push(patches(head.name, values, level));
@@ -215,10 +239,7 @@ impl Solution {
 
     /// Name of the method that was used.
     pub fn method(&self) -> &'static str {
-        match &self.carrier {
-            Carrier::Network(_) => self.optimizer.name(),
-            Carrier::Local(_) => "gauss-newton",
-        }
+        self.method
     }
 
     /// The element types that the run went through.
@@ -231,18 +252,7 @@ impl Solution {
 
     /// Every head at points given in declared units, point by point, without error bars.
     pub fn evaluate(&self, points: &[f64]) -> Vec<Estimate> {
-        match &self.carrier {
-            Carrier::Network(network) => {
-                let mut readout: Engine<f64> = self.bound.readout(self.settings.architecture, points);
-                let rows = readout.raw_rows(0, &network.theta);
-                let count = rows.len() / self.scene().heads.len().max(1);
-                self.estimates(|head| (rows[head * count..][..count].to_vec(), None))
-            }
-            Carrier::Local(local) => {
-                let points = self.bound.inward(points);
-                self.estimates(|head| (local.evaluate(head, &points), None))
-            }
-        }
+        self.estimates(self.carried.values(&self.bound, points))
     }
 
     /// As [`Solution::evaluate`], with standard deviations: those of the Laplace approximation of the posterior, in which the
@@ -254,61 +264,29 @@ impl Solution {
         if !self.is_sound() {
             return self.evaluate(points);
         }
-        if let Carrier::Local(local) = &self.carrier {
-            let inward = self.bound.inward(points);
-            let mut estimates = self.evaluate(points);
-            for (head, estimate) in estimates.iter_mut().enumerate() {
-                let outward = self.bound.system.outward(&estimate.unit);
-                let deviations = local.deviations(head, &inward);
-                estimate.deviations = deviations.map(|all| all.into_iter().map(|x| x * outward).collect());
+        let known = self.carried.with_deviations(&self.bound, points);
+        self.estimates(known)
+    }
+
+    fn estimates(&self, known: Vec<Values>) -> Vec<Estimate> {
+        let of = |(head, known): (&schema::Head, Values)| {
+            let outward = self.bound.system.outward(&head.unit);
+            let scaled = |values: Vec<f64>| values.into_iter().map(|x| x * outward).collect();
+            Estimate {
+                name: head.name,
+                unit: head.unit,
+                source: head.source,
+                values: scaled(known.values),
+                deviations: known.deviations.map(scaled),
+                by_prior: known.by_prior.map(scaled),
             }
-            return estimates;
-        }
-        let Some((rows, bars)) = self.bars(points) else { return self.evaluate(points) };
-        let count = rows.len() / self.scene().heads.len().max(1);
-        self.estimates(|head| {
-            let range = head * count..(head + 1) * count;
-            let [deviations, by_prior] = [&bars.deviations, &bars.by_prior].map(|part| part[range.clone()].to_vec());
-            (rows[range].to_vec(), Some([deviations, by_prior]))
-        })
-    }
-
-    fn estimates(&self, of: impl Fn(usize) -> (Vec<f64>, Option<[Vec<f64>; 2]>)) -> Vec<Estimate> {
-        let heads = self.scene().heads.iter().enumerate();
-        heads
-            .map(|(at, head)| {
-                let outward = self.bound.system.outward(&head.unit);
-                let scaled = |values: Vec<f64>| values.into_iter().map(|x| x * outward).collect();
-                let (values, bars) = of(at);
-                let (deviations, by_prior) = bars.map(|bars| bars.map(scaled)).map(|[all, part]| (all, part)).unzip();
-                let values = scaled(values);
-                Estimate { name: head.name, unit: head.unit, source: head.source, values, deviations, by_prior }
-            })
-            .collect()
-    }
-
-    /// Values of all heads at points, and their error bars, in the engine's units.
-    fn bars(&mut self, points: &[f64]) -> Option<(Vec<f64>, Bars)> {
-        let Carrier::Network(network) = &mut self.carrier else { return None };
-        let Network { engine, theta, prior, distrust } = &mut **network;
-        let curvature = Curvature::at(engine, theta, prior.as_ref()?).ok()?;
-        let (values, derivatives) = self.bound.sensitivities(self.settings.architecture, theta, points)?;
-        Some((values, distrust.bars(&posterior(&curvature, &derivatives))))
+        };
+        self.scene().heads.iter().zip(known).map(of).collect()
     }
 
     /// Learned scalars.
     pub fn learned(&mut self) -> Vec<LearnedValue> {
-        let found: Vec<(f64, Option<f64>)> = match &mut self.carrier {
-            Carrier::Network(network) => network.learned(),
-            Carrier::Local(local) => {
-                let values = self.bound.learned.iter().zip(&local.learned).enumerate();
-                let of = |(at, (learned, &parameter)): (usize, (&Learned, &f64))| {
-                    let (value, slope) = learned.map.at(parameter);
-                    (value, local.learned_deviation(at).map(|deviation| deviation * slope.abs()))
-                };
-                values.map(of).collect()
-            }
-        };
+        let found = self.carried.learned(&self.bound);
         let learned = self.bound.learned.iter().zip(found);
         learned
             .map(|(learned, (value, deviation))| {
@@ -327,7 +305,7 @@ impl Solution {
             for (at, term) in schema.terms.iter().enumerate() {
                 let outward = self.bound.system.outward(&term.unit);
                 let observation = matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. });
-                let (misfits, noise) = self.carrier.misfits(group, at);
+                let (misfits, noise) = self.carried.misfits(group, at);
                 let rms = (misfits.iter().map(|x| x * x).sum::<f64>() / misfits.len().max(1) as f64).sqrt();
                 reports.push(TermReport {
                     name: format!("{}.{}", schema.name, term.name),
@@ -352,36 +330,5 @@ impl Solution {
     /// Name of the instruction set in use.
     pub fn isa(&self) -> &'static str {
         Isa::detect().name()
-    }
-}
-
-impl Carrier {
-    /// How far the rows of a term are off, and what they count as known to, in the engine's units.
-    fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
-        match self {
-            Self::Network(network) => {
-                let Network { engine, theta, prior, .. } = &mut **network;
-                let noise = prior.is_some().then_some(engine.groups[group].terms[term].size);
-                (engine.misfits(group, term, theta), noise)
-            }
-            Self::Local(local) => local.misfits[group][term].clone(),
-        }
-    }
-}
-
-impl Network {
-    /// Values of the learned scalars, in the engine's units, and their standard deviations where there is a prior.
-    fn learned(&mut self) -> Vec<(f64, Option<f64>)> {
-        let prior = self.prior.as_ref();
-        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
-        let first = self.engine.layout().learned.start;
-        let values = self.engine.learned_values(&self.theta).into_iter().enumerate();
-        let deviation = |i: usize, slope: f64| {
-            let curvature = curvature.as_ref()?;
-            let mut direction = vec![0.0; self.theta.len()];
-            direction[first + i] = slope;
-            self.distrust.bars(&posterior(curvature, &direction)).deviations.first().copied()
-        };
-        values.map(|(i, (value, slope))| (value, deviation(i, slope))).collect()
     }
 }

@@ -16,6 +16,10 @@ const EXACT: f64 = 2e-3;
 const PATTERN: f64 = 5.0;
 /// Patterns with less than this share of the misfit's square do not matter.
 const SLIGHT: f64 = 0.15;
+/// Misfit over the noise below which it has no pattern to speak of.
+const BELOW: f64 = 0.5;
+/// Amplitude of a rhythm over the noise below which it does not matter.
+const FAINT: f64 = 0.1;
 /// Values that say something of a correlation, at least.
 const FEW: usize = 16;
 
@@ -61,8 +65,10 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
             };
             checks.push(Check::new("misfit", place, (value, limit), said));
         }
+        // A misfit far below the noise is what a fit that follows the data leaves, not a part that it leaves out.
+        let is_below = of.is_some_and(|of| rms < BELOW * of.deviation);
         let record = bound.problem.scene().schema.coordinates.len() == 1;
-        if !record || robust || exact {
+        if !record || robust || exact || is_below {
             continue;
         }
         for row in own.iter().filter(|row| row.len() >= FEW) {
@@ -85,7 +91,12 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
                 swing.periods,
                 swing.amplitude * outward
             );
-            checks.push(Check::new("rhythm", place, (swing.amplitude / of.map_or(1.0, |of| of.deviation), 0.0), said));
+            checks.push(Check::new(
+                "rhythm",
+                place,
+                (swing.amplitude / of.map_or(1.0, |of| of.deviation), FAINT),
+                said,
+            ));
         }
     }
     checks

@@ -1,0 +1,168 @@
+//! The rows of a group: misfits of its terms at its places, and their derivatives by the coefficients around each.
+
+use super::heads::Heads;
+use super::triangle::Row;
+use crate::facts::Facts;
+use crate::kernel::GroupKernel;
+use crate::residual::Points;
+use crate::schema;
+use crate::simd::Isa;
+
+/// Padding of the points, as everywhere in the engine.
+const LANES: usize = 16;
+
+/// A group at its places.
+pub(super) struct Group {
+    pub(super) schema: &'static schema::Group,
+    kernel: GroupKernel<f64>,
+    /// Places in the engine's units, with the cell of each.
+    places: Vec<(usize, f64)>,
+    stride: usize,
+    coordinates: Vec<f64>,
+    columns: Vec<f64>,
+    /// Heads that the group reads.
+    read: Vec<usize>,
+}
+
+/// Values of all rows at all places, and their derivatives.
+pub(super) struct Evaluated {
+    stride: usize,
+    /// `[row][place]`
+    rows: Vec<f64>,
+    /// By row: `[jet or learned scalar][place]`.
+    bars: Vec<Vec<f64>>,
+}
+
+impl Group {
+    /// A group at places, with columns `[column][place]`.
+    pub(super) fn new(
+        schema: &'static schema::Group,
+        kernel: GroupKernel<f64>,
+        heads: &Heads,
+        places: &[f64],
+        columns: &[Vec<f64>],
+    ) -> Self {
+        let stride = places.len().next_multiple_of(LANES);
+        let padded = |values: &[f64]| (0..stride).map(|p| values[p.min(places.len() - 1)]).collect::<Vec<_>>();
+        let mut read: Vec<usize> = schema.jets.iter().map(|jet| jet.head).collect();
+        read.sort_unstable();
+        read.dedup();
+        Self {
+            schema,
+            kernel,
+            places: places.iter().map(|&at| (heads.cell(at), at)).collect(),
+            stride,
+            coordinates: padded(places),
+            columns: columns.iter().flat_map(|column| padded(column)).collect(),
+            read,
+        }
+    }
+
+    /// Number of places.
+    pub(super) fn len(&self) -> usize {
+        self.places.len()
+    }
+
+    /// What the heads say at the places.
+    pub(super) fn facts(&self, heads: &Heads, theta: &[f64]) -> Facts {
+        let mut jets = vec![0.0; self.schema.jets.len() * self.stride];
+        for (jet, out) in self.schema.jets.iter().zip(jets.chunks_exact_mut(self.stride.max(1))) {
+            for (&place, out) in self.places.iter().zip(out.iter_mut()) {
+                let terms = jet.operator.iter();
+                *out =
+                    terms.map(|(order, c)| c * heads.derivative(jet.head, place, usize::from(order[0]), theta)).sum();
+            }
+            if let Some(last) = self.len().checked_sub(1) {
+                let last = out[last];
+                out[self.len()..].fill(last);
+            }
+        }
+        Facts {
+            points: self.len(),
+            stride: self.stride,
+            jets,
+            coordinates: self.coordinates.clone(),
+            columns: self.columns.clone(),
+            means: Vec::new(),
+        }
+    }
+
+    /// Values of all rows, and their derivatives if `slopes`.
+    pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
+        let facts = self.facts(heads, theta);
+        let points = Points {
+            count: self.len(),
+            stride: self.stride,
+            jets: &facts.jets,
+            coordinates: &self.coordinates,
+            columns: &self.columns,
+            scalars,
+            seeds: &[],
+        };
+        let mut rows = vec![0.0; self.schema.rows * self.stride];
+        self.kernel.programs.residual(Isa::detect(), points, &mut rows);
+        let bars = |row: usize| {
+            let mut seeds = vec![0.0; self.schema.rows * self.stride];
+            seeds[row * self.stride..][..self.stride].fill(1.0);
+            let mut bars = vec![0.0; (self.schema.jets.len() + scalars.len()) * self.stride];
+            self.kernel.programs.adjoint(Isa::detect(), Points { seeds: &seeds, ..points }, &mut bars);
+            bars
+        };
+        let bars = if slopes { (0..self.schema.rows).map(bars).collect() } else { Vec::new() };
+        Evaluated { stride: self.stride, rows, bars }
+    }
+
+    /// Sizes of all rows as sums of the magnitudes of what they add up, by row and place.
+    pub(super) fn magnitudes(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Vec<f64>> {
+        let facts = self.facts(heads, theta);
+        let mut rows = vec![0.0; self.schema.rows * self.stride];
+        let points = Points {
+            count: self.len(),
+            stride: self.stride,
+            jets: &facts.jets,
+            coordinates: &self.coordinates,
+            columns: &self.columns,
+            scalars,
+            seeds: &[],
+        };
+        self.kernel.programs.magnitude(points, &mut rows);
+        rows.chunks_exact(self.stride.max(1)).map(|row| row[..self.len()].to_vec()).collect()
+    }
+
+    /// A row at a place, multiplied with `factor`; `by` are the learned scalars' derivatives by their parameters.
+    pub(super) fn row(
+        &self,
+        heads: &Heads,
+        (found, row, p): (&Evaluated, usize, usize),
+        by: &[f64],
+        factor: f64,
+    ) -> Row {
+        let (cell, at) = self.places[p];
+        let (first, width) = heads.span(&self.read, cell);
+        let mut slopes = vec![0.0; width];
+        let bar = |number: usize| factor * found.bars[row][number * found.stride + p];
+        for (number, jet) in self.schema.jets.iter().enumerate() {
+            let seed = bar(number) * heads.scale[jet.head];
+            if seed == 0.0 {
+                continue;
+            }
+            let basis = &heads.bases[jet.head];
+            for (order, coefficient) in jet.operator {
+                let line = basis.line(cell, at, usize::from(order[0]));
+                for (&n, value) in heads.numbers(jet.head, cell).iter().zip(&line[..=basis.degree]) {
+                    slopes[n - first] += seed * coefficient * value;
+                }
+            }
+        }
+        let jets = self.schema.jets.len();
+        let shared = by.iter().enumerate().map(|(at, by)| bar(jets + at) * by).collect();
+        Row { first, slopes, shared, value: factor * found.row(row, p) }
+    }
+}
+
+impl Evaluated {
+    /// Value of a row at a place.
+    pub(super) fn row(&self, row: usize, p: usize) -> f64 {
+        self.rows[row * self.stride + p]
+    }
+}

@@ -1,0 +1,313 @@
+//! Splines over one coordinate: a carrier for records and for equations on a line.
+//!
+//! A network is one smooth function of few parameters; a record with many periods has more to say than it can hold. Here every
+//! head is a sum of B-splines with a breakpoint at every measurement. Equations are asked to hold at as many places as their
+//! residual has freedom, all unknowns are found together by Gauss-Newton steps on a banded triangle, and time and memory are
+//! linear in the measurements. The size of the noise and the roughness of every source are those with the largest evidence
+//! (MacKay 1992), and so is the order of the source's derivative that is kept small.
+
+mod basis;
+mod cells;
+mod group;
+mod heads;
+mod solver;
+mod triangle;
+mod weighed;
+
+use std::time::Instant;
+
+use crate::facts::{Answer, Facts};
+use crate::noise::Noise;
+use crate::problem::Bound;
+use crate::schema::{self, TermKind};
+use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
+use crate::solve::fault::Fault;
+use crate::solve::state;
+
+use group::Group;
+use solver::{Phase, Solver, State, TOLERANCE};
+use triangle::Covariance;
+
+/// Orders of a source's derivative that may be the one that is kept small, the first tried first.
+const ORDERS: [usize; 3] = [2, 1, 3];
+/// Steps that regress the data at most.
+const REGRESS: u64 = 12;
+/// Gain of the logarithm of the evidence that no longer matters.
+const RESTING: f64 = 0.02;
+/// Change of a coefficient, in natural sizes, that no longer matters.
+const SETTLED: f64 = 1e-4;
+/// Steps of an order at most.
+const MOST_STEPS: u64 = 60;
+/// Name of the method in saved states.
+const METHOD: &str = "splines";
+
+/// What splines over one coordinate cannot do, of a scene; nothing if they can do all of it.
+pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
+    let terms = || schema.groups.iter().flat_map(|group| group.terms);
+    let refused = [
+        (schema.coordinates.len() != 1, "more than one coordinate"),
+        (schema.groups.iter().any(|group| group.paired), "paired points"),
+        (schema.heads.iter().any(|head| head.hard || head.transformed), "bounded heads or hard conditions"),
+        (terms().any(|term| matches!(term.kind, TermKind::Integral)), "integrals"),
+        (terms().any(|term| matches!(term.kind, TermKind::Chamfer { .. })), "clouds"),
+        (cells::degrees(schema).is_none(), "derivatives of such an order"),
+    ];
+    refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what)
+}
+
+/// A problem solved by splines.
+pub(crate) struct SplineSolution {
+    heads: heads::Heads,
+    theta: Vec<f64>,
+    learned: Vec<f64>,
+    covariance: Option<Covariance>,
+    pub(crate) status: Status,
+    pub(crate) iterations: u64,
+    pub(crate) loss: f64,
+    pub(crate) warnings: Vec<Warning>,
+    pub(crate) checkpoint: state::State,
+    /// What the verdict is made from.
+    pub(crate) answer: Answer,
+    /// By group and term: how far rows are off, and the noise that the evidence found.
+    pub(crate) misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
+}
+
+/// What the caller sees after every step.
+pub(crate) struct Progress<'a> {
+    pub(crate) iteration: u64,
+    pub(crate) elapsed_s: f64,
+    pub(crate) loss: f64,
+    pub(crate) checkpoint: &'a dyn Fn() -> state::State,
+}
+
+/// Where a run stands: which order is tried, from which iterate, and the best order so far.
+#[derive(Clone)]
+struct Place {
+    /// Index in [`ORDERS`].
+    order: usize,
+    /// Index of the order after the last that is to be tried.
+    orders: usize,
+    phase: Phase,
+    state: State,
+    /// The best order's index, its evidence and its iterate.
+    best: Option<(usize, f64, State)>,
+}
+
+/// Solves a bound problem within its limits, from the start or from a saved state.
+pub(crate) fn solve(
+    bound: &Bound,
+    noise: &Noise,
+    limits: Limits,
+    from: Option<&state::State>,
+    monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
+) -> Result<SplineSolution, Fault> {
+    let start = Instant::now();
+    let mut solver = Solver::over(bound);
+    let mut place = Place::first(solver.first(noise), solver.has_sources());
+    let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY };
+    match (from, cells::middle(bound)) {
+        (Some(saved), _) => place.restore(saved)?,
+        // A part of a long record says how smooth the sources are, and how large the noise is.
+        (None, Some((low, high))) => {
+            let part = bound.between(low, high);
+            let mut solver = Solver::over(&part);
+            let mut trial = Place::first(solver.first(noise), solver.has_sources());
+            if run.go(&mut solver, &mut trial)? == Status::Converged
+                && let Some((order, _, state)) = trial.best
+            {
+                (place.order, place.orders) = (order, order + 1);
+                place.state.classes = state.classes;
+                place.state.step = trial.state.step;
+            }
+        }
+        (None, None) => {}
+    }
+    let mut status = run.go(&mut solver, &mut place)?;
+    let loss = run.loss;
+    let mut warnings = Vec::new();
+    if let Some((order, _, state)) = place.best.clone() {
+        solver.order = ORDERS[order];
+        place.state = State { step: place.state.step, ..state };
+    }
+    let mut covariance = None;
+    if matches!(status, Status::Converged | Status::Budget) && !noise.is_exact() {
+        match solver.step(&place.state, Phase::Solve)? {
+            Some(found) => covariance = Some(found.covariance),
+            None => status = Status::NotConverged,
+        }
+    }
+    if status == Status::NotConverged {
+        let message = "the data and the equations leave some of the unknowns open: give more conditions or data".into();
+        warnings.push(Warning { kind: WarningKind::Undetermined, message });
+    }
+    let checkpoint = place.save();
+    let scalars = solver.scalars(&place.state.learned).to_vec();
+    let misfits = solver.misfits(&place.state);
+    let schema = bound.problem.scene().schema;
+    let State { theta, learned, step: iterations, .. } = place.state;
+    let judged =
+        bound.problem.scene().double().into_iter().take(schema.groups.len()).enumerate().map(|(at, kernel)| {
+            let group =
+                Group::new(&schema.groups[at], kernel, &solver.heads, &bound.coordinates[at], &bound.columns[at]);
+            group.facts(&solver.heads, &theta)
+        });
+    let facts: Vec<Facts> = judged.collect();
+    let answer = Answer { facts, clouds: Vec::new(), scalars };
+    let Solver { heads, .. } = solver;
+    Ok(SplineSolution {
+        heads,
+        theta,
+        learned,
+        covariance,
+        status,
+        iterations,
+        loss,
+        warnings,
+        checkpoint,
+        answer,
+        misfits,
+    })
+}
+
+/// Share of the data's spread that a description of them may be off.
+const ROUGHLY: f64 = 0.02;
+
+/// How many numbers it takes to describe the richest of the observed quantities to within its noise, or to a fiftieth of its
+/// spread. A wave takes two a period, and more where it is noisy.
+pub(crate) fn richness(bound: &Bound, noise: &Noise) -> f64 {
+    let part = cells::middle(bound).map(|(low, high)| bound.between(low, high));
+    let mut solver = Solver::over(part.as_ref().unwrap_or(bound));
+    let mut state = solver.first(noise);
+    solver.hold_noise(&mut state, noise, ROUGHLY);
+    let mut used = 0.0;
+    for _ in 0..REGRESS {
+        let Ok(Some(found)) = solver.step(&state, Phase::Regress) else { break };
+        (used, state) = (found.used, found.next);
+    }
+    let rows = |bound: &Bound| bound.coordinates.iter().map(Vec::len).max().unwrap_or(0) as f64;
+    used * rows(bound) / rows(part.as_ref().unwrap_or(bound)).max(1.0)
+}
+
+/// A run under way.
+struct Run<'m> {
+    start: Instant,
+    limits: Limits,
+    /// Seconds of the longest step.
+    longest: f64,
+    monitor: &'m mut dyn FnMut(Progress<'_>) -> Flow,
+    loss: f64,
+}
+
+impl Run<'_> {
+    /// Takes steps until all orders that are to be tried have been, or steps or time are spent.
+    fn go(&mut self, solver: &mut Solver<'_>, place: &mut Place) -> Result<Status, Fault> {
+        let mut since = 0;
+        while place.order < place.orders {
+            solver.order = ORDERS[place.order];
+            let elapsed = self.start.elapsed().as_secs_f64();
+            let spent = self.limits.budget.is_some_and(|b| elapsed + 2.0 * self.longest > b.as_secs_f64());
+            if (spent || place.state.step >= self.limits.iterations) && self.loss.is_finite() {
+                return Ok(Status::Budget);
+            }
+            let Some(found) = solver.step(&place.state, place.phase)? else { return Ok(Status::NotConverged) };
+            self.longest = self.longest.max(self.start.elapsed().as_secs_f64() - elapsed);
+            let is_tight = place.state.tolerance <= TOLERANCE;
+            place.state = found.next;
+            since += 1;
+            self.loss = found.loss;
+            let open = place.state.classes.iter().filter(|class| class.open.is_some() && class.gain.is_finite());
+            let moved: f64 = open.map(|class| class.gain).sum();
+            let resting = moved < RESTING && since > 1;
+            match place.phase {
+                Phase::Regress if resting || since >= REGRESS => {
+                    (place.phase, since) = (Phase::Solve, 0);
+                    place.state.forget_roughness(solver);
+                }
+                Phase::Solve if is_tight && (resting && found.change < SETTLED || since >= MOST_STEPS) => {
+                    since = 0;
+                    place.next(found.evidence);
+                    place.state.forget_roughness(solver);
+                }
+                _ => {}
+            }
+            let elapsed_s = self.start.elapsed().as_secs_f64();
+            let checkpoint = &|| place.save();
+            let progress = Progress { iteration: place.state.step, elapsed_s, loss: self.loss, checkpoint };
+            if (self.monitor)(progress) == Flow::Stop {
+                return Ok(Status::Interrupted);
+            }
+        }
+        Ok(Status::Converged)
+    }
+}
+
+impl Place {
+    /// The start; without sources, orders make no difference.
+    fn first(state: State, has_sources: bool) -> Self {
+        let orders = if has_sources { ORDERS.len() } else { 1 };
+        Self { order: 0, orders, phase: Phase::Regress, state, best: None }
+    }
+
+    /// Keeps the iterate if its order is the best so far, and turns to the next order.
+    fn next(&mut self, evidence: f64) {
+        if self.best.as_ref().is_none_or(|best| evidence > best.1) {
+            self.best = Some((self.order, evidence, self.state.clone()));
+        }
+        self.order += 1;
+    }
+
+    fn save(&self) -> state::State {
+        let saved = self.state.save(state::State::new(METHOD), "");
+        let saved = saved
+            .with_counter("order", self.order as u64)
+            .with_counter("orders", self.orders as u64)
+            .with_counter("phase", u64::from(self.phase == Phase::Solve))
+            .with_counter("iterations", self.state.step)
+            .with_counter("tried", u64::from(self.best.is_some()));
+        let Some((order, evidence, state)) = &self.best else { return saved };
+        state.save(saved.with("evidence", &[*evidence]).with_counter("best", *order as u64), "best ")
+    }
+
+    fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
+        saved.check_method(METHOD)?;
+        let order = |name: &str| match saved.counter(name)? as usize {
+            order if order <= ORDERS.len() => Ok(order),
+            _ => Err(Fault::state(name)),
+        };
+        if saved.counter("tried")? == 1 {
+            let mut best = self.state.clone();
+            best.restore(saved, "best ")?;
+            let [evidence] = saved.scalars("evidence")?;
+            self.best = Some((order("best")?.min(ORDERS.len() - 1), evidence, best));
+        }
+        self.state.restore(saved, "")?;
+        (self.order, self.orders) = (order("order")?, order("orders")?);
+        self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
+        Ok(())
+    }
+}
+
+impl SplineSolution {
+    /// Values of a head at places in the engine's units.
+    pub(crate) fn evaluate(&self, head: usize, places: &[f64]) -> Vec<f64> {
+        places.iter().map(|&at| self.heads.derivative(head, (self.heads.cell(at), at), 0, &self.theta)).collect()
+    }
+
+    /// Standard deviations of a head at places in the engine's units.
+    pub(crate) fn deviations(&self, head: usize, places: &[f64]) -> Option<Vec<f64>> {
+        let covariance = self.covariance.as_ref()?;
+        let shared = vec![0.0; self.learned.len()];
+        let deviation = |&at: &f64| {
+            let (first, slopes) = self.heads.value_row(head, at);
+            covariance.of(first, &slopes, &shared).max(0.0).sqrt()
+        };
+        Some(places.iter().map(deviation).collect())
+    }
+
+    /// Parameters of the learned scalars, and their standard deviations.
+    pub(crate) fn learned(&self) -> Vec<(f64, Option<f64>)> {
+        let count = self.learned.len();
+        let deviation = |at: usize| Some(self.covariance.as_ref()?.corner[at * (count + 1)].max(0.0).sqrt());
+        self.learned.iter().enumerate().map(|(at, &parameter)| (parameter, deviation(at))).collect()
+    }
+}

@@ -1,0 +1,416 @@
+//! Gauss-Newton steps on banded rows, while the evidence finds how noisy the data and how rough the sources are.
+
+use super::cells;
+use super::group::Group;
+use super::heads::Heads;
+use super::triangle::{Covariance, Row, Triangle};
+use super::weighed::{Class, Guess, Tally};
+use crate::noise::Noise;
+use crate::problem::Bound;
+use crate::schema::TermKind;
+use crate::solve::fault::Fault;
+use crate::solve::state;
+
+/// How far equations may be off in the end, beside the sum of the magnitudes of their terms.
+pub(super) const TOLERANCE: f64 = 1e-6;
+/// The same in the first step, and its fall from step to step: a state that is far off finds its way along loose equations.
+const LOOSE: f64 = 1e-2;
+const TIGHTER: f64 = 0.1;
+/// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
+const RIDGE: f64 = 1e-6;
+/// Standard deviation of the learned scalars' parameters before any row is seen.
+const LEARNED: f64 = 10.0;
+/// Rows that the noise's estimate from differences is worth.
+const NOISE_COUNT: f64 = 2.0;
+/// Least noise, as a share of the spread of the data: rounding.
+const LEAST_NOISE: f64 = 1e-9;
+/// Largest change of a learned parameter in a step.
+const FARTHEST: f64 = 1.0;
+/// A step is halved so often before it is given up.
+const HALVINGS: u32 = 8;
+
+/// An iterate.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub(super) theta: Vec<f64>,
+    pub(super) learned: Vec<f64>,
+    pub(super) classes: Vec<Class>,
+    /// Tolerance of the equations.
+    pub(super) tolerance: f64,
+    pub(super) step: u64,
+}
+
+/// What the rows of a step are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Phase {
+    /// Data under a prior of the fields' roughness.
+    Regress,
+    /// Everything under a prior of the sources' roughness.
+    Solve,
+}
+
+/// A problem on its splines.
+pub(super) struct Solver<'a> {
+    pub(super) bound: &'a Bound,
+    pub(super) heads: Heads,
+    /// Groups where their rows are asked for.
+    pub(super) groups: Vec<Group>,
+    /// By group and term, the number of its class.
+    classes: Vec<Vec<usize>>,
+    /// By head, the number of the class of its roughness.
+    roughness: Vec<usize>,
+    /// Sizes of equations, by group and row.
+    sizes: Vec<Vec<f64>>,
+    /// Order of the derivative of the sources that the prior keeps small.
+    pub(super) order: usize,
+    scalars: Vec<f64>,
+    triangle: Triangle,
+}
+
+/// What a step found.
+pub(super) struct Found {
+    pub(super) next: State,
+    /// Half the sum of squares of all rows before the step.
+    pub(super) loss: f64,
+    /// Largest change of a coefficient or parameter.
+    pub(super) change: f64,
+    /// Logarithm of the evidence, up to a constant.
+    pub(super) evidence: f64,
+    /// Numbers that the answer takes from an observation, at most: the trace of its influence matrix, by row.
+    pub(super) used: f64,
+    pub(super) covariance: Covariance,
+}
+
+impl<'a> Solver<'a> {
+    /// Splines over the interval of all points. The scene must not be refused.
+    pub(super) fn over(bound: &'a Bound) -> Self {
+        let schema = bound.problem.scene().schema;
+        let breakpoints = &cells::breakpoints(bound)[..];
+        let heads = Heads::new(bound, &cells::degrees(schema).unwrap_or_default(), breakpoints);
+        let kernels = bound.problem.scene().double();
+        let group = |(at, kernel)| {
+            let places = cells::places(bound, at, breakpoints);
+            Group::new(&schema.groups[at], kernel, &heads, &places, &bound.columns[at])
+        };
+        let groups: Vec<Group> = kernels.into_iter().take(schema.groups.len()).enumerate().map(group).collect();
+        let mut count = 0;
+        let mut next = || {
+            count += 1;
+            count - 1
+        };
+        let classes = schema.groups.iter().map(|g| g.terms.iter().map(|_| next()).collect()).collect();
+        let roughness = schema.heads.iter().map(|_| next()).collect();
+        let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
+        let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len());
+        let scalars = bound.scalars.clone();
+        Self { bound, heads, groups, classes, roughness, sizes, order: 2, scalars, triangle }
+    }
+
+    /// True if a source is sought.
+    pub(super) fn has_sources(&self) -> bool {
+        self.bound.problem.scene().schema.heads.iter().any(|head| head.source)
+    }
+
+    /// Where the solver starts: heads at their offsets, noise as differences of the data say.
+    pub(super) fn first(&self, noise: &Noise) -> State {
+        let schema = self.bound.problem.scene().schema;
+        let mut classes = Vec::new();
+        for (at, group) in schema.groups.iter().enumerate() {
+            for (term, declared) in group.terms.iter().enumerate() {
+                let known = self.bound.sizes[at][term] / declared.weight.sqrt();
+                classes.push(match noise.of(at, term) {
+                    Some(found) if declared.within.is_none() => {
+                        let least = LEAST_NOISE * found.spread.max(f64::MIN_POSITIVE);
+                        let size = found.deviation.max(least);
+                        Class::open(size, Guess { size, count: NOISE_COUNT, least })
+                    }
+                    None if declared.within.is_none() && declared.kind == TermKind::Observation => {
+                        let size = 1e-2 * known;
+                        Class::open(size, Guess { size, count: NOISE_COUNT, least: 1e-9 * known })
+                    }
+                    _ => Class::known(known),
+                });
+            }
+        }
+        classes.extend(schema.heads.iter().map(|_| rough()));
+        State {
+            theta: vec![0.0; self.heads.len()],
+            learned: vec![0.0; self.bound.learned.len()],
+            classes,
+            tolerance: LOOSE,
+            step: 0,
+        }
+    }
+
+    /// Holds the noise of a state at what differences of the data say, and at a share of their spread at least.
+    pub(super) fn hold_noise(&self, state: &mut State, noise: &Noise, share: f64) {
+        for found in &noise.observations {
+            let class = self.classes[found.group][found.term];
+            state.classes[class] = Class::known(found.deviation.max(share * found.spread));
+        }
+    }
+
+    /// Takes over learned scalars; returns their derivatives by their parameters.
+    fn set_learned(&mut self, parameters: &[f64]) -> Vec<f64> {
+        let found = self.bound.learned.iter().zip(parameters).map(|(learned, &parameter)| learned.map.at(parameter));
+        let found: Vec<(f64, f64)> = found.collect();
+        for (learned, (value, _)) in self.bound.learned.iter().zip(&found) {
+            self.scalars[learned.slot] = *value;
+        }
+        found.into_iter().map(|(_, slope)| slope).collect()
+    }
+
+    /// Scalars that programs read, at parameters of the learned ones.
+    pub(super) fn scalars(&mut self, learned: &[f64]) -> &[f64] {
+        self.set_learned(learned);
+        &self.scalars
+    }
+
+    /// Sizes of equations as the sum of the magnitudes of their terms at a state; what units and data say where that is zero.
+    fn size(&mut self, state: &State) {
+        self.set_learned(&state.learned);
+        for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
+            let magnitudes = group.magnitudes(&self.heads, &state.theta, &self.scalars);
+            for (term, &natural) in group.schema.terms.iter().zip(&self.bound.sizes[at]) {
+                for row in term.first..term.first + term.rows {
+                    let squares = magnitudes[row].iter().map(|x| x * x).sum::<f64>();
+                    let size = (squares / group.len() as f64).sqrt();
+                    let is_size = size.is_finite() && size > 1e-9 * natural && term.within.is_none();
+                    self.sizes[at][row] =
+                        if is_size { size / term.weight.sqrt() } else { natural / term.weight.sqrt() };
+                }
+            }
+        }
+    }
+
+    /// What a row of a group is divided by.
+    fn sigma(&self, state: &State, group: usize, term: usize, row: usize) -> f64 {
+        let declared = &self.groups[group].schema.terms[term];
+        match declared.kind {
+            TermKind::Observation => state.classes[self.classes[group][term]].size,
+            _ if declared.within.is_some() => self.sizes[group][row],
+            _ => state.tolerance * self.sizes[group][row],
+        }
+    }
+
+    /// Rows about a state with their classes, in the order of their unknowns; what is not finite is a fault.
+    fn rows(&mut self, state: &State, phase: Phase) -> Result<Vec<(Row, usize)>, Fault> {
+        let slopes = self.set_learned(&state.learned);
+        let mut rows = Vec::new();
+        for (at, group) in self.groups.iter().enumerate() {
+            let takes_part = |term: &crate::schema::Term| phase == Phase::Solve || term.kind == TermKind::Observation;
+            if group.len() == 0 || !group.schema.terms.iter().any(takes_part) {
+                continue;
+            }
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, true);
+            for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| takes_part(term)) {
+                let loss = self.bound.losses[at][number];
+                for row in term.first..term.first + term.rows {
+                    let sigma = self.sigma(state, at, number, row);
+                    for p in 0..group.len() {
+                        let misfit = found.row(row, p);
+                        if !misfit.is_finite() {
+                            let name = format!("{}.{}", group.schema.name, term.name);
+                            return Err(Fault::residual(name, Some(p)));
+                        }
+                        let factor = loss.weight(misfit / sigma).sqrt() / sigma;
+                        let row = group.row(&self.heads, (&found, row, p), &slopes, factor);
+                        rows.push((row, self.classes[at][number]));
+                    }
+                }
+            }
+        }
+        let known = self.classes.iter().map(Vec::len).sum::<usize>() + self.roughness.len();
+        rows.extend(self.priors_of(state, phase));
+        for head in 0..self.heads.bases.len() {
+            for function in 0..self.heads.bases[head].len() {
+                let number = self.heads.numbers(head, function)[0];
+                let value = RIDGE * state.theta[number];
+                rows.push((Row { first: number, slopes: vec![RIDGE], shared: vec![0.0; slopes.len()], value }, known));
+            }
+        }
+        rows.sort_by_key(|(row, _)| row.first);
+        for (at, parameter) in state.learned.iter().enumerate() {
+            let mut shared = vec![0.0; slopes.len()];
+            shared[at] = LEARNED.recip();
+            rows.push((Row { first: 0, slopes: Vec::new(), shared, value: parameter / LEARNED }, known));
+        }
+        Ok(rows)
+    }
+
+    /// Order of a head's derivative that its prior keeps small: fields as if sources were their highest derivatives.
+    fn order_of(&self, head: usize) -> usize {
+        let least = self.heads.bases.iter().map(|basis| basis.degree).min().unwrap_or(0);
+        let above = self.heads.bases[head].degree - least;
+        self.order + above
+    }
+
+    /// Rows that keep sources smooth, or fields smooth while only data are regressed.
+    fn priors_of(&self, state: &State, phase: Phase) -> Vec<(Row, usize)> {
+        let mut rows = Vec::new();
+        for (head, declared) in self.bound.problem.scene().schema.heads.iter().enumerate() {
+            if declared.source != (phase == Phase::Solve) {
+                continue;
+            }
+            self.add_roughness(state, head, &mut rows);
+        }
+        rows.sort_by_key(|(row, _)| row.first);
+        rows
+    }
+
+    fn add_roughness(&self, state: &State, head: usize, rows: &mut Vec<(Row, usize)>) {
+        let (order, class) = (self.order_of(head), self.roughness[head]);
+        let size = state.classes[class].size;
+        for (first, factors, width) in self.heads.bases[head].differences(order) {
+            let numbers = self.heads.numbers(head, first);
+            let weight = width.sqrt() / size;
+            let mut row = Row { first: numbers[0], ..Row::default() };
+            row.slopes = vec![0.0; numbers[order] + 1 - numbers[0]];
+            row.shared = vec![0.0; state.learned.len()];
+            for (&number, factor) in numbers.iter().zip(&factors[..=order]) {
+                row.slopes[number - numbers[0]] = weight * factor;
+                row.value += weight * factor * state.theta[number];
+            }
+            rows.push((row, class));
+        }
+    }
+
+    /// Half the sum of squares of all rows, robust ones by what they cost.
+    fn loss(&mut self, state: &State, phase: Phase) -> f64 {
+        self.set_learned(&state.learned);
+        let mut sum = 0.0;
+        for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            for (number, term) in group.schema.terms.iter().enumerate() {
+                if phase == Phase::Regress && term.kind != TermKind::Observation {
+                    continue;
+                }
+                let loss = self.bound.losses[at][number];
+                for row in term.first..term.first + term.rows {
+                    let sigma = self.sigma(state, at, number, row);
+                    sum += (0..group.len()).map(|p| loss.rho(found.row(row, p) / sigma)).sum::<f64>();
+                }
+            }
+        }
+        sum + self.priors_of(state, phase).iter().map(|(row, _)| 0.5 * row.value.powi(2)).sum::<f64>()
+    }
+
+    /// One step.
+    pub(super) fn step(&mut self, state: &State, phase: Phase) -> Result<Option<Found>, Fault> {
+        self.size(state);
+        let rows = self.rows(state, phase)?;
+        self.triangle.clear();
+        let mut scratch = Vec::new();
+        rows.iter().for_each(|(row, _)| self.triangle.add(row, &mut scratch));
+        let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
+        let covariance = self.triangle.covariance();
+        let mut tallies = vec![Tally::default(); state.classes.len() + 1];
+        let mut loss = 0.0;
+        for (row, class) in &rows {
+            let tally = &mut tallies[*class];
+            let along: f64 = row.slopes.iter().zip(&step[row.first..]).map(|(a, x)| a * x).sum();
+            let beside: f64 = row.shared.iter().zip(&shared).map(|(a, x)| a * x).sum();
+            tally.squares += (row.value + along + beside).powi(2);
+            tally.count += 1.0;
+            tally.used += covariance.of(row.first, &row.slopes, &row.shared).max(0.0);
+            loss += 0.5 * row.value.powi(2);
+        }
+        let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
+        let sizes: f64 = state.classes.iter().zip(&tallies).map(|(class, tally)| tally.count * class.size.ln()).sum();
+        let evidence = -0.5 * squares - sizes - self.triangle.log_determinant() + self.log_differences(phase);
+        let terms = self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
+        let observed = terms.filter(|(_, term)| term.kind == TermKind::Observation);
+        let used = observed.map(|(&class, term)| tallies[class].used / term.rows as f64).fold(0.0, f64::max);
+        let before = self.loss(state, phase);
+        let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
+        let mut next = state.clone();
+        for _ in 0..HALVINGS {
+            next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
+            next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
+            let after = self.loss(&next, phase);
+            if after.is_finite() && after <= before * (1.0 + 1e-9) + 1e-12 {
+                break;
+            }
+            share *= 0.5;
+        }
+        let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
+        for (class, tally) in next.classes.iter_mut().zip(&tallies).filter(|(_, tally)| tally.squares > 0.0) {
+            class.renew(*tally);
+        }
+        if phase == Phase::Solve {
+            next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
+        }
+        next.step += 1;
+        Ok(Some(Found { next, loss, change, evidence, used, covariance }))
+    }
+
+    /// Logarithm of the determinant of the differences that priors keep small, as functions of all but the first coefficients.
+    fn log_differences(&self, phase: Phase) -> f64 {
+        let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
+        let own = heads.filter(|(_, head)| head.source == (phase == Phase::Solve));
+        own.map(|(head, _)| {
+            let order = self.order_of(head);
+            let differences = self.heads.bases[head].differences(order);
+            differences.map(|(_, factors, width)| (factors[order].abs() * width.sqrt()).ln()).sum::<f64>()
+        })
+        .sum()
+    }
+
+    /// Misfits of all terms at their places, by group, and the noise of observations.
+    pub(super) fn misfits(&mut self, state: &State) -> Vec<Vec<(Vec<f64>, Option<f64>)>> {
+        self.set_learned(&state.learned);
+        let of = |(at, group): (usize, &Group)| {
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            let terms = group.schema.terms.iter().enumerate().map(|(number, term)| {
+                let rows = term.first..term.first + term.rows;
+                let misfits =
+                    rows.flat_map(|row| (0..group.len()).map(move |p| (row, p))).map(|(row, p)| found.row(row, p));
+                let is_data = term.kind == TermKind::Observation;
+                (misfits.collect(), is_data.then(|| state.classes[self.classes[at][number]].size))
+            });
+            terms.collect()
+        };
+        self.groups.iter().enumerate().map(of).collect()
+    }
+}
+
+impl State {
+    /// Roughness of all heads as it is before any row is seen.
+    pub(super) fn forget_roughness(&mut self, solver: &Solver<'_>) {
+        for &class in &solver.roughness {
+            self.classes[class] = rough();
+        }
+    }
+
+    pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
+        let of = |part: fn(&Class) -> f64| self.classes.iter().map(part).collect::<Vec<f64>>();
+        saved
+            .with(&format!("{prefix}theta"), &self.theta)
+            .with(&format!("{prefix}learned"), &self.learned)
+            .with(&format!("{prefix}sizes"), &of(|class| class.size))
+            .with(&format!("{prefix}went"), &of(|class| class.went))
+            .with(&format!("{prefix}haste"), &of(|class| class.haste))
+            .with(&format!("{prefix}tolerance"), &[self.tolerance])
+            .with_counter(&format!("{prefix}step"), self.step)
+    }
+
+    /// Takes over what [`State::save`] gave of the same problem.
+    pub(super) fn restore(&mut self, saved: &state::State, prefix: &str) -> Result<(), Fault> {
+        self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
+        self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
+        let of = |name: &str| saved.sized::<f64>(&format!("{prefix}{name}"), self.classes.len());
+        let (sizes, went, haste) = (of("sizes")?, of("went")?, of("haste")?);
+        for (at, class) in self.classes.iter_mut().enumerate() {
+            (class.size, class.went, class.haste) = (sizes[at], went[at], haste[at]);
+        }
+        [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
+        self.step = saved.counter(&format!("{prefix}step"))?;
+        Ok(())
+    }
+}
+
+/// Rough beyond measure, until the first step says how rough.
+fn rough() -> Class {
+    Class::open(1e9, Guess { size: 0.0, count: 0.0, least: 1e-12 })
+}
