@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use nisp::local::Local;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Points, Problem, Settings, recover, scene};
+use nisp::{Carrier, Points, Problem, Settings, recover, scene};
 
 nisp::pde! {
     /// A loaded cube.
@@ -124,7 +124,8 @@ fn errors(nu: f64) -> (f64, f64) {
     problem.set_group("faces", bound(on, on_faces), moved).unwrap();
     let local = Local { cells: 4, coarser: 1, degree: 2, tests: 2, finer: 1, source_dimensions: 3, patches: None };
     let budget = Some(Duration::from_secs(3600));
-    let settings = Settings { local: Some(local), iterations: Some(30), budget, threads: 2, ..Settings::default() };
+    let settings =
+        Settings { carrier: Carrier::Local(local), iterations: Some(30), budget, threads: 2, ..Settings::default() };
     let solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
     // A lattice of four cells leaves more of the balance than the verdict takes for solved.
     assert!(matches!(solution.status, Status::Converged | Status::Inconsistent), "{:?}", solution.status);

@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use nisp::local::{Local, Patches};
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Points, Problem, SceneRef, Settings, Solution, recover, scene};
+use nisp::{Carrier, Points, Problem, SceneRef, Settings, Solution, recover, scene};
 
 nisp::pde! {
     /// A drumhead.
@@ -109,7 +109,8 @@ fn solve(problem: &Problem, patches: Option<Patches>, threads: usize) -> Solutio
     let local = Local { cells: 24, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 2, patches };
     // Steps end the run, not time.
     let budget = Some(Duration::from_secs(3600));
-    let settings = Settings { local: Some(local), iterations: Some(40), budget, threads, ..Settings::default() };
+    let settings =
+        Settings { carrier: Carrier::Local(local), iterations: Some(40), budget, threads, ..Settings::default() };
     recover(problem, &settings, &mut |_| Flow::Continue).unwrap()
 }
 
@@ -217,7 +218,7 @@ fn a_lattice_without_cells_is_refused() {
     problem.set_parameter("F", 3.0).unwrap();
     problem.set_group("beam", vec![0.0, 1.0, 2.0].into(), Vec::new()).unwrap();
     let local = Local { cells: 0, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 1, patches: None };
-    let settings = Settings { local: Some(local), ..Settings::default() };
+    let settings = Settings { carrier: Carrier::Local(local), ..Settings::default() };
     let refused = recover(&problem, &settings, &mut |_| Flow::Continue).err().unwrap().to_string();
     assert!(refused.contains("fewer cells than a test"), "{refused}");
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use nisp::local::Local;
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Optimizer, RecoverError, Settings, Solution, Width, recover};
+use nisp::{Carrier, Optimizer, RecoverError, Settings, Solution, Width, recover};
 use nisp_data::Table;
 use nisp_equations::{Prepared, Request, catalogue, noisy_copy};
 
@@ -113,7 +113,15 @@ fn without_time_for_the_fine_lattice_the_answer_is_said_to_be_coarse() {
     let entry = catalogue().into_iter().find(|entry| entry.name == "membrane").unwrap();
     let membrane = entry.prepare(&Request::default()).unwrap();
     let local = membrane.local.map(|local| Local { cells: 18, ..local });
-    let solution = run(&membrane, &Settings { local, budget: Some(Duration::ZERO), ..Settings::default() }).unwrap();
+    let solution = run(
+        &membrane,
+        &Settings {
+            carrier: local.map_or(Carrier::Auto, Carrier::Local),
+            budget: Some(Duration::ZERO),
+            ..Settings::default()
+        },
+    )
+    .unwrap();
     assert_eq!(solution.status, Status::NotConverged);
     let says = |what: &str| solution.warnings.iter().any(|warning| warning.message.contains(what));
     assert!(says("before the equations were solved") && says("coarse"), "{:?}", solution.warnings);

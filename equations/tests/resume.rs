@@ -3,7 +3,7 @@
 use nisp::local::Local;
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Checkpoint, Optimizer, RecoverError, Settings, Solution, Width, recover, resume};
+use nisp::{Carrier, Checkpoint, Optimizer, RecoverError, Settings, Solution, Width, recover, resume};
 use nisp_equations::{Prepared, Request, catalogue};
 
 fn prepared(entry: &str, scene: Option<&str>, network: bool) -> Prepared {
@@ -90,7 +90,8 @@ fn local_functions_go_on_on_either_lattice() {
     let membrane = prepared("membrane", None, false);
     // Sixteen cells first, then these.
     let local = membrane.local.map(|local| Local { cells: 18, finer: 1, ..local });
-    let settings = Settings { local, ..settings(Optimizer::Auto, Width::F64) };
+    let settings =
+        Settings { carrier: local.map_or(Carrier::Auto, Carrier::Local), ..settings(Optimizer::Auto, Width::F64) };
     let coarse = run(&membrane, &settings, 2, 2, None);
     assert_eq!(coarse.checkpoint.iterations(), 1, "the step before the last, which is repeated");
     stops_leave_no_trace(&membrane, &settings, &[3, 8], 9);

@@ -2,7 +2,7 @@
 //!
 //! Every loss grows no faster than the square and is concave as a function of it. A square through the present misfit,
 //! [`Loss::weight`] times as steep, is then nowhere below it, which is what both ways of minimising a robust loss rest on:
-//! rows that square to it ([`Loss::row`]), and weights that are renewed in every step ([`Loss::majorant`]).
+//! rows that square to it (`Loss::row`), and weights that are renewed in every step (`Loss::majorant`).
 
 /// How the misfit of a row counts; thresholds in units of the row's standard deviation, or of its natural size where none
 /// is known.

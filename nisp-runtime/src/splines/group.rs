@@ -15,13 +15,24 @@ const LANES: usize = 16;
 pub(super) struct Group {
     pub(super) schema: &'static schema::Group,
     kernel: GroupKernel<f64>,
-    /// Places in the engine's units, with the cell of each.
-    places: Vec<(usize, f64)>,
+    /// The cell of each place.
+    cells: Vec<usize>,
     stride: usize,
     coordinates: Vec<f64>,
     columns: Vec<f64>,
     /// Heads that the group reads.
     read: Vec<usize>,
+    /// By head and order of a derivative that the group reads, the splines at its places.
+    lines: Vec<Lines>,
+    /// By jet: its derivatives as indices into the lines, with their coefficients.
+    operators: Vec<Vec<(usize, f64)>>,
+}
+
+/// A derivative of a head's splines at all places, `[place][spline]`.
+struct Lines {
+    head: usize,
+    order: usize,
+    values: Vec<f64>,
 }
 
 /// Values of all rows at all places, and their derivatives.
@@ -44,33 +55,57 @@ impl Group {
     ) -> Self {
         let stride = places.len().next_multiple_of(LANES);
         let padded = |values: &[f64]| (0..stride).map(|p| values[p.min(places.len() - 1)]).collect::<Vec<_>>();
+        let places_in_cells: Vec<(usize, f64)> = places.iter().map(|&at| (heads.cell(at), at)).collect();
+        let mut lines: Vec<Lines> = Vec::new();
+        let mut index = |head: usize, order: usize| {
+            let known = lines.iter().position(|lines| (lines.head, lines.order) == (head, order));
+            known.unwrap_or_else(|| {
+                let basis = &heads.bases[head];
+                let line = |&(cell, at): &(usize, f64)| basis.line(cell, at, order).into_iter().take(basis.degree + 1);
+                lines.push(Lines { head, order, values: places_in_cells.iter().flat_map(line).collect() });
+                lines.len() - 1
+            })
+        };
+        let operator = |jet: &schema::Jet| {
+            jet.operator.iter().map(|(order, c)| (index(jet.head, usize::from(order[0])), *c)).collect()
+        };
+        let operators = schema.jets.iter().map(operator).collect();
         let mut read: Vec<usize> = schema.jets.iter().map(|jet| jet.head).collect();
         read.sort_unstable();
         read.dedup();
         Self {
             schema,
             kernel,
-            places: places.iter().map(|&at| (heads.cell(at), at)).collect(),
+            cells: places_in_cells.into_iter().map(|(cell, _)| cell).collect(),
             stride,
             coordinates: padded(places),
             columns: columns.iter().flat_map(|column| padded(column)).collect(),
             read,
+            lines,
+            operators,
         }
     }
 
     /// Number of places.
     pub(super) fn len(&self) -> usize {
-        self.places.len()
+        self.cells.len()
     }
 
     /// What the heads say at the places.
     pub(super) fn facts(&self, heads: &Heads, theta: &[f64]) -> Facts {
         let mut jets = vec![0.0; self.schema.jets.len() * self.stride];
-        for (jet, out) in self.schema.jets.iter().zip(jets.chunks_exact_mut(self.stride.max(1))) {
-            for (&place, out) in self.places.iter().zip(out.iter_mut()) {
-                let terms = jet.operator.iter();
-                *out =
-                    terms.map(|(order, c)| c * heads.derivative(jet.head, place, usize::from(order[0]), theta)).sum();
+        let all = self.schema.jets.iter().zip(&self.operators).zip(jets.chunks_exact_mut(self.stride.max(1)));
+        for ((jet, operator), out) in all {
+            let width = heads.bases[jet.head].degree + 1;
+            for (index, coefficient) in operator {
+                let lines = &self.lines[*index];
+                let factor = coefficient * heads.scale[jet.head];
+                let offset = if lines.order == 0 { coefficient * heads.offset[jet.head] } else { 0.0 };
+                for ((out, &cell), line) in out.iter_mut().zip(&self.cells).zip(lines.values.chunks_exact(width)) {
+                    let numbers = heads.numbers(jet.head, cell);
+                    let sum: f64 = numbers.iter().zip(line).map(|(&n, b)| theta[n] * b).sum();
+                    *out += offset + factor * sum;
+                }
             }
             if let Some(last) = self.len().checked_sub(1) {
                 let last = out[last];
@@ -137,7 +172,7 @@ impl Group {
         by: &[f64],
         factor: f64,
     ) -> Row {
-        let (cell, at) = self.places[p];
+        let cell = self.cells[p];
         let (first, width) = heads.span(&self.read, cell);
         let mut slopes = vec![0.0; width];
         let bar = |number: usize| factor * found.bars[row][number * found.stride + p];
@@ -146,10 +181,10 @@ impl Group {
             if seed == 0.0 {
                 continue;
             }
-            let basis = &heads.bases[jet.head];
-            for (order, coefficient) in jet.operator {
-                let line = basis.line(cell, at, usize::from(order[0]));
-                for (&n, value) in heads.numbers(jet.head, cell).iter().zip(&line[..=basis.degree]) {
+            let width = heads.bases[jet.head].degree + 1;
+            for (index, coefficient) in &self.operators[number] {
+                let line = &self.lines[*index].values[p * width..][..width];
+                for (&n, value) in heads.numbers(jet.head, cell).iter().zip(line) {
                     slopes[n - first] += seed * coefficient * value;
                 }
             }

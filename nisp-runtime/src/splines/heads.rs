@@ -10,7 +10,7 @@ pub(super) struct Heads {
     pub(super) bases: Vec<Basis>,
     /// By head and function: the number of its coefficient.
     numbers: Vec<Vec<usize>>,
-    offset: Vec<f64>,
+    pub(super) offset: Vec<f64>,
     pub(super) scale: Vec<f64>,
     /// Numbers from the first to the last of a cell's functions, at most.
     pub(super) band: usize,

@@ -27,6 +27,7 @@ use crate::solve::state;
 use group::Group;
 use solver::{Phase, Solver, State, TOLERANCE};
 use triangle::Covariance;
+use weighed::{Class, restore_classes, save_classes};
 
 /// Orders of a source's derivative that may be the one that is kept small, the first tried first.
 const ORDERS: [usize; 3] = [2, 1, 3];
@@ -88,7 +89,12 @@ struct Place {
     /// Index of the order after the last that is to be tried.
     orders: usize,
     phase: Phase,
+    /// Steps of the phase.
+    since: u64,
     state: State,
+    /// Sizes of all classes when an order's data have been regressed, and when its equations come in.
+    regressed: Vec<Class>,
+    solved: Vec<Class>,
     /// The best order's index, its evidence and its iterate.
     best: Option<(usize, f64, State)>,
 }
@@ -105,25 +111,29 @@ pub(crate) fn solve(
     let mut solver = Solver::over(bound);
     let mut place = Place::first(solver.first(noise), solver.has_sources());
     let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY };
-    match (from, cells::middle(bound)) {
+    let begun = |saved: &&state::State| saved.counter("orders").is_ok();
+    match (from.filter(begun), cells::middle(bound)) {
         (Some(saved), _) => place.restore(saved)?,
         // A part of a long record says how smooth the sources are, and how large the noise is.
         (None, Some((low, high))) => {
             let part = bound.between(low, high);
             let mut solver = Solver::over(&part);
             let mut trial = Place::first(solver.first(noise), solver.has_sources());
-            if run.go(&mut solver, &mut trial)? == Status::Converged
+            // A run that ends here begins anew.
+            let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
+            if run.go(&mut solver, &mut trial, &save)? == Status::Converged
                 && let Some((order, _, state)) = trial.best
             {
                 (place.order, place.orders) = (order, order + 1);
-                place.state.classes = state.classes;
+                (place.state.classes, place.solved) = (trial.regressed, state.classes);
                 place.state.step = trial.state.step;
             }
         }
         (None, None) => {}
     }
-    let mut status = run.go(&mut solver, &mut place)?;
+    let mut status = run.go(&mut solver, &mut place, &Place::save)?;
     let loss = run.loss;
+    let checkpoint = place.save();
     let mut warnings = Vec::new();
     if let Some((order, _, state)) = place.best.clone() {
         solver.order = ORDERS[order];
@@ -140,7 +150,6 @@ pub(crate) fn solve(
         let message = "the data and the equations leave some of the unknowns open: give more conditions or data".into();
         warnings.push(Warning { kind: WarningKind::Undetermined, message });
     }
-    let checkpoint = place.save();
     let scalars = solver.scalars(&place.state.learned).to_vec();
     let misfits = solver.misfits(&place.state);
     let schema = bound.problem.scene().schema;
@@ -200,38 +209,43 @@ struct Run<'m> {
 
 impl Run<'_> {
     /// Takes steps until all orders that are to be tried have been, or steps or time are spent.
-    fn go(&mut self, solver: &mut Solver<'_>, place: &mut Place) -> Result<Status, Fault> {
-        let mut since = 0;
+    fn go(
+        &mut self,
+        solver: &mut Solver<'_>,
+        place: &mut Place,
+        save: &dyn Fn(&Place) -> state::State,
+    ) -> Result<Status, Fault> {
+        let mut taken = 0;
         while place.order < place.orders {
             solver.order = ORDERS[place.order];
             let elapsed = self.start.elapsed().as_secs_f64();
             let spent = self.limits.budget.is_some_and(|b| elapsed + 2.0 * self.longest > b.as_secs_f64());
-            if (spent || place.state.step >= self.limits.iterations) && self.loss.is_finite() {
+            if (spent || place.state.step >= self.limits.iterations) && taken > 0 {
                 return Ok(Status::Budget);
             }
             let Some(found) = solver.step(&place.state, place.phase)? else { return Ok(Status::NotConverged) };
             self.longest = self.longest.max(self.start.elapsed().as_secs_f64() - elapsed);
             let is_tight = place.state.tolerance <= TOLERANCE;
             place.state = found.next;
-            since += 1;
+            (place.since, taken) = (place.since + 1, taken + 1);
             self.loss = found.loss;
-            let open = place.state.classes.iter().filter(|class| class.open.is_some() && class.gain.is_finite());
-            let moved: f64 = open.map(|class| class.gain).sum();
-            let resting = moved < RESTING && since > 1;
+            let moved: f64 = place.state.classes.iter().map(|class| class.gain).sum();
+            let resting = moved < RESTING && place.since > 1;
             match place.phase {
-                Phase::Regress if resting || since >= REGRESS => {
-                    (place.phase, since) = (Phase::Solve, 0);
-                    place.state.forget_roughness(solver);
+                Phase::Regress if resting || place.since >= REGRESS => {
+                    (place.phase, place.since) = (Phase::Solve, 0);
+                    place.regressed.clone_from(&place.state.classes);
+                    place.state.take_roughness(solver, &place.solved);
                 }
-                Phase::Solve if is_tight && (resting && found.change < SETTLED || since >= MOST_STEPS) => {
-                    since = 0;
+                Phase::Solve if is_tight && (resting && found.change < SETTLED || place.since >= MOST_STEPS) => {
+                    place.since = 0;
                     place.next(found.evidence);
-                    place.state.forget_roughness(solver);
+                    place.state.take_roughness(solver, &place.solved);
                 }
                 _ => {}
             }
             let elapsed_s = self.start.elapsed().as_secs_f64();
-            let checkpoint = &|| place.save();
+            let checkpoint = &|| save(place);
             let progress = Progress { iteration: place.state.step, elapsed_s, loss: self.loss, checkpoint };
             if (self.monitor)(progress) == Flow::Stop {
                 return Ok(Status::Interrupted);
@@ -245,7 +259,17 @@ impl Place {
     /// The start; without sources, orders make no difference.
     fn first(state: State, has_sources: bool) -> Self {
         let orders = if has_sources { ORDERS.len() } else { 1 };
-        Self { order: 0, orders, phase: Phase::Regress, state, best: None }
+        let classes = state.classes.clone();
+        Self {
+            order: 0,
+            orders,
+            phase: Phase::Regress,
+            since: 0,
+            state,
+            regressed: classes.clone(),
+            solved: classes,
+            best: None,
+        }
     }
 
     /// Keeps the iterate if its order is the best so far, and turns to the next order.
@@ -262,8 +286,10 @@ impl Place {
             .with_counter("order", self.order as u64)
             .with_counter("orders", self.orders as u64)
             .with_counter("phase", u64::from(self.phase == Phase::Solve))
+            .with_counter("since", self.since)
             .with_counter("iterations", self.state.step)
             .with_counter("tried", u64::from(self.best.is_some()));
+        let saved = save_classes(&self.solved, save_classes(&self.regressed, saved, "regressed "), "solved ");
         let Some((order, evidence, state)) = &self.best else { return saved };
         state.save(saved.with("evidence", &[*evidence]).with_counter("best", *order as u64), "best ")
     }
@@ -281,6 +307,9 @@ impl Place {
             self.best = Some((order("best")?.min(ORDERS.len() - 1), evidence, best));
         }
         self.state.restore(saved, "")?;
+        self.since = saved.counter("since")?;
+        restore_classes(&mut self.regressed, saved, "regressed ")?;
+        restore_classes(&mut self.solved, saved, "solved ")?;
         (self.order, self.orders) = (order("order")?, order("orders")?);
         self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
         Ok(())

@@ -4,7 +4,7 @@ use super::cells;
 use super::group::Group;
 use super::heads::Heads;
 use super::triangle::{Covariance, Row, Triangle};
-use super::weighed::{Class, Guess, Tally};
+use super::weighed::{Class, Guess, Tally, restore_classes, save_classes};
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::TermKind;
@@ -172,8 +172,8 @@ impl<'a> Solver<'a> {
         for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
             let magnitudes = group.magnitudes(&self.heads, &state.theta, &self.scalars);
             for (term, &natural) in group.schema.terms.iter().zip(&self.bound.sizes[at]) {
-                for row in term.first..term.first + term.rows {
-                    let squares = magnitudes[row].iter().map(|x| x * x).sum::<f64>();
+                for (row, magnitudes) in magnitudes.iter().enumerate().skip(term.first).take(term.rows) {
+                    let squares = magnitudes.iter().map(|x| x * x).sum::<f64>();
                     let size = (squares / group.len() as f64).sqrt();
                     let is_size = size.is_finite() && size > 1e-9 * natural && term.within.is_none();
                     self.sizes[at][row] =
@@ -193,10 +193,12 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Rows about a state with their classes, in the order of their unknowns; what is not finite is a fault.
-    fn rows(&mut self, state: &State, phase: Phase) -> Result<Vec<(Row, usize)>, Fault> {
+    /// Rows about a state with their classes, in the order of their unknowns, and what [`Solver::loss`] makes of them; what is
+    /// not finite is a fault.
+    fn rows(&mut self, state: &State, phase: Phase) -> Result<(Vec<(Row, usize)>, f64), Fault> {
         let slopes = self.set_learned(&state.learned);
         let mut rows = Vec::new();
+        let mut cost = 0.0;
         for (at, group) in self.groups.iter().enumerate() {
             let takes_part = |term: &crate::schema::Term| phase == Phase::Solve || term.kind == TermKind::Observation;
             if group.len() == 0 || !group.schema.terms.iter().any(takes_part) {
@@ -213,6 +215,7 @@ impl<'a> Solver<'a> {
                             let name = format!("{}.{}", group.schema.name, term.name);
                             return Err(Fault::residual(name, Some(p)));
                         }
+                        cost += loss.rho(misfit / sigma);
                         let factor = loss.weight(misfit / sigma).sqrt() / sigma;
                         let row = group.row(&self.heads, (&found, row, p), &slopes, factor);
                         rows.push((row, self.classes[at][number]));
@@ -221,7 +224,9 @@ impl<'a> Solver<'a> {
             }
         }
         let known = self.classes.iter().map(Vec::len).sum::<usize>() + self.roughness.len();
-        rows.extend(self.priors_of(state, phase));
+        let priors = self.priors_of(state, phase);
+        cost += priors.iter().map(|(row, _)| 0.5 * row.value.powi(2)).sum::<f64>();
+        rows.extend(priors);
         for head in 0..self.heads.bases.len() {
             for function in 0..self.heads.bases[head].len() {
                 let number = self.heads.numbers(head, function)[0];
@@ -235,7 +240,7 @@ impl<'a> Solver<'a> {
             shared[at] = LEARNED.recip();
             rows.push((Row { first: 0, slopes: Vec::new(), shared, value: parameter / LEARNED }, known));
         }
-        Ok(rows)
+        Ok((rows, cost))
     }
 
     /// Order of a head's derivative that its prior keeps small: fields as if sources were their highest derivatives.
@@ -298,7 +303,7 @@ impl<'a> Solver<'a> {
     /// One step.
     pub(super) fn step(&mut self, state: &State, phase: Phase) -> Result<Option<Found>, Fault> {
         self.size(state);
-        let rows = self.rows(state, phase)?;
+        let (rows, before) = self.rows(state, phase)?;
         self.triangle.clear();
         let mut scratch = Vec::new();
         rows.iter().for_each(|(row, _)| self.triangle.add(row, &mut scratch));
@@ -321,7 +326,6 @@ impl<'a> Solver<'a> {
         let terms = self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
         let observed = terms.filter(|(_, term)| term.kind == TermKind::Observation);
         let used = observed.map(|(&class, term)| tallies[class].used / term.rows as f64).fold(0.0, f64::max);
-        let before = self.loss(state, phase);
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
         let mut next = state.clone();
         for _ in 0..HALVINGS {
@@ -335,9 +339,7 @@ impl<'a> Solver<'a> {
         }
         let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
-        for (class, tally) in next.classes.iter_mut().zip(&tallies).filter(|(_, tally)| tally.squares > 0.0) {
-            class.renew(*tally);
-        }
+        next.classes.iter_mut().zip(&tallies).for_each(|(class, tally)| class.renew(*tally));
         if phase == Phase::Solve {
             next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
         }
@@ -376,34 +378,24 @@ impl<'a> Solver<'a> {
 }
 
 impl State {
-    /// Roughness of all heads as it is before any row is seen.
-    pub(super) fn forget_roughness(&mut self, solver: &Solver<'_>) {
-        for &class in &solver.roughness {
-            self.classes[class] = rough();
-        }
+    /// Takes over the roughness of all heads.
+    pub(super) fn take_roughness(&mut self, solver: &Solver<'_>, from: &[Class]) {
+        solver.roughness.iter().for_each(|&class| self.classes[class].clone_from(&from[class]));
     }
 
     pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
-        let of = |part: fn(&Class) -> f64| self.classes.iter().map(part).collect::<Vec<f64>>();
-        saved
+        save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)
             .with(&format!("{prefix}learned"), &self.learned)
-            .with(&format!("{prefix}sizes"), &of(|class| class.size))
-            .with(&format!("{prefix}went"), &of(|class| class.went))
-            .with(&format!("{prefix}haste"), &of(|class| class.haste))
             .with(&format!("{prefix}tolerance"), &[self.tolerance])
             .with_counter(&format!("{prefix}step"), self.step)
     }
 
     /// Takes over what [`State::save`] gave of the same problem.
     pub(super) fn restore(&mut self, saved: &state::State, prefix: &str) -> Result<(), Fault> {
+        restore_classes(&mut self.classes, saved, prefix)?;
         self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
         self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
-        let of = |name: &str| saved.sized::<f64>(&format!("{prefix}{name}"), self.classes.len());
-        let (sizes, went, haste) = (of("sizes")?, of("went")?, of("haste")?);
-        for (at, class) in self.classes.iter_mut().enumerate() {
-            (class.size, class.went, class.haste) = (sizes[at], went[at], haste[at]);
-        }
         [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
         self.step = saved.counter(&format!("{prefix}step"))?;
         Ok(())

@@ -177,11 +177,11 @@ impl Triangle {
                 let outer = border.iter().enumerate().map(|(k, r)| r * found.corner[k * shared + j]).sum::<f64>();
                 *out = -(inner + outer) / row[0];
             }
-            for j in 1..width {
+            for (j, out) in column.iter_mut().enumerate().take(width).skip(1) {
                 let inner = (1..width).map(|k| row[k] * found.between(at + k, at + j)).sum::<f64>();
                 let others = &found.border[(at + j) * shared..][..shared];
                 let outer = border.iter().zip(others).map(|(r, c)| r * c).sum::<f64>();
-                column[j] = -(inner + outer) / row[0];
+                *out = -(inner + outer) / row[0];
             }
             let inner = (1..width).map(|k| row[k] * column[k]).sum::<f64>();
             let outer = border.iter().zip(&beside).map(|(r, c)| r * c).sum::<f64>();
@@ -231,7 +231,9 @@ impl Covariance {
 
 /// Cosine and sine that turn `(a, b)` into `(r, 0)`.
 fn rotation(a: f64, b: f64) -> (f64, f64) {
-    let r = a.hypot(b);
+    let square = a * a + b * b;
+    // Squares of tiny numbers vanish.
+    let r = if square > f64::MIN_POSITIVE / f64::EPSILON { square.sqrt() } else { a.hypot(b) };
     (a / r, b / r)
 }
 

@@ -1,5 +1,8 @@
 //! How much rows count: classes of rows whose size is known, or found by the evidence.
 
+use crate::solve::fault::Fault;
+use crate::solve::state::State;
+
 /// Rows of one kind, over their size.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Class {
@@ -43,9 +46,28 @@ const FARTHEST: f64 = 3.0;
 const HASTIER: f64 = 1.3;
 const MOST_HASTE: f64 = 4.0;
 
+/// Classes as plain numbers.
+pub(super) fn save_classes(classes: &[Class], saved: State, prefix: &str) -> State {
+    let of = |part: fn(&Class) -> f64| classes.iter().map(part).collect::<Vec<f64>>();
+    saved
+        .with(&format!("{prefix}sizes"), &of(|class| class.size))
+        .with(&format!("{prefix}went"), &of(|class| class.went))
+        .with(&format!("{prefix}haste"), &of(|class| class.haste))
+}
+
+/// Takes over what [`save_classes`] gave of the same problem.
+pub(super) fn restore_classes(classes: &mut [Class], saved: &State, prefix: &str) -> Result<(), Fault> {
+    let of = |name: &str| saved.sized::<f64>(&format!("{prefix}{name}"), classes.len());
+    let (sizes, went, haste) = (of("sizes")?, of("went")?, of("haste")?);
+    for (class, ((size, went), haste)) in classes.iter_mut().zip(sizes.into_iter().zip(went).zip(haste)) {
+        (class.size, class.went, class.haste) = (size, went, haste);
+    }
+    Ok(())
+}
+
 impl Class {
     pub(super) fn known(size: f64) -> Self {
-        Self { size, open: None, went: 0.0, gain: f64::INFINITY, haste: 1.0 }
+        Self { size, open: None, went: 0.0, gain: 0.0, haste: 1.0 }
     }
 
     pub(super) fn open(size: f64, guess: Guess) -> Self {
@@ -55,7 +77,8 @@ impl Class {
     /// Takes the size at which the evidence is stationary (MacKay 1992): the mean square of the rows, where those that the
     /// answer used up do not count.
     pub(super) fn renew(&mut self, tally: Tally) {
-        let Some(guess) = self.open else { return };
+        self.gain = 0.0;
+        let Some(guess) = self.open.filter(|_| tally.count > 0.0) else { return };
         let left = (tally.count - tally.used).max(LEAST_LEFT * tally.count) + guess.count;
         let square = (tally.squares * self.size.powi(2) + guess.count * guess.size.powi(2)) / left;
         let wanted = square.sqrt().max(guess.least);

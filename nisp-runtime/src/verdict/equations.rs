@@ -87,8 +87,8 @@ impl Judged<'_> {
         let unit = term.unit.text;
         let condition = self.facts.points <= FEW_POINTS;
         let mut worst: Option<Check> = None;
-        for row in term.first..term.first + term.rows {
-            let rms = root_mean_square(rows[row].iter().copied());
+        for (row, values) in rows.iter().enumerate().skip(term.first).take(term.rows) {
+            let rms = root_mean_square(values.iter().copied());
             let (kind, scale, limit, said) = if let Some(within) = term.within {
                 let within = within / self.bound.system.size(&term.unit);
                 ("tolerance", within, TOLERANCE, "its declared tolerance")
@@ -109,7 +109,7 @@ impl Judged<'_> {
                 scale * outward
             );
             let check = Check::new(kind, (name, term.name), (value, limit), message);
-            if worst.as_ref().is_none_or(|worst| !(check.value <= worst.value)) {
+            if worst.as_ref().is_none_or(|worst| check.value.total_cmp(&worst.value).is_gt()) {
                 worst = Some(check);
             }
         }

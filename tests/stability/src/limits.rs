@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 use nisp::local::Local;
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Optimizer, Points, Problem, Settings, Solution, Width, recover, scene};
+use nisp::{Carrier, Optimizer, Points, Problem, Settings, Solution, Width, recover, scene};
 use nisp_equations::{Request, catalogue};
 
 use crate::row::{Extent, Row};
@@ -65,7 +65,7 @@ fn solve(problem: &Problem, iterations: u64, seed: u64, local: Option<Local>) ->
         iterations: Some(iterations),
         budget: None,
         seed,
-        local,
+        carrier: local.map_or(Carrier::Network, Carrier::Local),
         ..Settings::default()
     };
     recover(problem, &settings, &mut |_| Flow::Continue).ok()

@@ -51,15 +51,7 @@ pub(super) fn observe(
         let place = name.span.into();
         let value = Expr { kind: ExprKind::Name(name.text.clone()), place };
         let body = TermBody::Observe { value, column: None, unit: None };
-        GroupItem::Term(Box::new(Term {
-            name,
-            body,
-            loss: loss.clone(),
-            weight,
-            within: within.clone(),
-            docs: docs.clone(),
-            place,
-        }))
+        GroupItem::Term(Box::new(Term { name, body, loss, weight, within: within.clone(), docs: docs.clone(), place }))
     });
     Ok(terms.collect())
 }
