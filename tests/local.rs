@@ -96,7 +96,7 @@ fn bind_with_outliers(problem: &mut Problem, f: f64, a: f64, (noise, every): (f6
         };
         (0..12).map(|_| uniform()).sum::<f64>() - 6.0
     };
-    let off = |i: usize| if every > 0 && i % every == 0 { 8.0 } else { 0.0 };
+    let off = |i: usize| if every > 0 && i.is_multiple_of(every) { 8.0 } else { 0.0 };
     let height = |i: usize, c: &[f64]| height(c[0].hypot(c[1]), f, a) + off(i);
     let cloud = seen.chunks(2).enumerate().flat_map(|(i, c)| [c[0], c[1], height(i, c) + noise * normal()]);
     let cloud = cloud.map(|x| unit * x).collect();
