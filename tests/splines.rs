@@ -46,6 +46,39 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// Lorenz's equations, all three coefficients unknown.
+    mod lorenz {
+        units: off;
+        coordinates: t;
+        fields: x, y, z;
+        parameters: a = 8, b = 10, c = 2;
+        on flow {
+            first: d(x, t) == a * (y - x);
+            second: d(y, t) == x * (b - z) - y;
+            third: d(z, t) == x * y - c * z;
+        }
+        on start { x0: x == -8; y0: y == 7; z0: z == 27; }
+        on samples { observe x, y, z; }
+        scene identify { learn a, b, c; }
+    }
+}
+
+nisp::pde! {
+    /// A reaction whose rate along the line is unknown, with a thin diffusion.
+    mod reaction {
+        units: off;
+        coordinates: x;
+        fields: u;
+        sources: k;
+        on inside { law: 0.01 * d(u, x, 2) - k * u == sin(2 * pi * x); }
+        on left { held: u == 0; }
+        on right { held: u == 0; }
+        on gauges { observe u; }
+        scene rate { }
+    }
+}
+
+nisp::pde! {
     /// A source whose sum is known.
     mod summed {
         units: off;
@@ -181,6 +214,84 @@ fn coefficients_are_learned_from_a_measured_drive() {
         let deviation = learned.deviation.unwrap();
         assert!((learned.value / exact - 1.0).abs() < 0.02, "{learned:?} is not {exact}");
         assert!((learned.value - exact).abs() < 4.0 * deviation, "{learned:?} is not {exact}");
+    }
+}
+
+/// Twenty-five rows good to a thousandth: steps of Runge and Kutta's method are exact to many digits more.
+#[test]
+fn coefficients_of_lorenz_are_found_with_bars_that_cover() {
+    let exact = [10.0, 15.0, 8.0 / 3.0];
+    let [a, b, c] = exact;
+    let slope = |[x, y, z]: [f64; 3]| [a * (y - x), x * (b - z) - y, x * y - c * z];
+    let along = |s: [f64; 3], k: [f64; 3], h: f64| [0, 1, 2].map(|i| s[i] + h * k[i]);
+    let h = 1e-3;
+    let mut path = vec![[-8.0, 7.0, 27.0]];
+    for _ in 0..3000 {
+        let s = path[path.len() - 1];
+        let k1 = slope(s);
+        let k2 = slope(along(s, k1, h / 2.0));
+        let k3 = slope(along(s, k2, h / 2.0));
+        let k4 = slope(along(s, k3, h));
+        path.push([0, 1, 2].map(|i| s[i] + h / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i])));
+    }
+    for seed in [1, 2, 3] {
+        let mut normal = normals(seed);
+        let rows: Vec<usize> = (0..25).map(|i| 125 * i).collect();
+        let columns = (0..3).map(|j| rows.iter().map(|&row| path[row][j] + 0.02 * normal()).collect()).collect();
+        let mut problem = Problem::new(scene::<lorenz::identify::Scene>());
+        problem
+            .set_group("flow", (0..100).map(|i| f64::from(i) * 3.0 / 99.0).collect::<Vec<f64>>().into(), vec![])
+            .unwrap();
+        problem.set_group("start", vec![0.0].into(), vec![]).unwrap();
+        let times: Vec<f64> = rows.iter().map(|&row| h * row as f64).collect();
+        problem.set_group("samples", times.into(), columns).unwrap();
+        let mut solution = solve(&problem, Carrier::Auto);
+        assert_eq!((solution.carrier, solution.status), ("splines", Status::Converged));
+        for (learned, exact) in solution.learned().iter().zip(exact) {
+            let deviation = learned.deviation.unwrap();
+            assert!((learned.value - exact).abs() < 4.0 * deviation, "{learned:?} is not {exact}");
+            assert!(deviation < 0.01 * exact, "{learned:?}");
+        }
+    }
+}
+
+/// A rate of reaction from the temperatures it makes, by differences on a fine grid (Thomas's algorithm).
+#[test]
+fn a_rate_of_reaction_is_found_from_any_noise() {
+    let rate = |x: f64| 0.1 + (-0.5 * ((x - 0.5) / 0.15).powi(2)).exp();
+    let count = 4001;
+    let h = 1.0 / (count - 1) as f64;
+    let (mut upper, mut right) = (vec![0.0; count], vec![0.0; count]);
+    for i in 1..count - 1 {
+        let x = i as f64 * h;
+        let (beside, own) = (0.01 / (h * h), -0.02 / (h * h) - rate(x));
+        let pivot = own - beside * upper[i - 1];
+        upper[i] = beside / pivot;
+        right[i] = ((std::f64::consts::TAU * x).sin() - beside * right[i - 1]) / pivot;
+    }
+    let mut u = vec![0.0; count];
+    for i in (1..count - 1).rev() {
+        u[i] = right[i] - upper[i] * u[i + 1];
+    }
+    let size = u.iter().fold(0.0, |most: f64, u| most.max(u.abs()));
+    let places: Vec<f64> = (0..101).map(|i| f64::from(i) / 100.0).collect();
+    for seed in 1..=6 {
+        let mut normal = normals(seed);
+        let measured = (0..101).map(|i| u[40 * i] + 0.01 * size * normal()).collect();
+        let mut problem = Problem::new(scene::<reaction::rate::Scene>());
+        problem.set_group("inside", places.clone().into(), vec![]).unwrap();
+        problem.set_group("left", vec![0.0].into(), vec![]).unwrap();
+        problem.set_group("right", vec![1.0].into(), vec![]).unwrap();
+        problem.set_group("gauges", places.clone().into(), vec![measured]).unwrap();
+        let mut solution = solve(&problem, Carrier::Auto);
+        assert_eq!((solution.carrier, solution.status), ("splines", Status::Converged));
+        let estimates = solution.evaluate_with_errors(&places);
+        let found = of(&estimates, "k");
+        let deviations = found.deviations.as_ref().unwrap();
+        let off = |i: usize| (found.values[i] - rate(places[i])).abs();
+        let covered = (0..101).filter(|&i| off(i) < 2.0 * deviations[i]).count();
+        let error = (0..101).map(off).sum::<f64>() / 101.0;
+        assert!(error < 0.2 && covered >= 81, "seed {seed}: {error}, {covered} covered");
     }
 }
 

@@ -41,6 +41,7 @@ fn json_is_one_object_with_the_promised_fields_and_nothing_else() {
         "state",
         "learned",
         "terms",
+        "carrier",
         "groups",
         "skipped",
         "data",

@@ -4,12 +4,16 @@ use super::settings::{Carrier, Optimizer, Settings};
 use crate::local::Local;
 use crate::noise;
 use crate::problem::Bound;
+use crate::solve::state::State;
 use crate::splines;
 
 /// Numbers that describe an observed quantity, of which a small network holds no more: twenty periods of a wave and some.
 const RICH: f64 = 60.0;
 /// Rows from which on a network takes longer than anybody waits.
 const MANY: usize = 5000;
+
+/// Exponents of the unit of time.
+const SECOND: [f64; 7] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
 
 /// A carrier.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,8 +33,44 @@ impl Chosen {
     }
 }
 
-/// The carrier of a problem, and why in a sentence for the user.
-pub(super) fn of(bound: &Bound, settings: &Settings) -> (Chosen, String) {
+/// A carrier and a start, and why in a sentence for the user.
+pub(super) struct Attempt {
+    pub(super) chosen: Chosen,
+    pub(super) seed: u64,
+    pub(super) why: String,
+}
+
+/// What a problem is solved with first, and what is tried where the answer is not sound and time is left. A saved run goes on
+/// with what it had.
+pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>) -> (Attempt, Vec<Attempt>) {
+    let seed = settings.seed;
+    let (chosen, why) = of(bound, settings);
+    let saved = |state: &State| match (state.method == splines::METHOD, chosen) {
+        (true, _) => Chosen::Splines,
+        (false, Chosen::Splines) => Chosen::Network,
+        (false, chosen) => chosen,
+    };
+    if let Some(chosen) = from.map(saved) {
+        return (Attempt { chosen, seed, why }, Vec::new());
+    }
+    let after = |what: &str| format!("what was tried first ended inconsistent; {what}");
+    let network = |seed: u64, what: &str| Attempt { chosen: Chosen::Network, seed, why: after(what) };
+    let is_free = settings.carrier == Carrier::Auto && settings.optimizer == Optimizer::Auto;
+    let can_splines = splines::refused(bound.problem.scene().schema).is_none();
+    let others = match chosen {
+        _ if !is_free => Vec::new(),
+        Chosen::Local(_) => Vec::new(),
+        Chosen::Splines => vec![network(seed, "a network instead of splines")],
+        Chosen::Network if can_splines => {
+            vec![Attempt { chosen: Chosen::Splines, seed, why: after("splines instead of a network") }]
+        }
+        Chosen::Network => vec![network(seed.wrapping_add(1), "another seed")],
+    };
+    (Attempt { chosen, seed, why }, others)
+}
+
+/// The carrier of a problem, and why.
+fn of(bound: &Bound, settings: &Settings) -> (Chosen, String) {
     let asked = |chosen| (chosen, "asked for".to_string());
     match settings.carrier {
         Carrier::Network => asked(Chosen::Network),
@@ -43,7 +83,8 @@ pub(super) fn of(bound: &Bound, settings: &Settings) -> (Chosen, String) {
     }
 }
 
-/// Splines for records that are too long or too rich for a small network.
+/// Splines where they can, but for a short record of what a source does over time: a source may set in with the record, in a
+/// layer that a network's stretched time resolves and splines smooth away.
 fn by_data(bound: &Bound) -> (Chosen, String) {
     let schema = bound.problem.scene().schema;
     if let Some(what) = splines::refused(schema) {
@@ -54,10 +95,17 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
     if rows > MANY {
         return (Chosen::Splines, format!("{rows} rows are more than a network is quick with"));
     }
+    if !schema.heads.iter().any(|head| head.source) {
+        return (Chosen::Splines, "one coordinate and no source".into());
+    }
+    if schema.coordinates[0].unit.exponents != SECOND {
+        return (Chosen::Splines, "one coordinate that is not time".into());
+    }
     let rich = splines::richness(bound, &noise::estimate(bound));
     if rich > RICH {
         (Chosen::Splines, format!("it takes {rich:.0} numbers to describe the data, more than a small network holds"))
     } else {
-        (Chosen::Network, format!("{rich:.0} numbers describe the data: a small network holds them"))
+        let why = format!("{rich:.0} numbers describe the data, and a source may set in with the record");
+        (Chosen::Network, why)
     }
 }

@@ -35,7 +35,7 @@ use course::Course;
 use crate::local::{self, Local, LocalError};
 use crate::noise;
 use crate::problem::{BindError, Bound, Problem};
-use crate::solve::driver::{Flow, Limits};
+use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
 use crate::splines;
@@ -159,17 +159,34 @@ fn solve(
     let pool = pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
     let limits =
         Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() };
-    let course = Course::new(fingerprint, limits, start, checkpoint.map(|c| &c.state), monitor);
+    let from = checkpoint.map(|checkpoint| &checkpoint.state);
     pool.install(|| {
-        let (chosen, why) = choice::of(&bound, settings);
-        let solution = match chosen {
-            Chosen::Local(local) => solve_local(bound, &local, settings, start, course),
-            Chosen::Splines => solve_on_splines(bound, settings, start, course),
-            Chosen::Network => network::solve(bound, settings, start, course),
-        };
-        let solution = solution.map(|solution| solution.carried_by(chosen.name(), why));
-        solution.map(Solution::judged)
+        let (mut attempt, others) = choice::attempts(&bound, settings, from);
+        let mut attempts = others.into_iter();
+        let mut first: Option<Solution> = None;
+        loop {
+            let settings = &Settings { seed: attempt.seed, ..settings.clone() };
+            let course = Course::new(fingerprint, limits, start, from, &mut *monitor);
+            let solved = match attempt.chosen {
+                Chosen::Local(local) => solve_local(bound.clone(), &local, settings, start, course),
+                Chosen::Splines => solve_on_splines(bound.clone(), settings, start, course),
+                Chosen::Network => network::solve(bound.clone(), settings, start, course),
+            };
+            let solution = solved?.carried_by(attempt.chosen.name(), attempt.why, fingerprint).judged();
+            let is_over = solution.is_sound() || solution.status == Status::Interrupted;
+            let solution = if is_over { solution } else { first.take().unwrap_or(solution) };
+            match attempts.next().filter(|_| !is_over && has_time_again(settings, start)) {
+                Some(next) => (attempt, first) = (next, Some(solution)),
+                None => return Ok(solution),
+            }
+        }
     })
+}
+
+/// True where enough of the budget is left for another start.
+fn has_time_again(settings: &Settings, start: Instant) -> bool {
+    let elapsed = start.elapsed();
+    settings.iterations.is_none() && settings.budget.is_some_and(|budget| 2 * elapsed < budget)
 }
 
 fn solve_local(

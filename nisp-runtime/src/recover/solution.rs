@@ -173,9 +173,10 @@ impl Solution {
         }
     }
 
-    /// Says what carries it, and why.
-    pub(super) fn carried_by(self, carrier: &'static str, carrier_reason: String) -> Self {
-        Self { carrier, carrier_reason, ..self }
+    /// Says what carries it, and why, and whose checkpoint it has.
+    pub(super) fn carried_by(self, carrier: &'static str, carrier_reason: String, fingerprint: u64) -> Self {
+        let checkpoint = Checkpoint { fingerprint, ..self.checkpoint };
+        Self { carrier, carrier_reason, checkpoint, ..self }
     }
 
     /// Judges the answer by what is left of the problem, and calls it by its name.

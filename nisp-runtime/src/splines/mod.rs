@@ -31,6 +31,8 @@ use weighed::{Class, restore_classes, save_classes};
 
 /// Orders of a source's derivative that may be the one that is kept small, the first tried first.
 const ORDERS: [usize; 3] = [2, 1, 3];
+/// Logarithm of the evidence by which an order may fall behind and still be the right one.
+const NEAR: f64 = 8.0;
 /// Steps that regress the data at most.
 const REGRESS: u64 = 12;
 /// Gain of the logarithm of the evidence that no longer matters.
@@ -40,7 +42,7 @@ const SETTLED: f64 = 1e-4;
 /// Steps of an order at most.
 const MOST_STEPS: u64 = 60;
 /// Name of the method in saved states.
-const METHOD: &str = "splines";
+pub(crate) const METHOD: &str = "splines";
 
 /// What splines over one coordinate cannot do, of a scene; nothing if they can do all of it.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
@@ -61,7 +63,8 @@ pub(crate) struct SplineSolution {
     heads: heads::Heads,
     theta: Vec<f64>,
     learned: Vec<f64>,
-    covariance: Option<Covariance>,
+    /// Coefficients, parameters of learned scalars and covariances, by order of smoothness that may be the right one.
+    spreads: Vec<(Vec<f64>, Vec<f64>, Covariance)>,
     pub(crate) status: Status,
     pub(crate) iterations: u64,
     pub(crate) loss: f64,
@@ -95,8 +98,8 @@ struct Place {
     /// Sizes of all classes when an order's data have been regressed, and when its equations come in.
     regressed: Vec<Class>,
     solved: Vec<Class>,
-    /// The best order's index, its evidence and its iterate.
-    best: Option<(usize, f64, State)>,
+    /// Of every order that was tried: its index, its evidence and its iterate.
+    tried: Vec<(usize, f64, State)>,
 }
 
 /// Solves a bound problem within its limits, from the start or from a saved state.
@@ -122,7 +125,7 @@ pub(crate) fn solve(
             // A run that ends here begins anew.
             let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
             if run.go(&mut solver, &mut trial, &save)? == Status::Converged
-                && let Some((order, _, state)) = trial.best
+                && let Some((order, _, state)) = trial.best().cloned()
             {
                 (place.order, place.orders) = (order, order + 1);
                 (place.state.classes, place.solved) = (trial.regressed, state.classes);
@@ -135,15 +138,18 @@ pub(crate) fn solve(
     let loss = run.loss;
     let checkpoint = place.save();
     let mut warnings = Vec::new();
-    if let Some((order, _, state)) = place.best.clone() {
-        solver.order = ORDERS[order];
+    if let Some((_, _, state)) = place.best().cloned() {
         place.state = State { step: place.state.step, ..state };
     }
-    let mut covariance = None;
+    let mut spreads = Vec::new();
     if matches!(status, Status::Converged | Status::Budget) && !noise.is_exact() {
-        match solver.step(&place.state, Phase::Solve)? {
-            Some(found) => covariance = Some(found.covariance),
-            None => status = Status::NotConverged,
+        for (order, mut state) in place.likely() {
+            solver.order = ORDERS[order];
+            solver.doubt_roughness(&mut state);
+            match solver.step(&state, Phase::Solve)? {
+                Some(found) => spreads.push((state.theta, state.learned, found.covariance)),
+                None => status = Status::NotConverged,
+            }
         }
     }
     if status == Status::NotConverged {
@@ -167,7 +173,7 @@ pub(crate) fn solve(
         heads,
         theta,
         learned,
-        covariance,
+        spreads,
         status,
         iterations,
         loss,
@@ -268,16 +274,26 @@ impl Place {
             state,
             regressed: classes.clone(),
             solved: classes,
-            best: None,
+            tried: Vec::new(),
         }
     }
 
-    /// Keeps the iterate if its order is the best so far, and turns to the next order.
+    /// Keeps the iterate, and turns to the next order.
     fn next(&mut self, evidence: f64) {
-        if self.best.as_ref().is_none_or(|best| evidence > best.1) {
-            self.best = Some((self.order, evidence, self.state.clone()));
-        }
+        self.tried.push((self.order, evidence, self.state.clone()));
         self.order += 1;
+    }
+
+    /// The order with the largest evidence.
+    fn best(&self) -> Option<&(usize, f64, State)> {
+        self.tried.iter().max_by(|a, b| a.1.total_cmp(&b.1))
+    }
+
+    /// Orders that the evidence does not rule out; the last iterate where none has been tried to its end.
+    fn likely(&self) -> Vec<(usize, State)> {
+        let Some(best) = self.best() else { return vec![(self.order.min(ORDERS.len() - 1), self.state.clone())] };
+        let near = self.tried.iter().filter(|tried| tried.1 >= best.1 - NEAR);
+        near.map(|(order, _, state)| (*order, state.clone())).collect()
     }
 
     fn save(&self) -> state::State {
@@ -288,10 +304,13 @@ impl Place {
             .with_counter("phase", u64::from(self.phase == Phase::Solve))
             .with_counter("since", self.since)
             .with_counter("iterations", self.state.step)
-            .with_counter("tried", u64::from(self.best.is_some()));
+            .with_counter("tried", self.tried.len() as u64);
         let saved = save_classes(&self.solved, save_classes(&self.regressed, saved, "regressed "), "solved ");
-        let Some((order, evidence, state)) = &self.best else { return saved };
-        state.save(saved.with("evidence", &[*evidence]).with_counter("best", *order as u64), "best ")
+        self.tried.iter().enumerate().fold(saved, |saved, (at, (order, evidence, state))| {
+            let prefix = format!("tried {at} ");
+            let saved = saved.with(&format!("{prefix}evidence"), &[*evidence]);
+            state.save(saved.with_counter(&format!("{prefix}order"), *order as u64), &prefix)
+        })
     }
 
     fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
@@ -300,11 +319,12 @@ impl Place {
             order if order <= ORDERS.len() => Ok(order),
             _ => Err(Fault::state(name)),
         };
-        if saved.counter("tried")? == 1 {
-            let mut best = self.state.clone();
-            best.restore(saved, "best ")?;
-            let [evidence] = saved.scalars("evidence")?;
-            self.best = Some((order("best")?.min(ORDERS.len() - 1), evidence, best));
+        for at in 0..order("tried")? {
+            let prefix = format!("tried {at} ");
+            let mut state = self.state.clone();
+            state.restore(saved, &prefix)?;
+            let [evidence] = saved.scalars(&format!("{prefix}evidence"))?;
+            self.tried.push((order(&format!("{prefix}order"))?.min(ORDERS.len() - 1), evidence, state));
         }
         self.state.restore(saved, "")?;
         self.since = saved.counter("since")?;
@@ -322,21 +342,31 @@ impl SplineSolution {
         places.iter().map(|&at| self.heads.derivative(head, (self.heads.cell(at), at), 0, &self.theta)).collect()
     }
 
-    /// Standard deviations of a head at places in the engine's units.
+    /// Standard deviations of a head at places in the engine's units: the longest bars about the answer that an order of
+    /// smoothness which may be the right one asks for.
     pub(crate) fn deviations(&self, head: usize, places: &[f64]) -> Option<Vec<f64>> {
-        let covariance = self.covariance.as_ref()?;
         let shared = vec![0.0; self.learned.len()];
         let deviation = |&at: &f64| {
             let (first, slopes) = self.heads.value_row(head, at);
-            covariance.of(first, &slopes, &shared).max(0.0).sqrt()
+            let square = |(theta, _, covariance): &(Vec<f64>, Vec<f64>, Covariance)| {
+                let pairs = slopes.iter().zip(theta[first..].iter().zip(&self.theta[first..]));
+                let apart: f64 = pairs.map(|(slope, (other, own))| slope * (other - own)).sum();
+                covariance.of(first, &slopes, &shared).max(0.0) + apart * apart
+            };
+            self.spreads.iter().map(square).fold(0.0, f64::max).sqrt()
         };
-        Some(places.iter().map(deviation).collect())
+        (!self.spreads.is_empty()).then(|| places.iter().map(deviation).collect())
     }
 
     /// Parameters of the learned scalars, and their standard deviations.
     pub(crate) fn learned(&self) -> Vec<(f64, Option<f64>)> {
         let count = self.learned.len();
-        let deviation = |at: usize| Some(self.covariance.as_ref()?.corner[at * (count + 1)].max(0.0).sqrt());
+        let deviation = |at: usize| {
+            let square = |(_, learned, covariance): &(Vec<f64>, Vec<f64>, Covariance)| {
+                covariance.corner[at * (count + 1)].max(0.0) + (learned[at] - self.learned[at]).powi(2)
+            };
+            (!self.spreads.is_empty()).then(|| self.spreads.iter().map(square).fold(0.0, f64::max).sqrt())
+        };
         self.learned.iter().enumerate().map(|(at, &parameter)| (parameter, deviation(at))).collect()
     }
 }

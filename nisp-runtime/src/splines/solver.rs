@@ -20,10 +20,12 @@ const TIGHTER: f64 = 0.1;
 const RIDGE: f64 = 1e-6;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
 const LEARNED: f64 = 10.0;
+/// Order of the fields' derivative that is kept small while only data are regressed.
+const REGRESS_ORDER: usize = 2;
 /// Rows that the noise's estimate from differences is worth.
 const NOISE_COUNT: f64 = 2.0;
 /// Least noise, as a share of the spread of the data: rounding.
-const LEAST_NOISE: f64 = 1e-9;
+const LEAST_NOISE: f64 = 1e-10;
 /// Largest change of a learned parameter in a step.
 const FARTHEST: f64 = 1.0;
 /// A step is halved so often before it is given up.
@@ -64,6 +66,8 @@ pub(super) struct Solver<'a> {
     /// Order of the derivative of the sources that the prior keeps small.
     pub(super) order: usize,
     scalars: Vec<f64>,
+    /// Length of the domain.
+    length: f64,
     triangle: Triangle,
 }
 
@@ -103,7 +107,8 @@ impl<'a> Solver<'a> {
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len());
         let scalars = bound.scalars.clone();
-        Self { bound, heads, groups, classes, roughness, sizes, order: 2, scalars, triangle }
+        let length = breakpoints[breakpoints.len() - 1] - breakpoints[0];
+        Self { bound, heads, groups, classes, roughness, sizes, order: REGRESS_ORDER, scalars, length, triangle }
     }
 
     /// True if a source is sought.
@@ -243,11 +248,9 @@ impl<'a> Solver<'a> {
         Ok((rows, cost))
     }
 
-    /// Order of a head's derivative that its prior keeps small: fields as if sources were their highest derivatives.
-    fn order_of(&self, head: usize) -> usize {
-        let least = self.heads.bases.iter().map(|basis| basis.degree).min().unwrap_or(0);
-        let above = self.heads.bases[head].degree - least;
-        self.order + above
+    /// Order of the derivative that priors keep small.
+    fn order(&self, phase: Phase) -> usize {
+        if phase == Phase::Solve { self.order } else { REGRESS_ORDER }
     }
 
     /// Rows that keep sources smooth, or fields smooth while only data are regressed.
@@ -257,14 +260,14 @@ impl<'a> Solver<'a> {
             if declared.source != (phase == Phase::Solve) {
                 continue;
             }
-            self.add_roughness(state, head, &mut rows);
+            self.add_roughness((state, phase), head, &mut rows);
         }
         rows.sort_by_key(|(row, _)| row.first);
         rows
     }
 
-    fn add_roughness(&self, state: &State, head: usize, rows: &mut Vec<(Row, usize)>) {
-        let (order, class) = (self.order_of(head), self.roughness[head]);
+    fn add_roughness(&self, (state, phase): (&State, Phase), head: usize, rows: &mut Vec<(Row, usize)>) {
+        let (order, class) = (self.order(phase), self.roughness[head]);
         let size = state.classes[class].size;
         for (first, factors, width) in self.heads.bases[head].differences(order) {
             let numbers = self.heads.numbers(head, first);
@@ -320,6 +323,7 @@ impl<'a> Solver<'a> {
             tally.used += covariance.of(row.first, &row.slopes, &row.shared).max(0.0);
             loss += 0.5 * row.value.powi(2);
         }
+        self.count_priors(&mut tallies, phase);
         let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
         let sizes: f64 = state.classes.iter().zip(&tallies).map(|(class, tally)| tally.count * class.size.ln()).sum();
         let evidence = -0.5 * squares - sizes - self.triangle.log_determinant() + self.log_differences(phase);
@@ -347,12 +351,50 @@ impl<'a> Solver<'a> {
         Ok(Some(Found { next, loss, change, evidence, used, covariance }))
     }
 
+    /// Takes every source for as rough at least as one wave of its own size over the domain. The evidence may take a source
+    /// for a polynomial that the data do not speak against; error bars should not.
+    pub(super) fn doubt_roughness(&self, state: &mut State) {
+        let sources = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| head.source);
+        for (head, _) in sources {
+            let numbers = self.heads.numbers(head, 0);
+            let square = numbers.iter().map(|&n| state.theta[n].powi(2)).sum::<f64>() / numbers.len() as f64;
+            let wave = std::f64::consts::TAU / self.length;
+            let size = (self.length * square * wave.powi(2 * self.order as i32)).sqrt();
+            let class = &mut state.classes[self.roughness[head]];
+            class.size = class.size.max(size);
+        }
+    }
+
+    /// What priors of roughness use up, as what everything else leaves of all unknowns: summed row by row it would be a small
+    /// difference of large numbers where cells are much finer than the source.
+    fn count_priors(&self, tallies: &mut [Tally], phase: Phase) {
+        let unknowns = (self.heads.len() + self.bound.learned.len()) as f64;
+        let is_prior = |class: usize| self.roughness.contains(&class);
+        let is_equation = |class: usize| {
+            let terms =
+                self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
+            phase == Phase::Solve && terms.clone().any(|(&own, term)| own == class && term.kind == TermKind::Residual)
+        };
+        let others = tallies.iter().enumerate().filter(|&(class, _)| !is_prior(class));
+        // Equations are so much stricter than anything else that each settles an unknown.
+        let used: f64 = others.map(|(class, tally)| if is_equation(class) { tally.count } else { tally.used }).sum();
+        let priors = || self.roughness.iter().copied();
+        let by_rows: f64 = priors().map(|class| tallies[class].used.clamp(0.0, tallies[class].count)).sum();
+        let count: f64 = priors().map(|class| tallies[class].count).sum();
+        let left = (unknowns - used).clamp(0.0, count);
+        for class in priors() {
+            let own = tallies[class].used.clamp(0.0, tallies[class].count);
+            let share = if by_rows > 0.0 { own / by_rows } else { tallies[class].count / count.max(1.0) };
+            tallies[class].used = (left * share).min(tallies[class].count);
+        }
+    }
+
     /// Logarithm of the determinant of the differences that priors keep small, as functions of all but the first coefficients.
     fn log_differences(&self, phase: Phase) -> f64 {
         let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
         let own = heads.filter(|(_, head)| head.source == (phase == Phase::Solve));
         own.map(|(head, _)| {
-            let order = self.order_of(head);
+            let order = self.order(phase);
             let differences = self.heads.bases[head].differences(order);
             differences.map(|(_, factors, width)| (factors[order].abs() * width.sqrt()).ln()).sum::<f64>()
         })

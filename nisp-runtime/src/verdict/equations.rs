@@ -158,19 +158,22 @@ impl Judged<'_> {
         if !self.facts.columns.is_empty() {
             largest = largest.max(part(&self.facts.jets, &vec![0.0; self.facts.columns.len()]));
         }
-        if self.is_low(&read) {
+        let is_low = self.is_low(&read);
+        if is_low || self.facts.points <= FEW_POINTS {
             largest = largest.max(self.elsewhere(&read, &slopes, row));
         }
         // A term of sources alone is no balance.
         let balance = read.iter().any(|&jet| !heads[self.schema.jets[jet].head].source);
         let value = |&jet: &usize| self.schema.jets[jet].head;
-        let stated =
-            self.facts.points <= FEW_POINTS || !balance || read.windows(2).all(|two| value(&two[0]) == value(&two[1]));
+        // Where a layer makes a higher derivative large, its size elsewhere is a guess.
+        let stated = self.facts.points <= FEW_POINTS && is_low
+            || !balance
+            || read.windows(2).all(|two| value(&two[0]) == value(&two[1]));
         Parts { source: source.filter(|_| balance), largest, stated }
     }
 
-    /// True for a condition on values and slopes: where its target is zero, only elsewhere says how large they are. Higher
-    /// derivatives have no size that follows from that of the quantity.
+    /// True for a condition on values and slopes: where its target is zero, only elsewhere says how large they are. Of higher
+    /// derivatives that is a guess.
     fn is_low(&self, read: &[usize]) -> bool {
         let order = |jet: usize| self.schema.jets[jet].degree.iter().map(|&degree| u32::from(degree)).sum::<u32>();
         read.iter().all(|&jet| order(jet) <= 1)

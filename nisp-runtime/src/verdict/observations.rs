@@ -47,7 +47,8 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
             );
             checks.push(Check::new("misfit", place, (rms / within, TOLERANCE.max(by_chance(own))), said));
         } else if let Some(of) = of {
-            let (scale, limit) = if exact { (of.spread, EXACT) } else { (of.deviation, MISFIT.max(by_chance(own))) };
+            let (scale, limit) =
+                if exact { (of.spread, EXACT) } else { (of.deviation, MISFIT.max(by_chance(own)) * doubt(own)) };
             let said = format!(
                 "`{}` is not resolved: it is missed by {:.2e} {unit} (rms), while the data's noise is {:.2e} {unit}: the equations or a parameter \
                  do not fit these data, or the carrier is too coarse (more --width, another --seed, more --budget)",
@@ -107,6 +108,14 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
 fn by_chance(rows: &[Vec<f64>]) -> f64 {
     let part = 2.0 / (9.0 * rows.iter().map(Vec::len).sum::<usize>().max(1) as f64);
     (1.0 - part + 4.0 * part.sqrt()).powf(1.5)
+}
+
+/// How much larger the noise may be than differences of few data say. Eighth differences of neighbours share most of their
+/// values, so that six data make about one of them that is its own; two and a half deviations of chi squared.
+fn doubt(rows: &[Vec<f64>]) -> f64 {
+    let own = rows.first().map_or(0.0, |row| (row.len() as f64 - 8.0) / 6.0).max(1.0);
+    let part = 2.0 / (9.0 * own);
+    (1.0 - part - 2.5 * part.sqrt()).max(0.1).powf(-1.5)
 }
 
 /// The size of values by their median magnitude, in standard deviations of normal numbers: outliers count for nothing.
