@@ -21,8 +21,8 @@ const LONGEST: f64 = 2.0;
 /// Frequencies that are looked at, at most: what is smoothed away is slow beside the sampling.
 const MOST: usize = 200;
 
-/// Chance of taking noise for a swing.
-const CHANCE: f64 = 1e-3;
+/// Chance of taking noise for a swing: small, because what a fit leaves of noise stands out more than noise does.
+const CHANCE: f64 = 1e-5;
 
 /// The strongest oscillation of values that are evenly spaced, or nearly so, if it stands out of noise (Fisher 1929, Tests of
 /// significance in harmonic analysis: ordinates of the periodogram over the variance are exponential numbers).
