@@ -47,7 +47,7 @@ nisp::pde! {
             /// Poisson's ratio
             nu in 0 .. 0.5 = 0.5,
             /// thickness
-            t [mm] = 0.45,
+            t [mm] > 0 = 0.45,
             /// gauge pressure
             p [Pa];
 

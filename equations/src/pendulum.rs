@@ -34,13 +34,6 @@ const SERIES: Series = Series {
         "data/pendulum/run_23_truth.csv",
     ],
     every: 4,
-    positive: &[
-        ("m0", "a cart has a mass above zero: give it with --set m0=VALUE"),
-        ("m1", "a link has a mass above zero: give it with --set m1=VALUE"),
-        ("m2", "a link has a mass above zero: give it with --set m2=VALUE"),
-        ("l1", "a link has a length above zero: give it with --set l1=VALUE"),
-        ("l2", "a link has a length above zero: give it with --set l2=VALUE"),
-    ],
     rival,
 };
 
@@ -71,15 +64,15 @@ nisp::pde! {
             f [N];
         parameters:
             /// mass of the cart
-            m0 [kg] = 0.005,
+            m0 [kg] > 0 = 0.005,
             /// mass at the end of the first link
-            m1 [kg] = 0.005,
+            m1 [kg] > 0 = 0.005,
             /// mass at the end of the second link
-            m2 [kg] = 0.005,
+            m2 [kg] > 0 = 0.005,
             /// length of the first link
-            l1 [m] = 0.5,
+            l1 [m] > 0 = 0.5,
             /// length of the second link
-            l2 [m] = 0.5,
+            l2 [m] > 0 = 0.5,
             /// gravity
             g [m/s^2] = 9.81;
 

@@ -108,11 +108,11 @@ nisp::pde! {
             w [mm];
         parameters:
             /// Young's modulus
-            E [Pa] = 1e9,
+            E [Pa] > 0 = 1e9,
             /// Poisson's ratio
-            nu = 0.5,
+            nu in -1 .. 0.5 = 0.5,
             /// thickness
-            t [mm] = 0.3,
+            t [mm] > 0 = 0.3,
             /// pressure
             P [Pa] = 2757;
 

@@ -23,7 +23,6 @@ const SERIES: Series = Series {
     columns: &[("v", "v_V")],
     truths: &["data/rlc/rlc_exponential.csv"],
     every: 3,
-    positive: &[],
     rival,
 };
 

@@ -54,8 +54,6 @@ pub struct Series {
     pub truths: &'static [&'static str],
     /// Rows of a truth for each measurement.
     pub every: usize,
-    /// Parameters that make no sense at zero or below, and what to do.
-    pub(crate) positive: &'static [(&'static str, &'static str)],
     /// The system that classical rivals solve for a scene of this name, where they know how.
     pub(crate) rival: fn(&str, Given<'_>) -> Option<Box<dyn System>>,
 }
@@ -136,14 +134,6 @@ impl Series {
         let mut problem = Problem::new(scene);
         for (name, value) in &request.parameters {
             problem.set_parameter(name, *value)?;
-        }
-        for &(name, must) in self.positive {
-            let value = parameter(schema, request, name);
-            if value <= 0.0 {
-                let unit =
-                    schema.scalars.iter().find(|scalar| scalar.name == name).map_or("", |scalar| scalar.unit.text);
-                return Err(PrepareError::Range { name, value, unit, must });
-            }
         }
         let mut measured = Vec::new();
         let (first, last) = (times[0], times[times.len() - 1]);

@@ -40,11 +40,11 @@ nisp::pde! {
             f [Pa] >= 0;
         parameters:
             /// Young's modulus
-            E [Pa] = 1.1e4,
+            E [Pa] > 0 = 1.1e4,
             /// Poisson's ratio
             nu in 0 .. 0.5 = 0.1,
             /// density
-            rho [kg/m^3] = 35,
+            rho [kg/m^3] >= 0 = 35,
             /// gravity
             g: vector [m/s^2] = [0, 0, -9.81],
             /// force of the terrain on the sponge

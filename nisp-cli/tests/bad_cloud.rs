@@ -84,8 +84,8 @@ fn parameters() {
     cloud("--scene identify_unknown_pressure", &["parameter `p` has no value; give it with --set p=VALUE in Pa"]);
     cloud("--set p=0", &["`p` is 0 Pa", "nothing inflates", "--set p=VALUE"]);
     cloud("--set p=-5670", &["`p` is -5670 Pa"]);
-    cloud("--set p=5670 --set t=0", &["`t` is 0 mm", "thickness above zero"]);
-    cloud("--set p=5670 --set nu=0.7", &["`nu` is 0.7", "from 0 to 0.5"]);
+    cloud("--set p=5670 --set t=0", &["`t` is 0 mm", "must be above 0 mm"]);
+    cloud("--set p=5670 --set nu=0.7", &["`nu` is 0.7", "at least 0 and at most 0.5"]);
     cloud("--set p=5670 --set a=-1", &["`a` is -1 m"]);
     cloud("--set p=5670 --set q=1", &["there is no parameter `q`; the scene has: E, nu, t, p, a, b"]);
     refused(&[], "sponge --set nu=0", &["`nu` is 0"]);

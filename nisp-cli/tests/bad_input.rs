@@ -86,7 +86,10 @@ fn names() {
     refused("solve rlc --truth nowhere.csv", &["nowhere.csv: no such file"]);
     refused("solve rlc --config nowhere.toml", &["nowhere.toml"]);
     refused("solve rlc --set f1=3", &["no parameter `f1`", "f0"]);
-    refused("solve pendulum --set m0=-1", &["`m0` is -1 kg", "a mass above zero", "--set m0=VALUE"]);
+    refused("solve pendulum --set m0=-1", &["`m0` is -1 kg", "must be above 0 kg"]);
+    refused("solve plate --set E=-1e9", &["`E` is -1000000000 Pa", "must be above 0 Pa"]);
+    refused("solve plate --set nu=1.5", &["`nu` is 1.5", "must be at least -1 and at most 0.5"]);
+    refused("solve plate --set t=0", &["`t` is 0 mm", "must be above 0 mm"]);
     refused("solve rlc --sede 3", &["'--sede'", "'--seed'"]);
     refused("solve", &["<SCENE>"]);
     refused("slove rlc", &["'slove'", "'solve'"]);

@@ -80,6 +80,10 @@ pub struct Scalar {
     pub name: &'static str,
     /// Its unit.
     pub unit: Unit,
+    /// Least value that makes sense, in SI units, if it was declared.
+    pub lower: Option<f64>,
+    /// Greatest value that makes sense, in SI units, if it was declared.
+    pub upper: Option<f64>,
     /// Where its value comes from.
     pub origin: Origin,
 }
@@ -89,14 +93,10 @@ pub struct Scalar {
 pub enum Origin {
     /// The user gives it; the value is the declared default in SI units.
     Given(Option<f64>),
-    /// It is learned; bounds in SI units.
+    /// It is learned, within its bounds.
     Learned {
         /// The declared default in SI units: where learning starts.
         start: Option<f64>,
-        /// Smallest sensible value.
-        lower: Option<f64>,
-        /// Largest sensible value.
-        upper: Option<f64>,
     },
     /// A literal of the equations, in SI units.
     Literal(f64),

@@ -61,10 +61,6 @@ impl Given<'_> {
             let (unit, factor) = unit(schema, name);
             return Err(PrepareError::Range { name, value: value / factor, unit, must });
         }
-        if let Some(value) = self.of("nu")?.filter(|value| !(0.0..=0.5).contains(value)) {
-            let must = "Poisson's ratio is from 0 to 0.5: give it with --set nu=VALUE";
-            return Err(PrepareError::Range { name: "nu", value, unit: "", must });
-        }
         Ok(problem)
     }
 

@@ -37,11 +37,8 @@ struct Membrane {
 /// Semi-axes of the paper's membrane.
 const SIZES: [Size; 2] = [Size { name: "a", usual: 0.06 }, Size { name: "b", usual: 0.04 }];
 
-const POSITIVE: &Positive = &[
-    ("p", "nothing inflates the membrane without pressure from below: give the gauge pressure with --set p=VALUE"),
-    ("E", "a membrane has a modulus above zero: give it with --set E=VALUE"),
-    ("t", "a membrane has a thickness above zero: give it with --set t=VALUE"),
-];
+const POSITIVE: &Positive =
+    &[("p", "nothing inflates the membrane without pressure from below: give the gauge pressure with --set p=VALUE")];
 
 /// Points within the membrane for the equations, for the surface that the cloud is compared with, and on the rim.
 const POINTS: (usize, usize, usize) = (1500, 2000, 200);

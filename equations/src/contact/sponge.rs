@@ -54,7 +54,6 @@ const TORQUE: [&str; 3] = ["torque_x", "torque_y", "torque_z"];
 const SIZES: [Size; 1] = [Size { name: "side", usual: 0.046 }];
 
 const POSITIVE: &Positive = &[
-    ("E", "a sponge has a modulus above zero: give it with --set E=VALUE"),
     ("nu", "the equations divide by it: give Poisson's ratio with --set nu=VALUE"),
     (
         "force_z",

@@ -35,6 +35,18 @@ pub enum BindError {
         /// Its value.
         value: f64,
     },
+    /// A parameter outside of the range that it is declared with.
+    #[error("parameter `{name}` is {value}{}, and must be {range}", unit_text(.unit))]
+    Range {
+        /// Its name.
+        name: String,
+        /// Its value, in its declared unit.
+        value: f64,
+        /// Its declared unit.
+        unit: &'static str,
+        /// What is allowed.
+        range: String,
+    },
     /// A parameter without a value.
     #[error("parameter `{name}` has no value; give it one{}", unit_hint(.unit))]
     MissingParameter {
@@ -100,6 +112,39 @@ pub enum BindError {
     },
 }
 
+fn unit_text(unit: &str) -> String {
+    if unit.is_empty() { String::new() } else { format!(" {unit}") }
+}
+
+/// That a value in SI units lies in the range that its scalar is declared with.
+pub(super) fn within(scalar: &schema::Scalar, value: f64) -> Result<(), BindError> {
+    if scalar.lower.is_none_or(|low| value >= low) && scalar.upper.is_none_or(|high| value <= high) {
+        return Ok(());
+    }
+    let (name, unit, range) = (scalar.name.into(), scalar.unit.text, range(scalar));
+    Err(BindError::Range { name, value: value / scalar.unit.factor, unit, range })
+}
+
+/// The range of a scalar in its declared unit, in words.
+fn range(scalar: &schema::Scalar) -> String {
+    let unit = unit_text(scalar.unit.text);
+    let shown = |bound: f64| {
+        // Rounding of the unit's factor should not show.
+        let outward = bound / scalar.unit.factor;
+        if outward.abs() < f64::MIN_POSITIVE { "0".to_string() } else { format!("{}", (outward * 1e12).round() / 1e12) }
+    };
+    let is_left_out = |bound: f64| bound != 0.0 && bound.abs() < f64::MIN_POSITIVE;
+    let low = scalar.lower.map(|low| {
+        let word = if is_left_out(low) { "above" } else { "at least" };
+        format!("{word} {}{unit}", shown(low))
+    });
+    let high = scalar.upper.map(|high| {
+        let word = if is_left_out(high) { "below" } else { "at most" };
+        format!("{word} {}{unit}", shown(high))
+    });
+    low.into_iter().chain(high).collect::<Vec<_>>().join(" and ")
+}
+
 fn unit_hint(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" in {unit}") }
 }
@@ -158,7 +203,8 @@ impl Problem {
                 Some(value) if !value.is_finite() => {
                     return Err(BindError::Parameter { name: scalar.name.into(), value: *value });
                 }
-                _ => {}
+                Some(value) => within(scalar, *value)?,
+                None => {}
             }
         }
         Ok(())
@@ -240,7 +286,7 @@ fn inward_columns(group: &schema::Group, system: &UnitSystem, binding: &Binding)
 fn learned(schema: &schema::Scene, system: &UnitSystem, scalars: &[f64]) -> Vec<Learned> {
     let slots = schema.scalars.iter().enumerate();
     let learned = slots.filter_map(|(slot, scalar)| match scalar.origin {
-        Origin::Learned { lower, upper, .. } => Some((slot, scalar, lower, upper)),
+        Origin::Learned { .. } => Some((slot, scalar, scalar.lower, scalar.upper)),
         _ => None,
     });
     learned

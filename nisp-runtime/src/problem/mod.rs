@@ -106,7 +106,7 @@ impl Problem {
     /// Gives a parameter its value, in its declared unit.
     ///
     /// # Errors
-    /// No such parameter, or a value that is not finite.
+    /// No such parameter, or a value that is not finite or outside of its declared range.
     pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), BindError> {
         let scalars = self.scene.schema.scalars;
         let at = scalars.iter().position(|s| !name.is_empty() && s.name == name).ok_or_else(|| {
@@ -115,7 +115,9 @@ impl Problem {
         if !value.is_finite() {
             return Err(BindError::Parameter { name: name.into(), value });
         }
-        self.scalars[at] = Some(value * scalars[at].unit.factor);
+        let value = value * scalars[at].unit.factor;
+        bind::within(&scalars[at], value)?;
+        self.scalars[at] = Some(value);
         Ok(())
     }
 

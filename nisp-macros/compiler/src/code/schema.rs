@@ -88,22 +88,22 @@ fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &Sc
             let parameter = &model.parameters[*at];
             let (name, unit) = (&parameter.name.text, unit(&parameter.unit));
             let default = optional(declared.fixed_parameters[*at].or(parameter.default));
+            let (lower, upper) = (optional(parameter.lower), optional(parameter.upper));
             let origin = if declared.learned[*at] {
-                let (lower, upper) = (optional(parameter.lower), optional(parameter.upper));
-                quote!(schema::Origin::Learned { start: #default, lower: #lower, upper: #upper })
+                quote!(schema::Origin::Learned { start: #default })
             } else {
                 quote!(schema::Origin::Given(#default))
             };
-            quote!(schema::Scalar { name: #name, unit: #unit, origin: #origin })
+            quote!(schema::Scalar { name: #name, unit: #unit, lower: #lower, upper: #upper, origin: #origin })
         }
         Scalar::Literal(value, dimension) => {
             let unit = si(dimension);
-            quote!(schema::Scalar { name: "", unit: #unit, origin: schema::Origin::Literal(#value) })
+            quote!(schema::Scalar { name: "", unit: #unit, lower: None, upper: None, origin: schema::Origin::Literal(#value) })
         }
         Scalar::FieldScale(field) => {
             let unit = si(&model.fields[*field].unit.dimension);
             let head = scene.heads.iter().position(|head| head == field).unwrap_or(0);
-            quote!(schema::Scalar { name: "", unit: #unit, origin: schema::Origin::HeadScale(#head) })
+            quote!(schema::Scalar { name: "", unit: #unit, lower: None, upper: None, origin: schema::Origin::HeadScale(#head) })
         }
         Scalar::SideScale(dimension, group, term, side) => {
             let unit = si(dimension);
@@ -111,6 +111,8 @@ fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &Sc
                 schema::Scalar {
                     name: "",
                     unit: #unit,
+                    lower: None,
+                    upper: None,
                     origin: schema::Origin::SideScale { group: #group, term: #term, side: #side },
                 }
             }

@@ -111,8 +111,15 @@ fn parameter(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: 
     let _ =
         add_components(elaborator, declaration, Meaning::Parameter, first, &names, shaped(declaration, entries, dim));
     let default = each(declaration.value.as_ref(), names.len(), &unit, elaborator);
-    let lower = each(declaration.lower.as_ref(), names.len(), &unit, elaborator);
-    let upper = each(declaration.upper.as_ref(), names.len(), &unit, elaborator);
+    let mut lower = each(declaration.lower.as_ref(), names.len(), &unit, elaborator);
+    let mut upper = each(declaration.upper.as_ref(), names.len(), &unit, elaborator);
+    // A bound that is left out is the next number.
+    if declaration.above {
+        lower.iter_mut().flatten().for_each(|low| *low = low.next_up());
+    }
+    if declaration.below {
+        upper.iter_mut().flatten().for_each(|high| *high = high.next_down());
+    }
     let spread = spreads(declaration.spread.as_ref(), &declaration.name, names.len(), &unit, elaborator);
     let count = names.len();
     for (k, name) in names.into_iter().enumerate() {

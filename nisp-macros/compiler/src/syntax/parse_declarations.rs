@@ -99,8 +99,19 @@ fn entry(
         Some(unit) => unit.ok(),
     };
     let broken_name = name.text.clone();
-    let mut declaration =
-        Declaration { kind, name, shape, unit, lower: None, upper: None, value: None, spread: None, docs };
+    let mut declaration = Declaration {
+        kind,
+        name,
+        shape,
+        unit,
+        lower: None,
+        upper: None,
+        above: false,
+        below: false,
+        value: None,
+        spread: None,
+        docs,
+    };
     attributes(stream, context, &mut declaration)?;
     context.broken.remove(&broken_name);
     Ok(declaration)
@@ -135,7 +146,7 @@ fn shape(stream: &mut Stream<'_>, context: &mut Context<'_>, kind: Kind) -> Chec
     }
 }
 
-/// `>= a`, `<= b`, `in a .. b`, `= c`, `within d`, in any order.
+/// `>= a`, `> a`, `<= b`, `< b`, `in a .. b`, `= c`, `within d`, in any order.
 fn attributes(stream: &mut Stream<'_>, context: &mut Context<'_>, declaration: &mut Declaration) -> Checked<()> {
     loop {
         let start = stream.place();
@@ -148,6 +159,14 @@ fn attributes(stream: &mut Stream<'_>, context: &mut Context<'_>, declaration: &
         } else if stream.take("<=").is_some() {
             declaration.upper = Some(parse_expression::parse(stream, context)?);
             allow(context, declaration, start.to(stream.previous()), "<=")?;
+        } else if stream.take(">").is_some() {
+            declaration.lower = Some(parse_expression::parse(stream, context)?);
+            declaration.above = true;
+            allow(context, declaration, start.to(stream.previous()), ">")?;
+        } else if stream.take("<").is_some() {
+            declaration.upper = Some(parse_expression::parse(stream, context)?);
+            declaration.below = true;
+            allow(context, declaration, start.to(stream.previous()), "<")?;
         } else if stream.take_word("in") {
             declaration.lower = Some(parse_expression::parse(stream, context)?);
             if stream.take("..=").or_else(|| stream.take("..")).is_none() {

@@ -73,10 +73,14 @@ pub struct Declaration {
     pub shape: Shape,
     /// Its unit; None if the unit could not be read.
     pub unit: Option<Unit>,
-    /// `>= e`, or the left end of `in a .. b`.
+    /// `>= e` or `> e`, or the left end of `in a .. b`.
     pub lower: Option<Expr>,
-    /// `<= e`, or the right end of `in a .. b`.
+    /// `<= e` or `< e`, or the right end of `in a .. b`.
     pub upper: Option<Expr>,
+    /// True for `> e`: the bound itself is left out.
+    pub above: bool,
+    /// True for `< e`.
+    pub below: bool,
     /// `= e`.
     pub value: Option<Expr>,
     /// `within e`: how far a learned parameter is believed to be from its value.
