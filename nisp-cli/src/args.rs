@@ -36,10 +36,6 @@ pub(crate) enum Command {
     /// Recover a source; without options, from the repository's own noisy example.
     #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
     Solve(Box<Options>),
-    /// Measure error against time over methods, widths and precisions, beside classical rivals.
-    Frontier(Box<crate::frontier::Options>),
-    /// Measure what each part of the method is worth, beside what the paper says of its own.
-    Ablate(Box<crate::ablate::Options>),
 }
 
 /// How and from what to solve.

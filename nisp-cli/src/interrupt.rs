@@ -43,19 +43,19 @@ enum Reached {
     Answer(PathBuf),
 }
 
-/// Begins to listen. Before that a signal ends the program as it ends any other.
+/// Begins to listen, in the name of a program. Before that a signal ends the program as it ends any other.
 ///
 /// # Errors
 /// The system does not let it.
-pub fn listen() -> Result<(), String> {
-    let watch = Builder::new().name("watch".into()).spawn(watch);
+pub fn listen(program: &'static str) -> Result<(), String> {
+    let watch = Builder::new().name("watch".into()).spawn(move || watch(program));
     let watch = watch.map_err(|error| format!("cannot start a thread: {error}"))?.thread().clone();
     let heard = ctrlc::set_handler(move || {
         if ASKED.swap(true, Ordering::Relaxed) {
             exit(KILLED);
         }
         watch.unpark();
-        say("\nnisp: stopping at the best state so far; once more to stop at once\n".into());
+        say(format!("\n{program}: stopping at the best state so far; once more to stop at once\n"));
     });
     heard.map_err(|error| format!("cannot listen for Ctrl-C: {error}"))
 }
@@ -95,7 +95,7 @@ pub fn placing<T>(put: impl FnOnce() -> T) -> T {
 }
 
 /// Waits for the first signal, and then not for ever.
-fn watch() {
+fn watch(program: &str) {
     while !asked() {
         park();
     }
@@ -107,10 +107,10 @@ fn watch() {
             held => break held,
         }
     };
-    leave()
+    leave(program)
 }
 
-fn leave() -> ! {
+fn leave(program: &str) -> ! {
     let mut leaving = lock(&LEAVING);
     let seconds = GRACE.as_secs();
     let words = match std::mem::replace(&mut leaving.reached, Reached::Nothing) {
@@ -127,7 +127,7 @@ fn leave() -> ! {
     if let Some(traces) = leaving.traces.take() {
         traces.remove();
     }
-    say(format!("nisp: interrupted; {words}\n"));
+    say(format!("{program}: interrupted; {words}\n"));
     exit(NOT_CONVERGED.into())
 }
 

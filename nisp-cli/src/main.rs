@@ -1,13 +1,10 @@
-//! The `nisp` command: list, explain and solve the equations that NISP ships, and measure how well.
+//! The `nisp` command: list, explain and solve the equations that NISP ships.
 
-mod ablate;
 mod args;
 mod checkpoint;
 mod config;
 mod explain;
-mod frontier;
 mod list;
-mod measure;
 mod report;
 mod results;
 mod solve;
@@ -22,6 +19,9 @@ use nisp_cli::terminal::end;
 
 use args::{Args, Command};
 
+/// The program's name, in its messages.
+const NAME: &str = "nisp";
+
 fn main() -> ExitCode {
     let result = parse(std::env::args_os().collect()).and_then(|args| match args {
         Parsed::Shown(code) => Ok(code),
@@ -30,10 +30,8 @@ fn main() -> ExitCode {
             explain::explain(&equation, scene.as_deref(), Architecture::modified(width, layers))
         }
         Parsed::Asked(Args { command: Command::Solve(options) }) => solve::solve(&options),
-        Parsed::Asked(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),
-        Parsed::Asked(Args { command: Command::Ablate(options) }) => ablate::ablate(&options),
     });
-    end("nisp", result)
+    end(NAME, result)
 }
 
 enum Parsed {

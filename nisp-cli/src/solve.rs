@@ -35,7 +35,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
     let settings = prepared.suited(settings);
     let from = options.resume.as_deref().map(checkpoint::read).transpose()?;
-    interrupt::listen()?;
+    interrupt::listen(crate::NAME)?;
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::clean(out.traces());
     let names = [results::names(&prepared), vec![checkpoint::NAME]].concat();
@@ -62,7 +62,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         report::table(&solution, &run, &found.with_rival(&prepared))
     };
     if let Err(message) = print(&text) {
-        note(&format!("nisp: {message}\n"));
+        note(&format!("{}: {message}\n", crate::NAME));
         return Ok(ExitCode::from(NOT_WRITTEN));
     }
     let unfinished = matches!(solution.status, Status::NotConverged | Status::Interrupted);

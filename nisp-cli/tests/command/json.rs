@@ -1,10 +1,8 @@
 //! The object of `--json` holds everything that a script may want: values, bars, noise, and what is left of every term.
 
-mod common;
-
 use std::fs;
 
-use common::{Place, circuit};
+use crate::common::{Place, circuit};
 use serde_json::Value;
 
 /// Standard deviation of the noise on the measurements.

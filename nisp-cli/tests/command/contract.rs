@@ -1,10 +1,8 @@
 //! Names, fields and exit codes that scripts depend on.
 
-mod common;
-
 use std::fs;
 
-use common::{Place, circuit, circuit_table, names};
+use crate::common::{Place, circuit, circuit_table, names};
 use serde_json::Value;
 
 fn object(text: &str) -> Value {

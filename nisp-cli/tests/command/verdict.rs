@@ -1,8 +1,6 @@
 //! What is said of answers to spoiled problems, and of answers to sound ones.
 
-mod common;
-
-use common::Place;
+use crate::common::Place;
 use serde_json::Value;
 
 /// Exit code, status, and the checks that failed.

@@ -1,11 +1,9 @@
 //! The README shows what the command prints.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::Place;
+use crate::common::Place;
 
 /// A line without what differs between runs: numbers, and how the run ended.
 fn shape(line: &str) -> String {

@@ -1,11 +1,9 @@
 //! Membrane and sponge from point clouds: what is read, what is written, what is measured.
 
-mod common;
-
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use common::{Place, names};
+use crate::common::{Place, names};
 use serde_json::Value;
 
 /// A file of the repository's data.

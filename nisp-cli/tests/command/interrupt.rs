@@ -1,13 +1,11 @@
 //! Ctrl-C keeps what was reached.
 #![cfg(unix)]
 
-mod common;
-
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use common::{Place, circuit, names};
+use crate::common::{Place, circuit, names};
 
 fn start(place: &Place) -> Child {
     let mut command = place.command("solve pendulum --budget 120 --json");

@@ -1,9 +1,7 @@
 //! The circuit's equation determines its source up to a multiple of exp(-6 t), since f' + 6 f = 0 has that solution; the plate's
 //! determines its deflection if its edge has a slope; a membrane's, its modulus if somebody has measured the pressure.
 
-mod common;
-
-use common::Place;
+use crate::common::Place;
 use serde_json::Value;
 
 fn solved(arguments: &str) -> Value {

@@ -1,10 +1,8 @@
 //! Whatever is wrong with the input: one line that says what to do, exit code 2, no files, no panic.
 
-mod common;
-
 use std::fs;
 
-use common::{Place, circuit, circuit_table};
+use crate::common::{Place, circuit, circuit_table};
 
 /// Runs `solve rlc --data data.csv` and more on a table, and returns the one line.
 fn refusal(table: &str, more: &str) -> String {

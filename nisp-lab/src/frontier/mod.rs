@@ -1,4 +1,4 @@
-//! `nisp frontier`: error of the source against time, by method, width and precision, beside the classical rivals.
+//! `nisp-lab frontier`: error of the source against time, by method, width and precision, beside the classical rivals.
 //!
 //! Every figure of a scene over time is a mean over fresh noisy copies of the repository's truths, so that settings chosen
 //! on the copies in the repository are not judged on them. Other scenes are solved from a sample with a truth.
@@ -82,7 +82,7 @@ pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
     let measures = measures(&samples[0])?;
     let trials = trials(options, !local.is_empty());
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
-    interrupt::listen()?;
+    interrupt::listen(crate::NAME)?;
     let total: f64 = options.budgets.iter().sum::<f64>() * (trials.len() * samples.len()) as f64;
     progress(&format!("{} runs, {total:.0} s at most\n", trials.len() * samples.len() * options.budgets.len()));
     let mut points = Vec::new();

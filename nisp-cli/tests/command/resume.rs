@@ -1,10 +1,8 @@
 //! `--checkpoint` and `--resume`.
 
-mod common;
-
 use std::fs;
 
-use common::{Place, names};
+use crate::common::{Place, names};
 use serde_json::Value;
 
 fn answer(place: &Place, folder: &str) -> [String; 2] {

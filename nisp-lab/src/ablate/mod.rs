@@ -1,4 +1,4 @@
-//! `nisp ablate`: what each part of the method is worth, beside what the paper says of its own.
+//! `nisp-lab ablate`: what each part of the method is worth, beside what the paper says of its own.
 //!
 //! A study compares variations of one setting on the same samples; everything else stays as it is. Figures are means over
 //! the samples, which are the repository's.
@@ -49,7 +49,7 @@ pub(crate) struct Options {
 
 /// Runs the studies and prints a Markdown table of each as soon as it is done.
 pub(crate) fn ablate(options: &Options) -> Result<ExitCode, String> {
-    interrupt::listen()?;
+    interrupt::listen(crate::NAME)?;
     for study in studies() {
         if options.studies.is_empty() || options.studies.iter().any(|name| name == study.name) {
             nisp_cli::terminal::print(&table(&study, options)?)?;

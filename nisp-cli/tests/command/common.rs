@@ -1,5 +1,4 @@
 //! Runs the command in a folder of its own.
-#![allow(dead_code, reason = "each test binary uses its own part")]
 
 use std::fs;
 use std::path::{Path, PathBuf};

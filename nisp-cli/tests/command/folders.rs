@@ -1,14 +1,12 @@
 //! The folder of results: one run at a time, all files or none, and an answer is never nowhere.
 #![cfg(unix)]
 
-mod common;
-
 use std::fs;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use common::{Place, names};
+use crate::common::{Place, names};
 use serde_json::Value;
 
 const FILES: [&str; 3] = ["plot.svg", "source.csv", "state.csv"];

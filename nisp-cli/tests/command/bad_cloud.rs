@@ -1,11 +1,9 @@
 //! Clouds and samples that cannot be right: one line that says what to do, exit code 2, nothing written.
 
-mod common;
-
 use std::fs;
 use std::path::Path;
 
-use common::Place;
+use crate::common::Place;
 
 /// A hemisphere-like cloud of an ellipse of 60 by 40 mm, in metres times `scale`, moved along x.
 fn bubble(scale: f64, along: f64) -> String {

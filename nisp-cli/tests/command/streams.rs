@@ -1,14 +1,12 @@
 //! Standard output and standard error may be closed, full or never read, and paths may be no text: nothing panics.
 #![cfg(unix)]
 
-mod common;
-
 use std::ffi::OsStr;
 use std::fs::{self, File};
 use std::os::unix::ffi::OsStrExt;
 use std::process::Stdio;
 
-use common::{Place, circuit_table, names};
+use crate::common::{Place, circuit_table, names};
 
 fn full() -> Stdio {
     File::options().write(true).open("/dev/full").unwrap().into()
@@ -20,7 +18,7 @@ fn a_full_standard_error_changes_no_exit_code() {
     for line in ["solve nope", "solve rlc --data nowhere.csv", "explain", "solve rlc --width x"] {
         assert_eq!(place.command(line).stderr(full()).status().unwrap().code(), Some(2), "{line}");
     }
-    // On the way of signals, too: see tests/interrupt.rs.
+    // On the way of signals, too: see interrupt.rs.
 }
 
 #[test]

@@ -1,8 +1,6 @@
-//! `nisp ablate` prints a table of every study that is asked for.
+//! `nisp-lab ablate` prints a table of every study that is asked for.
 
-mod common;
-
-use common::Place;
+use crate::Place;
 
 #[test]
 fn a_study_is_a_table_beside_the_papers_numbers() {

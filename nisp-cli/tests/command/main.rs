@@ -1,0 +1,16 @@
+//! Runs the command as its users do. One binary for all tests: linking the scenes takes longer than compiling the tests.
+
+mod bad_cloud;
+mod bad_input;
+mod common;
+mod contact;
+mod contract;
+mod folders;
+mod interrupt;
+mod json;
+mod open_directions;
+mod plate;
+mod readme;
+mod resume;
+mod streams;
+mod verdict;

@@ -1,0 +1,39 @@
+//! The `nisp-lab` command: measures how good the answers of `nisp` are, for those who work on it.
+
+mod ablate;
+mod frontier;
+mod measure;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use nisp_cli::options::show;
+use nisp_cli::terminal::end;
+
+/// Measure how good NISP is: error against time, and what each part of the method is worth.
+#[derive(Parser)]
+#[command(version)]
+struct Args {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Measure error against time over methods, widths and precisions, beside classical rivals.
+    Frontier(Box<frontier::Options>),
+    /// Measure what each part of the method is worth, beside what the paper says of its own.
+    Ablate(Box<ablate::Options>),
+}
+
+/// The program's name, in its messages.
+const NAME: &str = "nisp-lab";
+
+fn main() -> ExitCode {
+    let result = match Args::try_parse() {
+        Ok(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),
+        Ok(Args { command: Command::Ablate(options) }) => ablate::ablate(&options),
+        Err(error) => show(&error),
+    };
+    end(NAME, result)
+}
