@@ -86,7 +86,7 @@ fn an_unresolved_answer_says_so() {
     let solution = run(&prepared, &settings).unwrap();
     assert_eq!(solution.status, Status::Budget);
     let said = |words: &str| solution.verdict.failed().any(|check| check.message.contains(words));
-    assert!(said("`psi` is not resolved"), "{:?}", solution.verdict);
+    assert!(said("`q` is not resolved"), "{:?}", solution.verdict);
 }
 
 #[test]

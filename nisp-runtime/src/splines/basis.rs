@@ -132,7 +132,8 @@ mod tests {
                 for order in 0..=degree {
                     let sum = sum(&basis, &vec![1.0; basis.len()], at, order);
                     let expected = if order == 0 { 1.0 } else { 0.0 };
-                    assert!((sum - expected).abs() < 1e-12, "degree {degree}, order {order}: {sum}");
+                    // Fourth derivatives are of the order of ten thousand.
+                    assert!((sum - expected).abs() < 1e-10, "degree {degree}, order {order}: {sum}");
                 }
             }
         }

@@ -18,6 +18,8 @@ const BALANCE: f64 = 0.2;
 const PART: f64 = 0.03;
 /// A source smaller than this share of an equation's largest part counts as so large: next to nothing acts.
 const NOTHING: f64 = 0.01;
+/// What a condition states over the size that equations and data speak of.
+const STATED: f64 = 1e2;
 /// Points of a condition at most; more of them are held to an equation.
 const FEW_POINTS: usize = 8;
 /// Misfit over a declared tolerance.
@@ -87,6 +89,7 @@ impl Judged<'_> {
         let unit = term.unit.text;
         let condition = self.facts.points <= FEW_POINTS;
         let mut worst: Option<Check> = None;
+        let beyond = (term.first..term.first + term.rows).filter(|_| condition).find_map(|row| self.beyond(term, row));
         for (row, values) in rows.iter().enumerate().skip(term.first).take(term.rows) {
             let rms = root_mean_square(values.iter().copied());
             let (kind, scale, limit, said) = if let Some(within) = term.within {
@@ -113,7 +116,36 @@ impl Judged<'_> {
                 worst = Some(check);
             }
         }
-        worst.into_iter().collect()
+        worst.into_iter().chain(beyond).collect()
+    }
+
+    /// A value that a condition states where it is far beyond what equations and data speak of: its unit or its value is off,
+    /// or another part of the problem is.
+    fn beyond(&self, term: &'static Term, row: usize) -> Option<Check> {
+        let [jet] = *term.jets else { return None };
+        let read = &self.schema.jets[jet];
+        let head = &self.bound.problem.scene().schema.heads[read.head];
+        if !is_value(read) || head.transformed {
+            return None;
+        }
+        let slopes = self.facts.slopes(self.programs, self.schema, row, self.scalars);
+        let natural = self.bound.scaling.offset[read.head].abs() + self.bound.head_scale(read.head);
+        let natural = root_mean_square(slopes[jet].iter().copied()) * natural;
+        let mut jets = self.facts.jets.clone();
+        jets[jet * self.facts.stride..][..self.facts.stride].fill(0.0);
+        let stated = root_mean_square(self.row(row, &jets, &self.facts.columns));
+        let outward = self.bound.system.outward(&term.unit);
+        let said = format!(
+            "`{}.{}` states {:.2e} {unit}, where the equations and the data speak of {:.2e} {unit}: check its value and the units \
+             of the data",
+            self.schema.name,
+            term.name,
+            stated * outward,
+            natural * outward,
+            unit = term.unit.text
+        );
+        let check = Check::new("stated", (self.schema.name, term.name), (stated / natural, STATED), said);
+        Some(check).filter(|check| !check.passed)
     }
 
     /// Sizes of the parts of a row.

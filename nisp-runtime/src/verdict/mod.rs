@@ -16,7 +16,7 @@ use crate::problem::Bound;
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// What was looked at: `equation`, `condition`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`, `distance`, `seen`,
+    /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`, `distance`, `seen`,
     /// `patch` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars.
