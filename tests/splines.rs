@@ -33,6 +33,18 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// A spring of which something is believed.
+    mod spring {
+        coordinates: s [cm];
+        fields: u [mm];
+        parameters: k [N/m] in 1 .. 9 = 5 within 0.5;
+        on samples { observe u within 0.3 [mm]; }
+        on outputs { observe pull: k * s ~ force [mN] within 3 [mN]; }
+        scene believed { learn k; }
+    }
+}
+
+nisp::pde! {
     /// A string under a known load, held at both ends.
     mod string {
         units: off;
@@ -295,6 +307,27 @@ fn a_rate_of_reaction_is_found_from_any_noise() {
         let error = (0..101).map(off).sum::<f64>() / 101.0;
         assert!(error < 0.2 && covered >= 81, "seed {seed}: {error}, {covered} covered");
     }
+}
+
+/// A line through the origin under a Gaussian belief has a closed form: means weigh as much as they are precise.
+#[test]
+fn a_belief_and_data_weigh_as_much_as_they_are_precise() {
+    // Where the spring was pulled to, in cm, and the force there, in mN; N/m times cm are 10 mN.
+    let pulls = [(0.1, 3.0), (0.2, 14.0), (0.25, 13.0), (0.3, 20.0)];
+    let precision = 0.5_f64.powi(-2) + pulls.iter().map(|(s, _)| (10.0 * s / 3.0_f64).powi(2)).sum::<f64>();
+    let mean = (5.0 / 0.25 + pulls.iter().map(|(s, force)| 10.0 * s / 9.0 * force).sum::<f64>()) / precision;
+    let mut problem = Problem::new(scene::<spring::believed::Scene>());
+    let places: Vec<f64> = (0..20).map(|i| 0.02 * f64::from(i)).collect();
+    problem.set_group("samples", places.clone().into(), vec![places.iter().map(|s| s.sin()).collect()]).unwrap();
+    let (pulled, force): (Vec<f64>, Vec<f64>) = pulls.into_iter().unzip();
+    problem.set_group("outputs", pulled.into(), vec![force]).unwrap();
+    let mut solution = solve(&problem, Carrier::Auto);
+    assert_eq!(solution.carrier, "splines");
+    let learned = solution.learned()[0].clone();
+    let deviation = precision.powf(-0.5);
+    // The parameter of a positive scalar is a logarithm, in which the belief is Gaussian too, but not the same.
+    assert!((learned.value - mean).abs() < 0.05 * deviation, "{learned:?} instead of {mean}");
+    assert!((learned.deviation.unwrap() / deviation - 1.0).abs() < 0.05, "{learned:?} instead of {deviation}");
 }
 
 #[test]

@@ -3,6 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use crate::problem::Bound;
+use crate::schema;
 
 /// Noise of what is observed.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,6 +36,12 @@ impl Noise {
     /// True if no observation shows noise.
     pub(crate) fn is_exact(&self) -> bool {
         self.observations.iter().all(|o| is_exact(o.deviation, o.spread))
+    }
+
+    /// True if data are off by some noise, found or declared: only then error bars say something.
+    pub(crate) fn is_there(&self, schema: &schema::Scene) -> bool {
+        let mut terms = schema.groups.iter().flat_map(|group| group.terms);
+        !self.is_exact() || terms.any(|term| term.within.is_some() && !term.columns.is_empty())
     }
 
     /// Share of the data's variance that is noise, the mean over observations: 0 for exact data. One, the worst, where

@@ -1,6 +1,6 @@
 //! `nisp-lab frontier` prints a table, and writes it and a plot.
 
-use std::fs::read_to_string;
+use std::fs::{read_dir, read_to_string};
 
 use crate::Place;
 
@@ -24,6 +24,7 @@ fn the_frontier_is_a_table_and_a_plot_with_rivals() {
     }
     assert!(!ran.stdout.contains("lm f32"));
     assert!(place.path("out/frontier.svg").exists());
+    assert_eq!(read_dir(place.path("out")).unwrap().count(), 2);
     // Two widths of three methods, and four rivals, below the header.
     assert_eq!(read_to_string(place.path("out/frontier.csv")).unwrap().lines().count(), 13);
     let lost = place.run("frontier rlc --repository nowhere --out lost");

@@ -86,8 +86,7 @@ pub(super) fn solve(
         chosen => chosen,
     };
     // A prior that no evidence has weighed says nothing of what exact data leave open: the error is that of the solver.
-    let mut terms = bound.problem.scene().schema.groups.iter().flat_map(|group| group.terms);
-    let is_noisy = !noise.is_exact() || terms.any(|term| term.within.is_some() && !term.columns.is_empty());
+    let is_noisy = noise.is_there(bound.problem.scene().schema);
     let prior = prior.filter(|_| optimizer == Optimizer::Evidence || is_noisy);
     let run = Run { optimizer, precision, start, prior, distrust: Distrust::under(&noise) };
     Ok(Solution::new(bound, engine, outcome, settings, run))

@@ -142,7 +142,7 @@ pub(crate) fn solve(
         place.state = State { step: place.state.step, ..state };
     }
     let mut spreads = Vec::new();
-    if matches!(status, Status::Converged | Status::Budget) && !noise.is_exact() {
+    if matches!(status, Status::Converged | Status::Budget) && noise.is_there(bound.problem.scene().schema) {
         for (order, mut state) in place.likely() {
             solver.order = ORDERS[order];
             solver.doubt_roughness(&mut state);
