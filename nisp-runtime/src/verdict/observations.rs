@@ -111,11 +111,11 @@ fn by_chance(rows: &[Vec<f64>]) -> f64 {
 }
 
 /// How much larger the noise may be than differences of few data say. Eighth differences of neighbours share most of their
-/// values, so that six data make about one of them that is its own; two and a half deviations of chi squared.
+/// values, so that six data make about one of them that is its own; one and a half deviations of chi squared.
 fn doubt(rows: &[Vec<f64>]) -> f64 {
     let own = rows.first().map_or(0.0, |row| (row.len() as f64 - 8.0) / 6.0).max(1.0);
     let part = 2.0 / (9.0 * own);
-    (1.0 - part - 2.5 * part.sqrt()).max(0.1).powf(-1.5)
+    (1.0 - part - 1.5 * part.sqrt()).max(0.1).powf(-1.5)
 }
 
 /// The size of values by their median magnitude, in standard deviations of normal numbers: outliers count for nothing.
