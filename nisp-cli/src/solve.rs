@@ -36,10 +36,10 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let settings = prepared.suited(settings);
     let from = options.resume.as_deref().map(checkpoint::read).transpose()?;
     interrupt::listen(crate::NAME)?;
+    let names = [results::names(&prepared), vec![checkpoint::NAME]].concat();
+    OutDir::require_free(&options.out, &names).map_err(|error| error.to_string())?;
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::clean(out.traces());
-    let names = [results::names(&prepared), vec![checkpoint::NAME]].concat();
-    out.require_free(&names).map_err(|error| error.to_string())?;
     let mut keeper = Keeper::new(&out, options.checkpoint);
     let mut solution = run(&prepared, &settings, from.as_ref(), &mut keeper)?;
     let failure = keeper.failure.take();

@@ -29,7 +29,17 @@ pub struct OutDir {
 }
 
 impl OutDir {
-    /// Makes the folder (and its parents) if needed, takes it, and proves with a probe file that it can be written.
+    /// Checks before the work starts that no folder stands where one of these files is to be.
+    ///
+    /// # Errors
+    /// One does.
+    pub fn require_free(folder: &Path, names: &[&str]) -> Result<(), DataError> {
+        let taken = names.iter().map(|name| folder.join(name)).find(|path| path.is_dir());
+        let source = io::Error::from(io::ErrorKind::IsADirectory);
+        taken.map_or(Ok(()), |path| Err(DataError::Unwritable { path, source }))
+    }
+
+    /// Makes the folder (and its parents) if needed, proves with a probe file that it can be written, and takes it.
     ///
     /// # Errors
     /// The folder cannot be made or written, or another process has it.
@@ -40,9 +50,9 @@ impl OutDir {
         let made = path.ancestors().take_while(absent).map(Path::to_path_buf).collect();
         let mut out = OutDir { path: path.clone(), made, used: AtomicBool::new(false), lock: None };
         fs::create_dir_all(&path).map_err(fail)?;
+        tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).tempfile_in(&path).map_err(fail)?;
         out.lock = Some(FolderLock::take(&path)?);
         sweep(&path);
-        tempfile::Builder::new().prefix(PREFIX).suffix(SUFFIX).tempfile_in(&path).map_err(fail)?;
         Ok(out)
     }
 
@@ -54,16 +64,6 @@ impl OutDir {
     /// Where a file of this name will stand.
     pub fn file(&self, name: &str) -> PathBuf {
         self.path.join(name)
-    }
-
-    /// Checks before the work starts that no folder stands where one of these files is to be.
-    ///
-    /// # Errors
-    /// One does.
-    pub fn require_free(&self, names: &[&str]) -> Result<(), DataError> {
-        let taken = names.iter().map(|name| self.file(name)).find(|path| path.is_dir());
-        let source = io::Error::from(io::ErrorKind::IsADirectory);
-        taken.map_or(Ok(()), |path| Err(DataError::Unwritable { path, source }))
     }
 
     /// Writes several files: all of them or, if one cannot be written, none.

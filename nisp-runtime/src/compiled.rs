@@ -38,7 +38,7 @@ where
     }
 
     fn takes_values(&self) -> bool {
-        takes_values::<E, D, S>()
+        const { takes_values::<E>(D, S) }
     }
 
     fn affine(&self, isa: Isa, layer: Affine<'_, E>) {

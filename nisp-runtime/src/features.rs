@@ -59,7 +59,7 @@ pub(crate) fn tabulate<E: Real>(function: Function, point: &[E], projections: &[
 
 /// `phi(a)` and its derivatives, from the two entries of a table.
 #[inline(always)]
-fn derivatives<V: Simd, const D: usize>(function: Function, [value, other]: [V; 2]) -> [V; D] {
+pub fn derivatives<V: Simd, const D: usize>(function: Function, [value, other]: [V; 2]) -> [V; D] {
     let mut phi = [V::splat(V::Elem::ZERO); D];
     match function {
         Function::Sine => {

@@ -5,6 +5,8 @@
 //! [`Programs`], whose methods work on a whole tile of points, so that one engine serves every equation and the choice of
 //! instruction set costs one branch per tile and layer.
 
+use std::marker::PhantomData;
+
 use crate::features::Features;
 use crate::layer::{Affine, AffineAdjoint, Gate, GateAdjoint, Gated, GatedAdjoint, Layer, LayerAdjoint};
 use crate::real::Real;
@@ -102,34 +104,72 @@ pub trait Scene: Copy + Send + Sync + 'static {
     fn kernels<E: Real>() -> Vec<GroupKernel<E>>;
 }
 
+/// Where a scene's kernels come from: compiled in a user's crate, or interpreted.
+pub trait Kernels: Send + Sync {
+    /// One kernel per group of the schema, then that of the outputs, in double precision.
+    fn double(&self) -> Vec<GroupKernel<f64>>;
+    /// The same in single precision, if the scene has it.
+    fn single(&self) -> Option<Vec<GroupKernel<f32>>>;
+}
+
 /// A scene without its type: its schema and its kernels.
 #[derive(Clone, Copy)]
 pub struct SceneRef {
     /// What the compiler knows of the scene.
     pub schema: &'static schema::Scene,
-    double: fn() -> Vec<GroupKernel<f64>>,
-    single: Option<fn() -> Vec<GroupKernel<f32>>>,
+    kernels: &'static dyn Kernels,
+}
+
+/// The kernels of a compiled scene in double precision.
+struct Double<S>(PhantomData<fn() -> S>);
+
+/// The kernels of a compiled scene in both precisions.
+struct Both<S>(PhantomData<fn() -> S>);
+
+impl<S: Scene> Kernels for Double<S> {
+    fn double(&self) -> Vec<GroupKernel<f64>> {
+        S::kernels()
+    }
+
+    fn single(&self) -> Option<Vec<GroupKernel<f32>>> {
+        None
+    }
+}
+
+impl<S: Scene> Kernels for Both<S> {
+    fn double(&self) -> Vec<GroupKernel<f64>> {
+        S::kernels()
+    }
+
+    fn single(&self) -> Option<Vec<GroupKernel<f32>>> {
+        Some(S::kernels())
+    }
 }
 
 /// A scene without its type, in double precision.
 pub fn scene<S: Scene>() -> SceneRef {
-    SceneRef { schema: S::SCHEMA, double: S::kernels::<f64>, single: None }
+    SceneRef::new(S::SCHEMA, &Double::<S>(PhantomData))
 }
 
 /// A scene without its type, in single precision too: twice the code of [`scene`] to compile.
 pub fn scene_in_both_precisions<S: Scene>() -> SceneRef {
-    SceneRef { single: Some(S::kernels::<f32>), ..scene::<S>() }
+    SceneRef::new(S::SCHEMA, &Both::<S>(PhantomData))
 }
 
 impl SceneRef {
-    /// True if it is compiled in single precision too.
+    /// A scene of a schema and of kernels in the schema's order.
+    pub fn new(schema: &'static schema::Scene, kernels: &'static dyn Kernels) -> Self {
+        Self { schema, kernels }
+    }
+
+    /// True if it has kernels in single precision too.
     pub(crate) fn has_single(&self) -> bool {
-        self.single.is_some()
+        self.kernels.single().is_some()
     }
 
     /// The kernels in double precision.
     pub(crate) fn double(&self) -> Vec<GroupKernel<f64>> {
-        (self.double)()
+        self.kernels.double()
     }
 }
 
@@ -147,7 +187,7 @@ pub trait Precision: Real {
 
 impl Precision for f32 {
     fn kernels(scene: &SceneRef) -> Option<Vec<GroupKernel<f32>>> {
-        scene.single.map(|kernels| kernels())
+        scene.kernels.single()
     }
 }
 

@@ -3,6 +3,7 @@
 
 use crate::compiled::CompiledLayers;
 use crate::kernel::{Layers, Rules};
+use crate::real::Real;
 use crate::simd::Simd;
 
 /// Coordinates that there are layers of values over, at most.
@@ -62,4 +63,18 @@ macro_rules! precompiled {
 precompiled! {
     f32 over 1 2 3 4;
     f64 over 1 2 3 4;
+}
+
+/// The layers of values over so many coordinates, at most four.
+///
+/// # Panics
+/// Over no coordinate, or over more than four.
+pub fn precompiled<E: Real>(coordinates: usize) -> &'static dyn Layers<E> {
+    match coordinates {
+        1 => <E as Precompiled<1>>::values(),
+        2 => <E as Precompiled<2>>::values(),
+        3 => <E as Precompiled<3>>::values(),
+        4 => <E as Precompiled<4>>::values(),
+        _ => panic!("layers of values are compiled over one to four coordinates"),
+    }
 }

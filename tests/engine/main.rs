@@ -8,6 +8,7 @@ mod dense_jet;
 mod determinism;
 mod gradients;
 mod hard;
+mod interpreted;
 mod models;
 mod number;
 mod open;

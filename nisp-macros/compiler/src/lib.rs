@@ -14,6 +14,7 @@
 
 pub mod channels;
 pub mod code;
+pub mod describe;
 pub mod error;
 pub mod loss;
 pub mod model;
@@ -31,24 +32,44 @@ use proc_macro2::TokenStream;
 
 /// Compiles a `pde!` invocation to the module that replaces it, or to every error found in it.
 pub fn compile(tokens: TokenStream) -> TokenStream {
+    match analyse(tokens) {
+        Ok((model, plan)) => code::emit(&model, &plan),
+        Err(Failure { errors, model }) => {
+            let mut tokens = errors.into_compile_errors();
+            tokens.extend(model.as_ref().map(code::skeleton));
+            tokens
+        }
+    }
+}
+
+/// Why an equation has no plan: every error found, and as much of the model as keeps its names defined.
+#[derive(Debug)]
+pub struct Failure {
+    /// The errors.
+    pub errors: error::Errors,
+    /// The model, where names could be resolved.
+    pub model: Option<model::Model>,
+}
+
+/// Every stage but the last: a model and its plan.
+///
+/// # Errors
+/// Everything that is wrong with the equation.
+pub fn analyse(tokens: TokenStream) -> Result<(model::Model, plan::Plan), Failure> {
     let mut errors = error::Errors::new();
     let module = syntax::parse(tokens, &mut errors);
     let checked = module.and_then(|module| model::check(&module, &mut errors));
-    let Some(mut model) = checked else { return errors.into_compile_errors() };
+    let Some(mut model) = checked else { return Err(Failure { errors, model: None }) };
     if !errors.is_empty() {
-        let mut tokens = errors.into_compile_errors();
-        tokens.extend(code::skeleton(&model));
-        return tokens;
+        return Err(Failure { errors, model: Some(model) });
     }
     match plan_with_outputs(&mut model) {
-        Ok(plan) => code::emit(&model, &plan),
+        Ok(plan) => Ok((model, plan)),
         Err(faults) => {
             for fault in faults {
                 errors.push(fault.span.unwrap_or(model.name.span), fault.message);
             }
-            let mut tokens = errors.into_compile_errors();
-            tokens.extend(code::skeleton(&model));
-            tokens
+            Err(Failure { errors, model: Some(model) })
         }
     }
 }

@@ -73,7 +73,7 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
                 let b = V::load(bias.as_ptr().add(u));
                 for p in 0..shape.points {
                     let row = p * shape.ld + u;
-                    let (t, s) = if takes_values::<E, D, S>() {
+                    let (t, s) = if const { takes_values::<E>(D, S) } {
                         (V::load(value.as_ptr().add(row)), V::load(slope.as_ptr().add(row)))
                     } else {
                         let mut a = b;

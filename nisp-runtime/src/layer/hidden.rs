@@ -75,7 +75,7 @@ where
                 // SAFETY: lengths were checked above; u + LANES <= width.
                 unsafe {
                     let a: [V; K] = load_channels(argument.as_ptr().add(at), shape.ld);
-                    let (t, s) = if takes_values::<E, D, S>() {
+                    let (t, s) = if const { takes_values::<E>(D, S) } {
                         (a[0], V::load(slope.as_ptr().add(p * shape.ld + u)))
                     } else {
                         let (t, s) = tanh::tanh_and_slope::<V, D>(a[0].add(V::load(bias.as_ptr().add(u))));

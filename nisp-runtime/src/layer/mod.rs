@@ -37,9 +37,11 @@ pub(crate) fn row_distance(width: usize) -> usize {
 /// True if layers of these rules are given their activations and slopes: where derivatives are of a higher order than may be
 /// taken at values of this precision, and there are layers of values over as many coordinates. Adjoints read one derivative
 /// more than the order, and the first is the value.
+///
+/// `derivatives` counts those of the activation, its value included.
 #[inline(always)]
-pub(crate) fn takes_values<E: Real, const D: usize, const S: usize>() -> bool {
-    const { D - 2 > E::HIGHEST_ORDER && S <= MOST_COORDINATES }
+pub const fn takes_values<E: Real>(derivatives: usize, coordinates: usize) -> bool {
+    derivatives - 2 > E::HIGHEST_ORDER && coordinates <= MOST_COORDINATES
 }
 
 impl Shape {

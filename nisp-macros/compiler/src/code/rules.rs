@@ -4,7 +4,8 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::lower::{Dialect, Frame, lower};
-use super::{rules_type, schema};
+use super::rules_type;
+use crate::describe;
 use crate::model::Model;
 use crate::plan::SetPlan;
 use crate::program::{Program, Slot};
@@ -14,7 +15,7 @@ pub(super) fn emit(at: usize, plan: &SetPlan, model: &Model) -> TokenStream {
     let name = rules_type(at);
     let (k, s) = (plan.set.len(), plan.set.coordinates);
     let d = plan.set.order() as usize + 2;
-    let channels = schema::channel_names(&plan.set, model);
+    let channels = describe::channel_names(&plan.set, model);
     let doc = format!(" Channels: {}.", channels.join(", "));
     let read = &plan.read;
     let compose = function(&plan.compose, quote!(phi: &[V; #d], a: &[V; #k]), quote!(phi, a));

@@ -3,11 +3,10 @@
 use proc_macro2::{Ident, Span, TokenStream};
 use quote::quote;
 
-use crate::channels::{ChannelSet, Operator};
+use crate::describe;
 use crate::loss::Robust;
 use crate::model::{self, Model, Role};
-use crate::plan::{GroupPlan, Jet, Plan, RowKind, Scalar, ScenePlan, SetPlan, TermPlan};
-use crate::rational::Rational;
+use crate::plan::{GroupPlan, Jet, Plan, RowKind, Scalar, ScenePlan, TermPlan};
 use crate::symbolic::exact::to_f64;
 use crate::unit::{Dimension, Unit};
 
@@ -15,7 +14,7 @@ use crate::unit::{Dimension, Unit};
 pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene) -> TokenStream {
     let module = &model.name.text;
     let name = &declared.name.text;
-    let docs = text(&declared.docs);
+    let docs = describe::text(&declared.docs);
     let coordinates = model.coordinates.iter().zip(&plan.scale_groups).map(|(coordinate, group)| {
         let (name, unit) = (&coordinate.name.text, unit(&coordinate.unit));
         quote!(schema::Coordinate { name: #name, unit: #unit, scale_group: #group })
@@ -41,35 +40,8 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
     }
 }
 
-/// Channels as people write them: `1`, `x`, `xx`, `xxx + xyy`.
-pub(super) fn channel_names(set: &ChannelSet, model: &Model) -> Vec<String> {
-    set.basis.iter().map(|operator| operator_name(operator, model, "")).collect()
-}
-
-/// An operator by its coordinates, each part behind `prefix`: `w_xxx + 2 w_xyy`.
-fn operator_name(operator: &Operator, model: &Model, prefix: &str) -> String {
-    let mut name = String::new();
-    for (at, (index, &coefficient)) in operator.terms().enumerate() {
-        let letters: String = index
-            .iter()
-            .zip(&model.coordinates)
-            .flat_map(|(&n, coordinate)| std::iter::repeat_n(coordinate.name.text.as_str(), n as usize))
-            .collect();
-        let letters = if letters.is_empty() { String::from("1") } else { letters };
-        if at > 0 {
-            name.push_str(" + ");
-        }
-        if coefficient != Rational::from_integer(1) {
-            name.push_str(&format!("{coefficient} "));
-        }
-        name.push_str(prefix);
-        name.push_str(&letters);
-    }
-    name
-}
-
 fn head(field: &model::Field) -> TokenStream {
-    let (name, unit, docs) = (&field.name.text, unit(&field.unit), text(&field.docs));
+    let (name, unit, docs) = (&field.name.text, unit(&field.unit), describe::text(&field.docs));
     let source = field.role == Role::Source;
     let (lower, upper) = (optional(field.lower), optional(field.upper));
     let transformed = field.lower.is_some() || field.upper.is_some();
@@ -87,7 +59,7 @@ fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &Sc
         Scalar::Parameter(at) => {
             let parameter = &model.parameters[*at];
             let (name, unit) = (&parameter.name.text, unit(&parameter.unit));
-            let default = optional(declared.fixed_parameters[*at].or(parameter.default));
+            let default = optional(describe::default(model, declared, *at));
             let (lower, upper) = (optional(parameter.lower), optional(parameter.upper));
             let origin = if declared.learned[*at] {
                 quote!(schema::Origin::Learned { start: #default })
@@ -122,11 +94,10 @@ fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &Sc
 
 fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene, group: &GroupPlan) -> TokenStream {
     let source = &model.groups[group.group];
-    let (name, docs, paired) = (&source.name.text, text(&source.docs), source.paired);
+    let (name, docs, paired) = (&source.name.text, describe::text(&source.docs), source.paired);
     let set = &plan.sets[group.hidden].set;
-    let channels = channel_names(set, model);
-    let order = set.order() as usize;
-    let dense = binomial(order + model.coordinates.len(), order);
+    let channels = describe::channel_names(set, model);
+    let (order, dense) = (set.order() as usize, describe::dense(set));
     let jets = group.jets.iter().map(|j| jet(model, scene, j));
     let columns = group.columns.iter().map(|&at| {
         let (name, unit) = (&source.columns[at].name.text, unit(&source.columns[at].unit));
@@ -135,7 +106,9 @@ fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene,
     let terms = group.terms.iter().map(|t| term(declared, group, source, t));
     let rows: usize = group.terms.iter().map(|t| t.rows).sum();
     let flops = [group.residual.flops(), group.adjoint.flops()];
-    let rule_flops = rule_flops(&plan.sets[group.hidden]);
+    let [compose, affine, product] =
+        describe::rule_flops(&plan.sets[group.hidden]).map(|[forward, back]| quote!([#forward, #back]));
+    let rule_flops = quote!(schema::RuleFlops { compose: #compose, affine: #affine, product: #product });
     quote! {
         schema::Group {
             name: #name, docs: #docs, channels: &[#(#channels),*], order: #order, dense: #dense,
@@ -145,25 +118,10 @@ fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene,
     }
 }
 
-fn rule_flops(rules: &SetPlan) -> TokenStream {
-    let [compose, product] = [(&rules.compose, &rules.compose_adjoint), (&rules.product, &rules.product_adjoint)].map(
-        |(forward, adjoint)| {
-            let [forward, back] = [forward.flops(), forward.flops() + adjoint.flops()];
-            quote!([#forward, #back])
-        },
-    );
-    let (affine, back) = (rules.affine.flops(), rules.affine_adjoint.flops());
-    quote!(schema::RuleFlops { compose: #compose, affine: [#affine, #back], product: #product })
-}
-
 fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {
     let head = jet.head;
-    let field = &model.fields[scene.heads[head]].name.text;
-    let name = match jet.operator.degree() {
-        0 => field.clone(),
-        _ => operator_name(&jet.operator, model, &format!("{field}_")),
-    };
-    let degree = degree(&jet.operator, model.coordinates.len());
+    let name = describe::jet_name(jet, scene, model);
+    let degree = describe::degree(&jet.operator, model.coordinates.len());
     let site = jet.site;
     let combination = jet.combination.iter().map(|(channel, coefficient)| {
         let coefficient = to_f64(*coefficient);
@@ -179,12 +137,6 @@ fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {
             operator: &[#(#operator),*], site: #site,
         }
     }
-}
-
-/// Degree of an operator per coordinate. All terms of a collapsed operator have the same degree within a scale group,
-/// so that any of them stands for all.
-fn degree(operator: &Operator, coordinates: usize) -> Vec<u8> {
-    operator.terms().next().map_or_else(|| vec![0; coordinates], |(index, _)| index.iter().map(|&n| n as u8).collect())
 }
 
 fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan: &TermPlan) -> TokenStream {
@@ -214,12 +166,7 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
         }
         _ => quote!(None),
     };
-    let columns: Vec<usize> = match &term.kind {
-        model::TermKind::Observation { columns, .. } => {
-            columns.iter().filter_map(|at| group.columns.iter().position(|own| own == at)).collect()
-        }
-        _ => Vec::new(),
-    };
+    let columns = describe::observed(group, source, plan);
     let (first, rows, jets) = (plan.first, plan.rows, &plan.jets);
     quote! {
         schema::Term {
@@ -243,12 +190,4 @@ fn si(dimension: &Dimension) -> TokenStream {
 
 fn optional(value: Option<f64>) -> TokenStream {
     value.map_or_else(|| quote!(None), |value| quote!(Some(#value)))
-}
-
-fn text(docs: &[String]) -> String {
-    docs.iter().map(|line| line.trim()).collect::<Vec<_>>().join("\n")
-}
-
-fn binomial(n: usize, k: usize) -> usize {
-    (1..=k).fold(1, |product, i| product * (n - k + i) / i)
 }
