@@ -174,7 +174,12 @@ impl Plain {
             }
             let own = problem.set_group(self.observed, samples.places().into(), samples.measured());
             own.map_err(|error| error.to_string())?;
-            let Self { stated, truth, .. } = self.clone();
+            let Self { mut stated, truth, .. } = self.clone();
+            for stated in &mut stated {
+                // Of data in a wrong unit.
+                let own = samples.columns.iter().filter(|column| column.name == stated.head);
+                stated.size = own.flat_map(|column| &column.values).fold(stated.size, |size, x| size.max(x.abs()));
+            }
             Ok(Ready { problem, carrier: Carrier::Auto, stated, truth }) as Result<Ready, String>
         };
         Experiment { samples, noise, bind: Box::new(bind) }

@@ -22,7 +22,7 @@ use nisp_cli::interrupt;
 use nisp_cli::options::{count, seconds, seed};
 use nisp_cli::terminal::{print, progress};
 
-use report::{json, table};
+use report::{HEAD, counts, json, line};
 use study::{Run, run, subjects};
 
 /// Which cases to run, and how.
@@ -54,6 +54,8 @@ pub(crate) fn honesty(options: &Options) -> Result<ExitCode, String> {
     let threads = options.threads.unwrap_or_else(nisp_cli::processors);
     let how = Run { seed: options.seed, budget: options.budget, threads };
     let mut rows = Vec::new();
+    let say = |text: &str| if options.json { Ok(()) } else { print(text) };
+    say(HEAD)?;
     for subject in subjects(&options.repository) {
         for case in &subject.cases {
             let name = format!("{}: {}", subject.name, case.corruption);
@@ -61,14 +63,16 @@ pub(crate) fn honesty(options: &Options) -> Result<ExitCode, String> {
                 continue;
             }
             progress(&name);
-            rows.push(run(&subject, case, &how)?);
+            let row = run(&subject, case, &how)?;
             interrupt::check()?;
+            say(&line(&row))?;
+            rows.push(row);
         }
     }
     progress("");
     if rows.is_empty() {
         return Err("no case has such a name".into());
     }
-    print(&if options.json { json(&rows) } else { table(&rows) })?;
+    print(&if options.json { json(&rows) } else { counts(&rows) })?;
     Ok(ExitCode::SUCCESS)
 }

@@ -4,7 +4,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Settings, Solution, recover};
+use nisp::{Check, Settings, Solution, recover};
 use nisp_cli::interrupt;
 
 use super::corruption::Corruption;
@@ -30,8 +30,8 @@ pub(super) struct Row {
     pub(super) said: &'static str,
     /// The exit code of `nisp solve`.
     pub(super) exit: u8,
-    /// Checks that failed, with value and limit.
-    pub(super) failed: Vec<String>,
+    /// All checks of the verdict.
+    pub(super) checks: Vec<Check>,
     /// Why it was refused.
     pub(super) refusal: Option<String>,
     pub(super) unknowns: Vec<(&'static str, Off)>,
@@ -74,7 +74,7 @@ pub(super) fn run(subject: &Subject, case: &Case, how: &Run) -> Result<Row, Stri
         can_be_told: case.can_be_told,
         said: "refused",
         exit: 2,
-        failed: Vec::new(),
+        checks: Vec::new(),
         refusal: None,
         unknowns: Vec::new(),
         unmet: Vec::new(),
@@ -86,10 +86,7 @@ pub(super) fn run(subject: &Subject, case: &Case, how: &Run) -> Result<Row, Stri
             row.said = said(solution.status);
             let unfinished = matches!(solution.status, Status::NotConverged | Status::Interrupted);
             row.exit = if unfinished || !solution.is_sound() { 3 } else { 0 };
-            let failed = solution.verdict.failed().map(|check| {
-                format!("{} {}.{} {:.3} > {}", check.check, check.group, check.term, check.value, check.limit)
-            });
-            row.failed = failed.collect();
+            row.checks.clone_from(&solution.verdict.checks);
             row.unmet = unmet(&solution, &ready.stated);
             let unknowns = unknowns(&mut solution, &ready.truth);
             row.judgement = judge(solution.status == Status::Converged, &unknowns, &row.unmet, sound);

@@ -43,7 +43,8 @@ fn load(x: f64) -> f64 {
     1e-3 * EI * waves(x, |n| (n * PI).powi(4))
 }
 
-/// In the other physics the beam is pulled along as well. Mirrored, the beam is another one under the mirrored load.
+/// In the other physics the beam is pulled along as well. A load on the supports bends nothing: whatever is missing of the sum may
+/// lie there, so that the sum refutes nothing.
 pub(super) fn subject() -> Subject {
     let make = |physics: Kind| {
         let gauges = line(0.0, 1.0, 60);
@@ -74,17 +75,7 @@ pub(super) fn subject() -> Subject {
         let experiment = plain.measured(Samples::default().at("x", gauges).of("w", w), 0.005);
         Ok(experiment.with("total", total))
     };
-    let told = [
-        Nothing,
-        Exact,
-        Few(20),
-        Gap(0.4, 0.6),
-        Physics,
-        Parameter("EI", 300.0),
-        Scaled("w", 1e3),
-        Moved("x", 0.15),
-        Mirrored("w", 0.0),
-        Outliers(0.05),
-    ];
-    Subject { name: "beam", make: Box::new(make), cases: cases(&told, &[Mirrored("x", 0.5)]) }
+    let told = [Nothing, Exact, Few(20), Gap(0.4, 0.6), Moved("x", 0.15), Outliers(0.05)];
+    let hidden = [Physics, Parameter("EI", 300.0), Scaled("w", 1e3), Mirrored("w", 0.0), Mirrored("x", 0.5)];
+    Subject { name: "beam", make: Box::new(make), cases: cases(&told, &hidden) }
 }

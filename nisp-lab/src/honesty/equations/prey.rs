@@ -29,7 +29,8 @@ fn harvest(t: f64) -> f64 {
     0.1 + 0.5 * (-((t - 5.0) / 1.5).powi(2)).exp()
 }
 
-/// In the other physics predators compete with each other. A wrong growth of the prey is another harvest.
+/// In the other physics predators compete with each other. A wrong growth of the prey is another harvest,
+/// and so are predators that are counted in thousands.
 pub(super) fn subject() -> Subject {
     let make = |physics: Kind| {
         let times = line(0.0, LAST, 120);
@@ -58,9 +59,8 @@ pub(super) fn subject() -> Subject {
         Physics,
         Parameter("c", 0.6),
         Parameter("e", 0.9),
-        Scaled("y", 1e3),
         Swapped("x", "y"),
         Outliers(0.05),
     ];
-    Subject { name: "prey", make: Box::new(make), cases: cases(&told, &[Parameter("a", 2.0)]) }
+    Subject { name: "prey", make: Box::new(make), cases: cases(&told, &[Parameter("a", 2.0), Scaled("y", 1e3)]) }
 }
