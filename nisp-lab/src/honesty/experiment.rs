@@ -147,6 +147,8 @@ pub(super) struct Subject {
     pub(super) name: &'static str,
     pub(super) make: Box<dyn Fn(Physics) -> Result<Experiment, String>>,
     pub(super) cases: Vec<Case>,
+    /// How many times longer than others it may take.
+    pub(super) patience: f64,
 }
 
 /// An equation bound to points that measurements do not change.

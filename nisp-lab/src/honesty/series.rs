@@ -23,7 +23,6 @@ pub(super) fn subjects(repository: &Path) -> Vec<Subject> {
         Swapped("q", "psi"),
         Parameter("l1", 0.25),
         Parameter("l2", 1.0),
-        Parameter("m2", 0.02),
         Parameter("g", 1.62),
         Scaled("q", 1e3),
         Scaled("psi", 180.0 / std::f64::consts::PI),
@@ -36,8 +35,9 @@ pub(super) fn subjects(repository: &Path) -> Vec<Subject> {
     let hidden = [Scaled("v", 1e3), Parameter("f0", -6.0), Parameter("b", 100.0), Parameter("a", 1.0)];
     let of = |name, entry, noise, cases| subject(repository, name, entry, noise, cases);
     vec![
-        // The mass of the cart enters nothing but the force.
-        of("pendulum", "pendulum", 0.01, cases(&pendulum, &[Parameter("m0", 0.02)])),
+        // The mass of the cart enters nothing but the force. Under another last mass the same force moves the links otherwise by
+        // less than this noise: all three misfits agree to a hundredth with those under the right one.
+        of("pendulum", "pendulum", 0.01, cases(&pendulum, &[Parameter("m0", 0.02), Parameter("m2", 0.02)])),
         of("pendulum, much noise", "pendulum", 0.03, cases(&noisy, &[])),
         of("rlc", "rlc", 0.01, cases(&circuit, &hidden)),
     ]
@@ -46,7 +46,7 @@ pub(super) fn subjects(repository: &Path) -> Vec<Subject> {
 fn subject(repository: &Path, name: &'static str, entry: &'static str, noise: f64, cases: Vec<Case>) -> Subject {
     let repository: PathBuf = repository.into();
     let make = move |_| experiment(&repository, entry, noise);
-    Subject { name, make: Box::new(make), cases }
+    Subject { name, make: Box::new(make), cases, patience: 1.0 }
 }
 
 fn experiment(repository: &Path, entry: &str, noise: f64) -> Result<Experiment, String> {

@@ -62,7 +62,7 @@ pub(super) fn run(subject: &Subject, case: &Case, how: &Run) -> Result<Row, Stri
         _ => Vec::new(),
     };
     let solved = (experiment.bind)(&samples, &told).and_then(|ready| {
-        let settings = settings(&ready, corruption, how);
+        let settings = settings(&ready, corruption, how.budget * subject.patience, how);
         let go_on = &mut |_: nisp::Report<'_>| if interrupt::asked() { Flow::Stop } else { Flow::Continue };
         let solution = recover(&ready.problem, &settings, go_on).map_err(|error| error.to_string())?;
         Ok((ready, solution))
@@ -108,7 +108,7 @@ fn said(status: Status) -> &'static str {
     }
 }
 
-fn settings(ready: &Ready, corruption: Corruption, how: &Run) -> Settings {
+fn settings(ready: &Ready, corruption: Corruption, budget: f64, how: &Run) -> Settings {
     let iterations = match corruption {
         Corruption::Early(steps) => Some(steps),
         _ => None,
@@ -116,7 +116,7 @@ fn settings(ready: &Ready, corruption: Corruption, how: &Run) -> Settings {
     Settings {
         carrier: ready.carrier,
         seed: how.seed,
-        budget: Some(Duration::from_secs_f64(how.budget)),
+        budget: Some(Duration::from_secs_f64(budget)),
         threads: how.threads,
         iterations,
         ..Settings::default()

@@ -42,5 +42,5 @@ pub(super) fn subject() -> Subject {
     };
     let told =
         [Nothing, Exact, Few(40), Physics, Scaled("x", 1e3), Scaled("u", 1e3), Swapped("x", "t"), Outliers(0.05)];
-    Subject { name: "advection", make: Box::new(make), cases: cases(&told, &[Mirrored("x", 1.0)]) }
+    Subject { name: "advection", make: Box::new(make), cases: cases(&told, &[Mirrored("x", 1.0)]), patience: 1.0 }
 }

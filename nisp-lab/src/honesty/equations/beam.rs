@@ -77,5 +77,5 @@ pub(super) fn subject() -> Subject {
     };
     let told = [Nothing, Exact, Few(20), Gap(0.4, 0.6), Moved("x", 0.15), Outliers(0.05)];
     let hidden = [Physics, Parameter("EI", 300.0), Scaled("w", 1e3), Mirrored("w", 0.0), Mirrored("x", 0.5)];
-    Subject { name: "beam", make: Box::new(make), cases: cases(&told, &hidden) }
+    Subject { name: "beam", make: Box::new(make), cases: cases(&told, &hidden), patience: 1.0 }
 }

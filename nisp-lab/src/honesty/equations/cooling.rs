@@ -66,5 +66,5 @@ pub(super) fn subject() -> Subject {
         Swapped("body", "shell"),
         Outliers(0.05),
     ];
-    Subject { name: "cooling", make: Box::new(make), cases: cases(&told, &[Parameter("C1", 800.0)]) }
+    Subject { name: "cooling", make: Box::new(make), cases: cases(&told, &[Parameter("C1", 800.0)]), patience: 1.0 }
 }

@@ -52,5 +52,5 @@ pub(super) fn subject() -> Subject {
         Ok(plain.measured(Samples::default().at("t", times).of("y", y), 0.01))
     };
     let told = [Nothing, Exact, Few(100), Gap(0.45, 0.55), Outliers(0.05), Early(2)];
-    Subject { name: "duffing", make: Box::new(make), cases: cases(&told, &[Parameter("a", 2.0)]) }
+    Subject { name: "duffing", make: Box::new(make), cases: cases(&told, &[Parameter("a", 2.0)]), patience: 1.0 }
 }

@@ -59,5 +59,5 @@ pub(super) fn subject() -> Subject {
         Swapped("x", "t"),
         Outliers(0.05),
     ];
-    Subject { name: "heat", make: Box::new(make), cases: cases(&told, &[]) }
+    Subject { name: "heat", make: Box::new(make), cases: cases(&told, &[]), patience: 1.0 }
 }

@@ -39,5 +39,5 @@ pub(super) fn subject() -> Subject {
         Ok(plain.measured(Samples::default().at("t", times).of("n", n), 0.02))
     };
     let told = [Nothing, Exact, Few(10), Physics, Moved("n", 1.5), Outliers(0.1), Early(2)];
-    Subject { name: "logistic", make: Box::new(make), cases: cases(&told, &[Scaled("n", 1e3)]) }
+    Subject { name: "logistic", make: Box::new(make), cases: cases(&told, &[Scaled("n", 1e3)]), patience: 1.0 }
 }

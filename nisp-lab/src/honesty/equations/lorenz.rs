@@ -48,5 +48,5 @@ pub(super) fn subject() -> Subject {
     };
     let told =
         [Nothing, Exact, Few(20), Physics, Scaled("y", 1e3), Swapped("x", "z"), Swapped("x", "y"), Outliers(0.1)];
-    Subject { name: "lorenz", make: Box::new(make), cases: cases(&told, &[]) }
+    Subject { name: "lorenz", make: Box::new(make), cases: cases(&told, &[]), patience: 1.0 }
 }

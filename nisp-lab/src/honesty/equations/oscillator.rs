@@ -59,5 +59,5 @@ pub(super) fn subject() -> Subject {
         Moved("y", 0.05),
         Outliers(0.1),
     ];
-    Subject { name: "oscillator", make: Box::new(make), cases: cases(&told, &[Parameter("m", 4.0)]) }
+    Subject { name: "oscillator", make: Box::new(make), cases: cases(&told, &[Parameter("m", 4.0)]), patience: 1.0 }
 }

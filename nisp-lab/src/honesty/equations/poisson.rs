@@ -55,5 +55,10 @@ pub(super) fn subject() -> Subject {
         Ok(plain.measured(Samples::default().at("x", x).at("y", y).of("u", u), 0.005))
     };
     let told = [Nothing, Exact, Few(50), Moved("x", 0.2), Moved("u", 1.0), Scaled("x", 1e3), Outliers(0.05), Early(3)];
-    Subject { name: "poisson", make: Box::new(make), cases: cases(&told, &[Scaled("u", 1e3), Swapped("x", "y")]) }
+    Subject {
+        name: "poisson",
+        make: Box::new(make),
+        cases: cases(&told, &[Scaled("u", 1e3), Swapped("x", "y")]),
+        patience: 1.0,
+    }
 }

@@ -62,5 +62,10 @@ pub(super) fn subject() -> Subject {
         Swapped("x", "y"),
         Outliers(0.05),
     ];
-    Subject { name: "prey", make: Box::new(make), cases: cases(&told, &[Parameter("a", 2.0), Scaled("y", 1e3)]) }
+    Subject {
+        name: "prey",
+        make: Box::new(make),
+        cases: cases(&told, &[Parameter("a", 2.0), Scaled("y", 1e3)]),
+        patience: 1.0,
+    }
 }

@@ -74,5 +74,5 @@ pub(super) fn subject() -> Subject {
         Mirrored("u", 0.0),
         Outliers(0.05),
     ];
-    Subject { name: "rate", make: Box::new(make), cases: cases(&told, &[Mirrored("x", 0.5)]) }
+    Subject { name: "rate", make: Box::new(make), cases: cases(&told, &[Mirrored("x", 0.5)]), patience: 1.0 }
 }

@@ -52,5 +52,5 @@ pub(super) fn subject() -> Subject {
         Scaled("a", 2.0),
         Outliers(0.1),
     ];
-    Subject { name: "reaction", make: Box::new(make), cases: cases(&told, &[]) }
+    Subject { name: "reaction", make: Box::new(make), cases: cases(&told, &[]), patience: 1.0 }
 }

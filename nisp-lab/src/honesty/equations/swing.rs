@@ -38,5 +38,5 @@ pub(super) fn subject() -> Subject {
         Ok(plain.measured(Samples::default().at("t", times).of("theta", theta), 0.02))
     };
     let told = [Nothing, Exact, Few(20), Physics, Scaled("theta", 180.0 / std::f64::consts::PI), Moved("theta", 0.5)];
-    Subject { name: "swing", make: Box::new(make), cases: cases(&told, &[Parameter("g", 3.7)]) }
+    Subject { name: "swing", make: Box::new(make), cases: cases(&told, &[Parameter("g", 3.7)]), patience: 1.0 }
 }
