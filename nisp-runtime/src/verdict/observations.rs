@@ -4,7 +4,7 @@ use super::{Check, outliers, root_mean_square, slow};
 use crate::noise::{Noise, ObservationNoise, in_order};
 use crate::problem::Bound;
 use crate::rhythm::rhythm;
-use crate::schema::{Loss, TermKind};
+use crate::schema::TermKind;
 
 /// Misfit over the noise that differences between neighbouring data show.
 const MISFIT: f64 = 1.6;
@@ -34,9 +34,15 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
     let terms = schema.terms.iter().enumerate();
     for (at, term) in terms.filter(|(_, term)| term.kind == TermKind::Observation) {
         let place = (schema.name, term.name);
-        let own = &rows[term.first..term.first + term.rows];
+        let own: Vec<Vec<f64>> =
+            rows[term.first..term.first + term.rows].iter().map(|row| bound.measured(group, term, row)).collect();
+        let own = &own[..];
+        let places = &bound.measured(group, term, &bound.coordinates[group])[..];
+        if places.is_empty() {
+            continue;
+        }
         let of = noise.of(group, at);
-        let robust = term.loss != Loss::Square;
+        let robust = bound.losses[group][at].is_robust();
         let rms = if robust { middle(own) } else { root_mean_square(own.iter().flatten().copied()) };
         let exact = of.is_some_and(|of| of.is_exact());
         let outward = bound.system.outward(&term.unit);
@@ -80,7 +86,7 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
             continue;
         }
         for row in own.iter().filter(|row| row.len() >= FEW) {
-            let (excess, share) = slow::excess(&in_order(&bound.coordinates[group], row));
+            let (excess, share) = slow::excess(&in_order(places, row));
             let value = if share > SLIGHT { excess } else { excess.min(PATTERN) };
             let said = format!(
                 "what is left of `{}` is no noise: {:.0} % of its square is a slow course, so a part of the data is smoothed away or \
@@ -90,7 +96,7 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
             );
             checks.push(Check::new("pattern", place, (value, PATTERN), said));
         }
-        if let Some(swing) = of.and_then(|of| rhythm(&bound.coordinates[group], &own[0], of)) {
+        if let Some(swing) = of.and_then(|of| rhythm(places, &own[0], of)) {
             let said = format!(
                 "what is left of `{}` goes up and down {} times over the record by {:.2e} {unit}, which noise does not: a rhythm \
                  was smoothed away (another --seed, more --width)",
@@ -117,13 +123,17 @@ fn lonely(
     place: (&'static str, &'static str),
     outward: f64,
 ) -> Check {
-    let places = &bound.coordinates[group];
-    let values = in_order(places, &bound.columns[group][column]);
+    let places: Vec<f64> = bound.coordinates[group].clone();
+    let there = |at: &usize| !bound.columns[group][column][*at].is_nan();
+    let rows: Vec<usize> = (0..places.len()).filter(there).collect();
+    let places = &rows.iter().map(|&at| places[at]).collect::<Vec<_>>()[..];
+    let values = rows.iter().map(|&at| bound.columns[group][column][at]).collect::<Vec<_>>();
+    let values = in_order(places, &values);
     let deviation = of.deviation.max(ROUNDING * of.spread);
     let (found, weight) = outliers::weight(&in_order(places, places), &values, deviation);
     let said = format!(
         "{} values of `{}` stand alone, more than ten times the noise of {:.2e} off their neighbours: the answer follows them; remove \
-         them, or use a robust loss",
+         them, or give --robust",
         found.len(),
         bound.problem.scene().schema.groups[group].columns[column].name,
         deviation * outward,

@@ -50,7 +50,8 @@ mod tests {
     #[test]
     fn noise_layers_and_jumps_are_no_outliers() {
         for noise in [1e-6, 1e-2, 0.3] {
-            for course in [f64::sin, |x| (-x / 0.02).exp(), |x| if x > 5.02 { 1.0 } else { 0.0 }] {
+            let courses: [fn(f64) -> f64; 3] = [f64::sin, |x| (-x / 0.02).exp(), |x| if x > 5.02 { 1.0 } else { 0.0 }];
+            for course in courses {
                 let (places, values) = record(noise, course);
                 assert_eq!(weight(&places, &values, noise), (vec![], 0.0));
             }
