@@ -62,8 +62,7 @@ pub(crate) struct Options {
     /// Header of the column that holds a quantity, for instance q=q_m_sigma0.01. Repeatable.
     #[arg(long, value_name = "NAME=HEADER", value_parser = pair, help_heading = DATA)]
     pub(crate) column: Vec<(String, String)>,
-    /// Count measured values that are far off their neighbours and the answer for little or nothing: Welsch's loss instead of the
-    /// square.
+    /// Leave out measured values that are far off: Welsch's loss instead of the square.
     #[arg(long, help_heading = DATA)]
     pub(crate) robust: bool,
     /// CSV of the truth, used to score the answer and for nothing else.
@@ -113,7 +112,7 @@ pub(crate) struct Options {
     /// Folder for results; made if it is not there.
     #[arg(long, value_name = "DIR", default_value = "nisp-out", help_heading = RESULTS)]
     pub(crate) out: PathBuf,
-    /// Solve with classical methods too, where they know the scene, and show how far off they are.
+    /// With a truth, show the errors of classical methods too.
     #[arg(long, help_heading = RESULTS)]
     pub(crate) rivals: bool,
     /// Keep checkpoint.nisp there: every few seconds and at the end.
