@@ -82,7 +82,8 @@ impl TermInput<'_, '_> {
             return self.integrals(&relations);
         }
         let (mut rows, mut dims) = (Vec::new(), Vec::new());
-        let found: Vec<Checked<(Vec<Expr>, Dim)>> = relations.iter().map(|relation| self.rows(relation)).collect();
+        let found: Vec<Checked<(Vec<Expr>, Dim)>> =
+            relations.iter().map(|relation| self.rows(relation, term.within.is_some())).collect();
         for one in found {
             let (expressions, dim) = one?;
             rows.extend(expressions);
@@ -113,8 +114,9 @@ impl TermInput<'_, '_> {
         format!("{} {sign} {}", self.latex(&relation.left), self.latex(&relation.right))
     }
 
-    /// Both sides' difference, one entry per row, so that inequalities want it non-negative.
-    fn rows(&mut self, relation: &Comparison) -> Checked<(Vec<Expr>, Dim)> {
+    /// Both sides' difference, one entry per row, so that inequalities want it non-negative. A belief may be about parameters
+    /// alone.
+    fn rows(&mut self, relation: &Comparison, is_belief: bool) -> Checked<(Vec<Expr>, Dim)> {
         let (extent, dim, left, right) = self.sides(relation)?;
         let count = match extent {
             Extent::Scalar => 1,
@@ -137,13 +139,13 @@ impl TermInput<'_, '_> {
             return Err(self.elaborator.errors.report(place, catalogue::nothing_to_solve(&equation(relation))));
         }
         if relation.relation == Relation::Equal {
-            self.refuse_empty(&rows, relation)?;
+            self.refuse_empty(&rows, relation, is_belief)?;
         }
         Ok((rows.into_iter().map(|row| row.expr).collect(), dim))
     }
 
     /// Refuses an equation that always holds, that no unknown function is in, or that contradicts a bound.
-    fn refuse_empty(&mut self, rows: &[Scalar], relation: &Comparison) -> Checked<()> {
+    fn refuse_empty(&mut self, rows: &[Scalar], relation: &Comparison, is_belief: bool) -> Checked<()> {
         let left: Vec<_> = rows.iter().map(|row| cancel::parts(&row.expr)).collect();
         let mut walker = Walker::default();
         let mut reads_function = |(part, _): &(Expr, Rational)| {
@@ -153,7 +155,7 @@ impl TermInput<'_, '_> {
         let text = || equation(relation);
         let message = if left.iter().all(Vec::is_empty) {
             catalogue::holds_always(&text())
-        } else if !left.iter().flatten().any(&mut reads_function) {
+        } else if !is_belief && !left.iter().flatten().any(&mut reads_function) {
             catalogue::no_unknown_function(&text())
         } else if let Some(field) = left.iter().find_map(|parts| self.beyond_bound(parts)) {
             catalogue::contradicts_bound(&text(), &self.fields[field].name.text)
@@ -212,7 +214,7 @@ impl TermInput<'_, '_> {
                 .errors
                 .report(relation.relation_place, catalogue::complementarity_of_equation()));
         }
-        let (rows, dim) = self.rows(relation)?;
+        let (rows, dim) = self.rows(relation, false)?;
         match rows.as_slice() {
             [only] => Ok((only.clone(), dim.known().cloned().unwrap_or_default())),
             _ => {
