@@ -121,26 +121,42 @@ impl Series {
         let schema = scene.schema;
         check_columns(schema, request)?;
         let header = |name: &str| request.columns.iter().rev().find(|(n, _)| n == name).map(|(_, h)| h.as_str());
-        let column = |name: &'static str, unit: &'static str| {
-            let values = match header(name) {
-                Some(header) => table.chosen(name, header, unit)?,
-                None => table.quantity(name, unit)?,
+        let column = |name: &'static str, unit: &'static str, may_lack: bool| {
+            let values = match (header(name), may_lack) {
+                (Some(header), false) => table.chosen(name, header, unit)?,
+                (Some(header), true) => table.chosen_measured(name, header, unit)?,
+                (None, false) => table.quantity(name, unit)?,
+                (None, true) => table.measured(name, unit)?,
             };
             let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
             if largest > LARGEST { Err(PrepareError::Size { name, largest, unit }) } else { Ok(values) }
         };
-        let times = column("t", "s")?;
+        let times = column("t", "s", false)?;
         table.require_increasing(header("t").unwrap_or("t"))?;
         let mut problem = Problem::new(scene);
         for (name, value) in &request.parameters {
             problem.set_parameter(name, *value)?;
         }
-        let mut measured = Vec::new();
+        let (mut measured, mut warnings) = (Vec::new(), Vec::new());
         let (first, last) = (times[0], times[times.len() - 1]);
         for group in schema.groups {
             let mut columns = Vec::new();
+            // A quantity without a column of its own is not measured, as long as another one is.
+            let is_lacking = |name: &str| group.may_lack(name) && header(name).is_none() && table.lacks(name);
+            let is_any = group.columns.iter().any(|column| !is_lacking(column.name));
             for c in group.columns {
-                let values = column(c.name, c.unit.text)?;
+                if is_any && is_lacking(c.name) {
+                    let headers = table.headers().collect::<Vec<_>>().join(", ");
+                    warnings
+                        .push(format!("`{}` is not measured: no column answers to it (columns: {headers})", c.name));
+                    columns.push(vec![f64::NAN; times.len()]);
+                    continue;
+                }
+                let values = column(c.name, c.unit.text, group.may_lack(c.name))?;
+                let count = values.iter().filter(|value| value.is_nan()).count();
+                if count > 0 {
+                    warnings.push(format!("`{}` is not measured in {count} of {} rows", c.name, values.len()));
+                }
                 measured.push((c.name, values.clone()));
                 columns.push(values);
             }
@@ -156,6 +172,8 @@ impl Series {
         let source = table.path().display().to_string();
         let rival =
             (self.rival)(schema.name, Given { start: first, parameter: &|name| parameter(schema, request, name) });
+        // Rivals know no gaps.
+        let rival = rival.filter(|_| warnings.is_empty());
         Ok(Prepared {
             problem,
             points: times,
@@ -163,7 +181,7 @@ impl Series {
             measured,
             truth,
             source,
-            warnings: Vec::new(),
+            warnings,
             assumed: assumed(schema, request),
             rival,
             local: None,

@@ -62,6 +62,9 @@ pub(crate) struct Options {
     /// Header of the column that holds a quantity, for instance q=q_m_sigma0.01. Repeatable.
     #[arg(long, value_name = "NAME=HEADER", value_parser = pair, help_heading = DATA)]
     pub(crate) column: Vec<(String, String)>,
+    /// Leave out measured values that are far off: Welsch's loss instead of the square.
+    #[arg(long, help_heading = DATA)]
+    pub(crate) robust: bool,
     /// CSV of the truth, used to score the answer and for nothing else.
     #[arg(long, value_name = "FILE", help_heading = DATA)]
     pub(crate) truth: Option<PathBuf>,
@@ -109,6 +112,9 @@ pub(crate) struct Options {
     /// Folder for results; made if it is not there.
     #[arg(long, value_name = "DIR", default_value = "nisp-out", help_heading = RESULTS)]
     pub(crate) out: PathBuf,
+    /// With a truth, show the errors of classical methods too.
+    #[arg(long, help_heading = RESULTS)]
+    pub(crate) rivals: bool,
     /// Keep checkpoint.nisp there: every few seconds and at the end.
     #[arg(long, help_heading = RESULTS)]
     pub(crate) checkpoint: bool,

@@ -32,7 +32,8 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         columns: options.column.clone(),
         parameters: options.set.clone(),
     };
-    let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
+    let mut prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
+    prepared.problem.set_robust(options.robust);
     let settings = prepared.suited(settings);
     let from = options.resume.as_deref().map(checkpoint::read).transpose()?;
     interrupt::listen(crate::NAME)?;
@@ -59,7 +60,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let text = if options.json {
         report::json(&solution, &run, &found)
     } else {
-        report::table(&solution, &run, &found.with_rival(&prepared))
+        report::table(&solution, &run, &if options.rivals { found.with_rival(&prepared) } else { found })
     };
     if let Err(message) = print(&text) {
         note(&format!("{}: {message}\n", crate::NAME));

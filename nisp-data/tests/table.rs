@@ -81,6 +81,7 @@ fn refuses_with_what_to_do() {
     assert_eq!(cell, "t.csv: line 3, column `q_m_sigma0`: `nan` is not a finite number; remove the row");
     let word = table.column("q_m_sigma0.01").unwrap_err().to_string();
     assert_eq!(word, "t.csv: line 3, column `q_m_sigma0.01`: `x` is not a number; correct it or remove the row");
+    assert!(refusal(b"t,q,q\n0,1,1\n1,2,2\n").contains("columns 2 and 3 are both named `q`"));
     let twice = parse("q [m],q_m\n0,1\n1,2\n").column("q").unwrap_err().to_string();
     assert!(twice.contains("several columns answer to `q`: q [m], q_m; choose one"), "{twice}");
     assert_eq!(
@@ -173,4 +174,16 @@ proptest! {
         prop_assert_eq!(bits(&back.quantity("x", "m/s^2").unwrap()), bits(&values));
         prop_assert_eq!(bits(back.column("y").unwrap()), bits(&values));
     }
+}
+
+#[test]
+fn cells_that_were_not_measured_are_gaps_where_gaps_may_be() {
+    let table = parse("t_s,q_mm,p,r\n0,1,,inf\n1,,2,1\n2,nan,3,1\n");
+    let measured = table.measured("q", "m").unwrap();
+    assert!(measured[0] == 1e-3 && measured[1].is_nan() && measured[2].is_nan(), "{measured:?}");
+    assert!(table.quantity("q", "m").unwrap_err().to_string().contains("line 3"), "only where gaps may be");
+    assert!(table.measured("r", "1").unwrap_err().to_string().contains("not a finite number"));
+    let chosen = table.chosen_measured("x", "p", "1").unwrap();
+    assert!(chosen[0].is_nan() && chosen[1..] == [2.0, 3.0]);
+    assert!(table.lacks("x") && !table.lacks("q") && !table.lacks("p"));
 }

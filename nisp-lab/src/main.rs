@@ -2,6 +2,7 @@
 
 mod ablate;
 mod frontier;
+mod honesty;
 mod measure;
 
 use std::process::ExitCode;
@@ -24,6 +25,8 @@ enum Command {
     Frontier(Box<frontier::Options>),
     /// Measure what each part of the method is worth, beside what the paper says of its own.
     Ablate(Box<ablate::Options>),
+    /// Measure whether what is said of answers is true, on right and on spoiled data.
+    Honesty(Box<honesty::Options>),
 }
 
 /// The program's name, in its messages.
@@ -33,6 +36,7 @@ fn main() -> ExitCode {
     let result = match Args::try_parse() {
         Ok(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),
         Ok(Args { command: Command::Ablate(options) }) => ablate::ablate(&options),
+        Ok(Args { command: Command::Honesty(options) }) => honesty::honesty(&options),
         Err(error) => show(&error),
     };
     end(NAME, result)

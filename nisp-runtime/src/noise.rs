@@ -71,7 +71,14 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
     for (at, group) in schema.groups.iter().enumerate() {
         let places = &bound.coordinates[at];
         for (term, _) in group.terms.iter().enumerate().filter(|(_, term)| !term.columns.is_empty()) {
-            let columns = || group.terms[term].columns.iter().map(|&column| &bound.columns[at][column][..]);
+            let schema = &group.terms[term];
+            let places = &bound.measured(at, schema, places);
+            let measured = |&column: &usize| bound.measured(at, schema, &bound.columns[at][column]);
+            let columns: Vec<Vec<f64>> = schema.columns.iter().map(measured).collect();
+            if places.is_empty() {
+                continue;
+            }
+            let columns = || columns.iter().map(|column| &column[..]);
             let spread = root_mean_square(columns().map(deviation));
             let outliers = bound.losses[at][term].is_robust();
             let noise_of = |values: &[f64]| match (inputs, outliers) {

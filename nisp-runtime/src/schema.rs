@@ -147,6 +147,15 @@ impl Group {
     pub fn is_beliefs(&self) -> bool {
         self.name == "(beliefs)"
     }
+
+    /// True for a column that one observation compares with alone: where it is NaN, nothing was measured, and the observation
+    /// does not count.
+    pub fn may_lack(&self, column: &str) -> bool {
+        let Some(at) = self.columns.iter().position(|own| own.name == column) else { return false };
+        let mut readers = self.terms.iter().filter(|term| term.columns.contains(&at));
+        let alone = readers.next().is_some_and(|term| term.columns == [at] && term.rows == 1);
+        alone && readers.next().is_none() && self.terms.iter().all(|term| term.kind == TermKind::Observation)
+    }
 }
 
 /// Floating-point operations of propagation rules on all channels, forward and on the way back (which computes a layer

@@ -67,9 +67,8 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
     for score in &found.scores {
         line(format!("  {:26} {:.2e} {}", score.name, score.mean_abs, score.unit));
         if let Some(if_zero) = score.if_zero {
-            for (name, error) in
-                std::iter::once((format!("{} = 0", score.name), if_zero)).chain(rivals(prepared, found, score))
-            {
+            let others = if run.options.rivals { rivals(prepared, found, score) } else { Vec::new() };
+            for (name, error) in std::iter::once((format!("{} = 0", score.name), if_zero)).chain(others) {
                 line(format!("    {name:24} {error:.2e} {}", score.unit));
             }
         }

@@ -117,7 +117,11 @@ fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estima
         let head = scene.heads.iter().find(|head| head.name == estimate.name);
         panel.caption = head.map_or_else(String::new, |head| first_line(head.docs).into());
         let measured = prepared.measured.iter().find(|(name, _)| *name == estimate.name);
-        panel.measured = measured.map(|(_, values)| Curve::new(&prepared.points, values));
+        let measured = measured.map(|(_, values)| {
+            let rows = prepared.points.iter().copied().zip(values.iter().copied());
+            rows.filter(|(_, value)| !value.is_nan()).unzip::<f64, f64, Vec<f64>, Vec<f64>>()
+        });
+        panel.measured = measured.as_ref().map(|(times, values)| Curve::new(times, values));
         panel.estimate = Some(Curve::new(fine, &estimate.values));
         panel.deviation.clone_from(&estimate.deviations);
         let truth = prepared.truth.as_ref();

@@ -42,9 +42,14 @@ fn columns() {
 
 #[test]
 fn cells() {
-    says(&refusal(&with_cell(4, "NaN"), ""), &["line 6, column `v_V`", "`NaN` is not a finite number"]);
+    // Of measured cells these say that nothing was measured; a time must be there.
+    let untimed = |text: &str| {
+        let row = |r, t, v| if r == 4 { format!("{text},{v}\n") } else { format!("{t},{v}\n") };
+        "t_s,v_V\n".to_string() + &circuit(20, row)
+    };
+    says(&refusal(&untimed("NaN"), ""), &["line 6, column `t_s`", "`NaN` is not a finite number"]);
+    says(&refusal(&untimed(""), ""), &["line 6", "the cell is empty"]);
     says(&refusal(&with_cell(0, "x7"), ""), &["line 2, column `v_V`", "`x7` is not a number"]);
-    says(&refusal(&with_cell(9, ""), ""), &["line 11", "the cell is empty"]);
     says(&refusal(&with_cell(9, "inf"), ""), &["line 11", "not a finite number"]);
     says(&refusal(&with_cell(9, "1e999"), ""), &["line 11", "not a finite number"]);
     says(&refusal(&with_cell(9, "1,2"), ""), &["line 11: 3 cells where the header has 2"]);

@@ -6,6 +6,7 @@ mod common;
 mod contact;
 mod contract;
 mod folders;
+mod gaps;
 mod interrupt;
 mod json;
 mod open_directions;

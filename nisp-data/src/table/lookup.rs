@@ -2,7 +2,7 @@
 //! exact header, because guessing between `q_m_sigma0` and `q_m_sigma0.01` would be a quiet wrong answer.
 
 use super::units::factor;
-use super::{Column, Table};
+use super::{Column, Kind, Table};
 use crate::DataError;
 use crate::names::likeness;
 
@@ -25,21 +25,44 @@ impl Table {
     /// As [`Table::column`], but in `unit`: a header that names a multiple of it (`t_ms` for seconds) is converted, and
     /// one that names another unit does not answer.
     pub fn quantity(&self, name: &str, unit: &str) -> Result<Vec<f64>, DataError> {
-        self.converted(self.find(name, Some(unit))?, name, unit)
+        self.converted(self.find(name, Some(unit))?, (name, unit), Table::checked)
+    }
+
+    /// As [`Table::quantity`], with NaN for cells that are empty or `nan`: nothing was measured there.
+    pub fn measured(&self, name: &str, unit: &str) -> Result<Vec<f64>, DataError> {
+        self.converted(self.find(name, Some(unit))?, (name, unit), Table::with_gaps)
     }
 
     /// The column with a header that the user chose for `name`, in `unit`, converted as in [`Table::quantity`]. A header whose
     /// brackets hold another unit is refused.
     pub fn chosen(&self, name: &str, header: &str, unit: &str) -> Result<Vec<f64>, DataError> {
-        let column = match self.single(name, &self.answering(header, None))? {
-            Some(column) => column,
-            None => return Err(self.absent(name, header)),
-        };
-        self.converted(column, name, unit)
+        self.converted(self.under(name, header)?, (name, unit), Table::checked)
     }
 
-    fn converted(&self, column: &Column, name: &str, unit: &str) -> Result<Vec<f64>, DataError> {
-        let values = self.checked(column)?;
+    /// As [`Table::chosen`], with NaN for cells that are empty or `nan`: nothing was measured there.
+    pub fn chosen_measured(&self, name: &str, header: &str, unit: &str) -> Result<Vec<f64>, DataError> {
+        self.converted(self.under(name, header)?, (name, unit), Table::with_gaps)
+    }
+
+    /// The column with a header that the user chose for a name.
+    fn under(&self, name: &str, header: &str) -> Result<&Column, DataError> {
+        self.single(name, &self.answering(header, None))?.ok_or_else(|| self.absent(name, header))
+    }
+
+    /// True if no header is, or may be meant to be, that of a quantity.
+    pub fn lacks(&self, name: &str) -> bool {
+        self.answering(name, None).is_empty()
+            && self.matching(|header| starts_with_name(header, name)).is_empty()
+            && self.nearest(name).is_none()
+    }
+
+    fn converted<'a>(
+        &'a self,
+        column: &'a Column,
+        (name, unit): (&str, &str),
+        read: fn(&'a Table, &'a Column) -> Result<&'a [f64], DataError>,
+    ) -> Result<Vec<f64>, DataError> {
+        let values = read(self, column)?;
         if let Some(error) = self.other_unit(&column.header, name, unit).filter(|_| column.header != name) {
             return Err(error);
         }
@@ -66,12 +89,20 @@ impl Table {
     pub(crate) fn raw(&self, name: &str) -> Result<&[f64], DataError> {
         let column = self.find(name, None)?;
         match &column.fault {
-            Some(fault) if !fault.numeric => self.checked(column),
+            Some(fault) if matches!(fault.kind, Kind::Word | Kind::Empty) => self.checked(column),
             _ => Ok(&column.values),
         }
     }
 
-    fn checked<'a>(&self, column: &'a Column) -> Result<&'a [f64], DataError> {
+    /// The values of a column, NaN where nothing was measured.
+    fn with_gaps<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
+        match &column.fault {
+            Some(fault) if matches!(fault.kind, Kind::Infinite | Kind::Word) => self.checked(column),
+            _ => Ok(&column.values),
+        }
+    }
+
+    fn checked<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
         match &column.fault {
             None => Ok(&column.values),
             Some(fault) => Err(DataError::Cell {

@@ -31,8 +31,19 @@ struct Column {
 struct Fault {
     line: usize,
     what: String,
-    /// Whether the cell was NaN or infinite, which a cloud may hold, rather than a word.
-    numeric: bool,
+    kind: Kind,
+}
+
+/// What stands in a cell that is no finite number, from the least harm to the worst.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Kind {
+    /// Not measured: `nan`, which a cloud may hold too.
+    NotANumber,
+    /// Not measured: nothing.
+    Empty,
+    /// A cloud may hold it.
+    Infinite,
+    Word,
 }
 
 impl Table {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::{Column, Fault, Table};
+use super::{Column, Fault, Kind, Table};
 use crate::DataError;
 use crate::input::{MOST_BYTES, decode, read_bytes};
 
@@ -62,12 +62,17 @@ impl Table {
 impl Column {
     fn push(&mut self, line: usize, cell: &str) {
         let parsed = cell.parse::<f64>();
-        let numeric = parsed.is_ok();
+        let kind = match parsed {
+            _ if cell.is_empty() => Kind::Empty,
+            Ok(value) if value.is_nan() => Kind::NotANumber,
+            Ok(_) => Kind::Infinite,
+            Err(_) => Kind::Word,
+        };
         let value = parsed.unwrap_or(f64::NAN);
-        // A word is worse than a NaN, and is what must be told.
-        let worse = self.fault.as_ref().is_none_or(|fault| fault.numeric && !numeric);
+        // The worst is what must be told.
+        let worse = self.fault.as_ref().is_none_or(|fault| fault.kind < kind);
         if !value.is_finite() && worse {
-            self.fault = Some(Fault { line, what: describe(cell), numeric });
+            self.fault = Some(Fault { line, what: describe(cell), kind });
         }
         self.values.push(value);
     }
@@ -99,6 +104,12 @@ fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<Vec<Column>
     if headers.iter().all(|header| header.parse::<f64>().is_ok()) {
         let what = "the first line holds numbers; put a line of column names above it, for instance `t [s],q [m]`";
         return Err(DataError::file(path, what));
+    }
+    for (at, header) in headers.iter().enumerate().filter(|(_, header)| !header.is_empty()) {
+        if let Some(before) = headers.iter().take(at).position(|other| other == header) {
+            let what = format!("columns {} and {} are both named `{header}`; rename one of them", before + 1, at + 1);
+            return Err(DataError::file(path, what));
+        }
     }
     Ok(headers.iter().map(|header| Column { header: header.to_string(), values: Vec::new(), fault: None }).collect())
 }

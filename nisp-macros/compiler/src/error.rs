@@ -49,6 +49,8 @@ pub(crate) type Checked<T> = Result<T, Reported>;
 #[derive(Debug, Default)]
 pub struct Errors {
     faults: Vec<Fault>,
+    /// Units in base units, and as they are written: both in brackets.
+    units: Vec<[String; 2]>,
     asked: std::cell::Cell<bool>,
 }
 
@@ -60,7 +62,20 @@ impl Errors {
 
     /// Notes an error at a token (a `Span`) or at several (a [`Place`]).
     pub fn push(&mut self, place: impl Into<Place>, message: impl Into<String>) {
-        self.faults.push(Fault { place: place.into(), message: message.into() });
+        let mut message = message.into();
+        for [base, written] in &self.units {
+            // Within quoted code the unit stands alone.
+            message = message.replace(&format!("{base}`"), &format!("{written}`"));
+            message = message.replace(base, &format!("{written} ({base})"));
+        }
+        self.faults.push(Fault { place: place.into(), message });
+    }
+
+    /// Messages from here on show the unit in base units as it is written in the module, and then in base units.
+    pub(crate) fn write_unit(&mut self, base: String, written: String) {
+        if self.units.iter().all(|[known, _]| *known != base) {
+            self.units.push([base, written]);
+        }
     }
 
     /// As `push`, for use as `return Err(errors.report(..))`.

@@ -82,7 +82,16 @@ impl Author {
         let rows = 1 + self.pick(&[0, 1, 2]);
         // A derivative of each field, so that each is part of the problem.
         let terms: String = (0..rows)
-            .map(|row| format!("r{row}: {} + {} == {};", self.derivative(1), self.expression(3, order), self.leaf(1)))
+            .map(|row| {
+                // The fifth power cancels nothing: an equation in which everything cancels is refused.
+                let kept = &self.fields[0].clone();
+                format!(
+                    "r{row}: {} + {} + {kept}^5 == {};",
+                    self.derivative(1),
+                    self.expression(3, order),
+                    self.leaf(1)
+                )
+            })
             .collect();
         let fields: String = self.fields.iter().map(|field| format!("m_{field}: {field} == 1;")).collect();
         format!(

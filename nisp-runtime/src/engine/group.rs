@@ -145,7 +145,11 @@ impl<E: Real> BoundTerm<E> {
 
     /// Number of independent data that the rows stand for.
     pub(crate) fn data_count(&self, points: usize) -> usize {
-        self.chamfer.as_ref().map_or_else(|| self.row_count(points), Chamfer::data)
+        let measured =
+            |weights: &Vec<E>| weights.iter().filter(|weight| **weight != E::ZERO).count() * self.schema.rows;
+        let lacking = self.point_weights.as_ref().filter(|_| self.schema.kind == TermKind::Observation);
+        let rows = || lacking.map_or_else(|| self.row_count(points), measured);
+        self.chamfer.as_ref().map_or_else(rows, Chamfer::data)
     }
 
     /// What raw rows are multiplied by.

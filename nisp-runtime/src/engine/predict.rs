@@ -7,6 +7,7 @@ use super::tile::{Network, Tile};
 use super::{Chamfer, Engine, with_buffers};
 use crate::real::Real;
 use crate::residual::Points;
+use crate::schema::TermKind;
 
 impl<E: Real> Engine<E> {
     /// Runs `work` on every tile of a group, in order, with the raw rows of its residuals.
@@ -46,7 +47,16 @@ impl<E: Real> Engine<E> {
             return chamfer.misfits();
         }
         let (points, schema) = (self.groups[group].points, bound.schema);
-        self.raw_rows(group, theta)[schema.first * points..(schema.first + schema.rows) * points].to_vec()
+        let is_lacking = bound.point_weights.is_some() && schema.kind == TermKind::Observation;
+        let measured = bound.point_weights.clone().filter(|_| is_lacking);
+        let rows = &self.raw_rows(group, theta)[schema.first * points..(schema.first + schema.rows) * points];
+        match measured {
+            None => rows.to_vec(),
+            Some(weights) => {
+                let with = rows.iter().zip(weights.iter().cycle());
+                with.filter(|(_, weight)| **weight != E::ZERO).map(|(row, _)| *row).collect()
+            }
+        }
     }
 
     /// Clouds of Chamfer terms.

@@ -83,6 +83,12 @@ pub enum BindError {
         /// The point, counted from 0.
         point: usize,
     },
+    /// Columns without a single value.
+    #[error("group `{group}`: nothing is measured in any of its columns; bind a value at least")]
+    NothingMeasured {
+        /// The group.
+        group: &'static str,
+    },
     /// A Chamfer term without a cloud.
     #[error("group `{group}`: term `{term}` has no cloud; bind the points that its surface passes through")]
     NoCloud {
@@ -155,6 +161,10 @@ impl BindError {
     }
 }
 
+/// Threshold of the loss of observations that are to be robust, in standard deviations of their noise: values are left out
+/// from some five of them on.
+const ROBUST: Loss = Loss::Welsch(2.0);
+
 /// A problem in the engine's units, whatever the precision.
 #[derive(Clone, Debug)]
 pub(crate) struct Bound {
@@ -173,7 +183,7 @@ pub(crate) struct Bound {
     pub(crate) coordinates: Vec<Vec<f64>>,
     /// Coordinates of their partners, in the same way; empty unless the group is paired.
     pub(crate) partners: Vec<Vec<f64>>,
-    /// Columns by group, in the engine's units.
+    /// Columns by group, in the engine's units; NaN where a quantity was not measured.
     pub(crate) columns: Vec<Vec<Vec<f64>>>,
     /// Clouds by group and term, in the engine's units, flat and point by point; empty for other terms.
     pub(crate) clouds: Vec<Vec<Vec<f64>>>,
@@ -190,6 +200,12 @@ impl Problem {
             Some(system) => Bound::in_units(bound.problem, system, inputs),
             None => Ok(bound),
         }
+    }
+
+    /// How the misfits of a term count.
+    fn loss(&self, term: &schema::Term) -> Loss {
+        let is_square = term.kind == schema::TermKind::Observation && term.loss == Loss::Square;
+        if self.robust && is_square { ROBUST } else { term.loss }
     }
 
     /// That all parameters that need a value have one, and a finite one.
@@ -231,7 +247,13 @@ impl Problem {
             length("the list of columns".into(), binding.columns.len(), group.columns.len())?;
             for (column, values) in group.columns.iter().zip(&binding.columns) {
                 length(format!("column `{}`", column.name), values.len(), points)?;
-                finite(group.name, || format!("column `{}`", column.name), values, 1)?;
+                let may_lack = group.may_lack(column.name) && values.iter().all(|x| x.is_finite() || x.is_nan());
+                if !may_lack {
+                    finite(group.name, || format!("column `{}`", column.name), values, 1)?;
+                }
+            }
+            if !group.columns.is_empty() && binding.columns.iter().flatten().all(|x| x.is_nan()) {
+                return Err(BindError::NothingMeasured { group: group.name });
             }
             if !binding.points.weights.is_empty() {
                 length("the weights".into(), binding.points.weights.len(), points)?;
@@ -336,7 +358,8 @@ impl Bound {
         }
         let learned = learned(schema, &system, &scalars);
         let powers = powers(&problem.scene, &scalars, data, inputs, &learned);
-        let losses = schema.groups.iter().map(|group| group.terms.iter().map(|term| term.loss).collect()).collect();
+        let losses = schema.groups.iter().map(|group| group.terms.iter().map(|term| problem.loss(term)).collect());
+        let losses = losses.collect();
         Ok(Self {
             problem,
             system,
@@ -351,6 +374,28 @@ impl Bound {
             columns,
             clouds,
         })
+    }
+
+    /// Columns of a group with zeros where nothing was measured: rows that read those do not count.
+    pub(crate) fn filled_columns(&self, group: usize) -> Vec<Vec<f64>> {
+        let filled = |column: &Vec<f64>| column.iter().map(|&x| if x.is_nan() { 0.0 } else { x }).collect();
+        self.columns[group].iter().map(filled).collect()
+    }
+
+    /// Where an observation was measured, point by point; nothing if everywhere.
+    pub(crate) fn lacking(&self, group: usize, term: &schema::Term) -> Option<Vec<bool>> {
+        let columns = || term.columns.iter().map(|&column| &self.columns[group][column]);
+        let points = columns().next()?.len();
+        let measured: Vec<bool> = (0..points).map(|p| columns().all(|column| !column[p].is_nan())).collect();
+        measured.contains(&false).then_some(measured)
+    }
+
+    /// Those of the values at the points of a group at which an observation was measured.
+    pub(crate) fn measured<T: Clone>(&self, group: usize, term: &schema::Term, values: &[T]) -> Vec<T> {
+        let Some(measured) = self.lacking(group, term) else { return values.to_vec() };
+        let each = values.len() / measured.len().max(1);
+        let kept = values.chunks_exact(each.max(1)).zip(&measured).filter(|(_, is_there)| **is_there);
+        kept.flat_map(|(value, _)| value.to_vec()).collect()
     }
 
     /// The engine of this problem in precision `E`, for a network of the given shape.
@@ -380,7 +425,7 @@ impl Bound {
                 &self.scaling,
                 &self.coordinates[at],
                 &self.partners[at],
-                &self.columns[at],
+                &self.filled_columns(at),
             );
             let bound = self.sizes[at].iter().zip(&self.losses[at]).zip(&self.powers[at]).zip(&self.clouds[at]);
             for (term, (((size, loss), powers), cloud)) in group.terms.iter_mut().zip(bound) {
@@ -390,6 +435,10 @@ impl Bound {
                 if term.schema.kind == schema::TermKind::Integral && !self.raw_weights(at).is_empty() {
                     let weights = self.weights(at, term.schema.measure.as_ref());
                     term.point_weights = Some(weights.into_iter().map(E::from_f64).collect());
+                }
+                if let Some(measured) = self.lacking(at, term.schema) {
+                    let weights = measured.into_iter().map(|is_there| if is_there { E::ONE } else { E::ZERO });
+                    term.point_weights = Some(weights.collect());
                 }
                 term.chamfer = Chamfer::new(cloud, (term.schema, term.loss), group.points);
             }

@@ -21,6 +21,8 @@ pub struct Problem {
     /// Given values of scalars, in SI units.
     scalars: Vec<Option<f64>>,
     groups: Vec<Option<Binding>>,
+    /// Whether observations with a squared loss get a robust one.
+    robust: bool,
 }
 
 /// Points of a group, flat and point by point, with what belongs to each.
@@ -88,7 +90,7 @@ impl Problem {
             Origin::Literal(value) => Some(value),
             Origin::HeadScale(_) | Origin::SideScale { .. } => None,
         });
-        Self { scene, scalars: scalars.collect(), groups: vec![None; scene.schema.groups.len()] }
+        Self { scene, scalars: scalars.collect(), groups: vec![None; scene.schema.groups.len()], robust: false }
     }
 
     /// The scene.
@@ -121,7 +123,14 @@ impl Problem {
         Ok(())
     }
 
-    /// Gives a group its points and columns (in the schema's order), each in its declared unit.
+    /// Whether measured values that are far off count for little: observations whose loss is the square get Welsch's instead,
+    /// with its threshold in units of the noise that values without outliers show.
+    pub fn set_robust(&mut self, robust: bool) {
+        self.robust = robust;
+    }
+
+    /// Gives a group its points and columns (in the schema's order), each in its declared unit. NaN in a column that an
+    /// observation compares with alone says that nothing was measured there.
     ///
     /// # Errors
     /// No such group.

@@ -29,7 +29,9 @@ impl Problem {
         }
         for (group, binding) in schema.groups.iter().zip(bindings) {
             for (column, values) in group.columns.iter().zip(&binding.columns) {
-                let square: f64 = values.iter().map(|x| x * x).sum::<f64>() / values.len() as f64;
+                // Cells that were not measured are NaN.
+                let measured: Vec<f64> = values.iter().copied().filter(|x| !x.is_nan()).collect();
+                let square = measured.iter().map(|x| x * x).sum::<f64>() / measured.len().max(1) as f64;
                 quantities.push((column.unit, square.sqrt() * column.unit.factor));
             }
         }

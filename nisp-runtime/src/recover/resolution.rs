@@ -28,12 +28,14 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
         for (number, term) in group.terms.iter().enumerate() {
             let own = &rows[term.first * points..(term.first + term.rows) * points];
             let message = match term.kind {
-                TermKind::Observation if term.loss == Loss::Square => {
+                TermKind::Observation if bound.losses[at][number] == Loss::Square => {
+                    let own: Vec<f64> =
+                        own.chunks_exact(points).flat_map(|row| bound.measured(at, term, row)).collect();
                     let outward = bound.system.outward(&term.unit);
-                    if let Some(message) = too_few(term, points, noise.of(at, number)) {
+                    if let Some(message) = too_few(term, own.len() / term.rows, noise.of(at, number)) {
                         warnings.push(Warning { kind: WarningKind::Unresolved, message });
                     }
-                    let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len() as f64).sqrt();
+                    let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len().max(1) as f64).sqrt();
                     let level = noise.of(at, number).filter(|level| follows_noise(rms, *level));
                     level.map(|level| {
                         let (rms, sigma, unit) = (rms * outward, level.deviation * outward, term.unit.text);
@@ -73,7 +75,7 @@ fn follows_noise(rms: f64, level: ObservationNoise) -> bool {
 
 /// Says so where measurements are too few to tell noise from signal, and nobody says how noisy they are.
 fn too_few(term: &Term, points: usize, level: Option<ObservationNoise>) -> Option<String> {
-    (level.is_none() && term.within.is_none() && !term.columns.is_empty()).then(|| {
+    (points > 0 && level.is_none() && term.within.is_none() && !term.columns.is_empty()).then(|| {
         format!(
             "`{}` has too few measurements ({points}) to tell noise from signal, and no error bars to trust: give more of them, \
              or say in the equations how far they may be off (`within`)",

@@ -7,14 +7,14 @@ use super::carried::{Carried, Network, Values};
 use super::{Checkpoint, Optimizer, Settings, Width};
 use crate::engine::Engine;
 use crate::local::LocalSolution;
-use crate::noise;
+use crate::noise::{self, Noise};
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::simd::Isa;
 use crate::solve::driver::{Outcome, Status, Warning, WarningKind};
 use crate::solve::prior::WeightPrior;
 use crate::splines::SplineSolution;
-use crate::verdict::{Verdict, judge, patches};
+use crate::verdict::{Check, Verdict, determined, judge, patches};
 
 /// A solved problem.
 pub struct Solution {
@@ -41,6 +41,8 @@ pub struct Solution {
     pub carrier: &'static str,
     /// Why it was chosen.
     pub carrier_reason: String,
+    /// Whether data are met to the digits that they are written with.
+    is_met_exactly: bool,
     bound: Bound,
     method: &'static str,
     carried: Box<dyn Carried>,
@@ -121,6 +123,7 @@ impl Solution {
             verdict: Verdict::default(),
             carrier: "",
             carrier_reason: String::new(),
+            is_met_exactly: false,
             bound,
             method: optimizer.name(),
             carried: Box::new(Network {
@@ -147,6 +150,7 @@ impl Solution {
             verdict: Verdict::default(),
             carrier: "",
             carrier_reason: String::new(),
+            is_met_exactly: false,
             bound,
             method: "gauss-newton",
             carried: Box::new(found),
@@ -167,6 +171,7 @@ impl Solution {
             verdict: Verdict::default(),
             carrier: "",
             carrier_reason: String::new(),
+            is_met_exactly: false,
             bound,
             method: "gauss-newton",
             carried: Box::new(found),
@@ -191,7 +196,10 @@ impl Solution {
                 self.verdict.checks.push(patches(head.name, values, level));
             }
         }
+        self.verdict.checks.extend(self.left_open());
+        self.is_met_exactly = self.meets_data_exactly(&noise);
         match (self.status, self.verdict.passed()) {
+            (Status::Budget, true) if self.is_met_exactly && self.has_room() => self.status = Status::Converged,
             (Status::Converged, false) => self.status = Status::Inconsistent,
             // A minimum at the floor of rounding has no gradient to speak of, whatever the method made of it.
             (Status::NotConverged, true) if self.is_at_floor() => {
@@ -201,6 +209,43 @@ impl Solution {
             _ => {}
         }
         self
+    }
+
+    /// True where data over several coordinates are met to the digits that they are usually written with: they have no noise to
+    /// speak of, whatever parabolas through neighbours seemed to show, and going on would fit their rounding. Differences along
+    /// a record tell noise from its course better than a fit, which may follow both.
+    fn meets_data_exactly(&mut self, noise: &Noise) -> bool {
+        let mut is_measured = false;
+        if self.scene().coordinates.len() == 1 {
+            return false;
+        }
+        for (group, schema) in self.scene().groups.iter().enumerate() {
+            for at in 0..schema.terms.len() {
+                let Some(of) = noise.of(group, at) else { continue };
+                let (misfits, _) = self.carried.misfits(group, at);
+                let rms = (misfits.iter().map(|x| x * x).sum::<f64>() / misfits.len().max(1) as f64).sqrt();
+                if !noise::is_exact(rms, of.spread) {
+                    return false;
+                }
+                is_measured = true;
+            }
+        }
+        is_measured
+    }
+
+    /// True where every check is met ten times better than it must be.
+    fn has_room(&self) -> bool {
+        self.verdict.checks.iter().all(|check| check.check == "range" || check.value <= 0.1 * check.limit)
+    }
+
+    /// What is left open where nothing is measured: any answer would be as good, and no error bars say so.
+    fn left_open(&self) -> Option<Check> {
+        let mut terms = self.scene().groups.iter().flat_map(|group| group.terms);
+        if terms.any(|term| matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. })) {
+            return None;
+        }
+        let warning = self.warnings.iter().find(|warning| warning.kind == WarningKind::Undetermined)?;
+        Some(determined(self.scene().heads[0].name, warning.message.clone()))
     }
 
     /// Values of all heads at points of all groups, `[head][point]` in the engine's units.
@@ -228,7 +273,13 @@ impl Solution {
         self.loss <= f64::EPSILON * rows as f64
     }
 
-    /// True where the answer may be relied on: it met all checks, and error bars mean something.
+    /// True where error bars say something: the answer passed all checks, the run ended at a minimum, whose neighbourhood they
+    /// describe, and data are noisy.
+    fn has_bars(&self) -> bool {
+        self.is_sound() && self.status == Status::Converged && !self.is_met_exactly
+    }
+
+    /// True where the answer may be relied on: it met all checks.
     pub fn is_sound(&self) -> bool {
         self.verdict.passed()
     }
@@ -258,11 +309,12 @@ impl Solution {
 
     /// As [`Solution::evaluate`], with standard deviations: those of the Laplace approximation of the posterior, in which the
     /// prior's part is multiplied by 0.5 to 3.25, the more the less the data tell signal from noise, as simulated records
-    /// over time ask for. Methods without a prior and a noise model have none, nor have answers to exact data. Those of local
+    /// over time ask for. Methods without a prior and a noise model have none, nor have answers to exact data, and
+    /// runs that did not converge. Those of local
     /// functions take a source's patches as they were found: they say how well the source is known within them, not whether
     /// a patch may be elsewhere.
     pub fn evaluate_with_errors(&mut self, points: &[f64]) -> Vec<Estimate> {
-        if !self.is_sound() {
+        if !self.has_bars() {
             return self.evaluate(points);
         }
         let known = self.carried.with_deviations(&self.bound, points);
@@ -293,7 +345,7 @@ impl Solution {
             .map(|(learned, (value, deviation))| {
                 let scalar = &self.scene().scalars[learned.slot];
                 let outward = self.bound.system.outward(&scalar.unit);
-                let deviation = deviation.filter(|_| self.verdict.passed()).map(|deviation| deviation * outward);
+                let deviation = deviation.filter(|_| self.has_bars()).map(|deviation| deviation * outward);
                 LearnedValue { name: scalar.name, unit: scalar.unit, value: value * outward, deviation }
             })
             .collect()

@@ -162,8 +162,13 @@ pub(crate) fn solve(
     let State { theta, learned, step: iterations, .. } = place.state;
     let judged =
         bound.problem.scene().double().into_iter().take(schema.groups.len()).enumerate().map(|(at, kernel)| {
-            let group =
-                Group::new(&schema.groups[at], kernel, &solver.heads, &bound.coordinates[at], &bound.columns[at]);
+            let group = Group::new(
+                &schema.groups[at],
+                kernel,
+                &solver.heads,
+                &bound.coordinates[at],
+                &bound.filled_columns(at),
+            );
             group.facts(&solver.heads, &theta)
         });
     let facts: Vec<Facts> = judged.collect();

@@ -94,7 +94,7 @@ impl<'a> Solver<'a> {
         let kernels = bound.problem.scene().double();
         let group = |(at, kernel)| {
             let places = cells::places(bound, at, breakpoints);
-            Group::new(&schema.groups[at], kernel, &heads, &places, &bound.columns[at])
+            Group::new(&schema.groups[at], kernel, &heads, &places, &bound.filled_columns(at))
         };
         let groups: Vec<Group> = kernels.into_iter().take(schema.groups.len()).enumerate().map(group).collect();
         let mut count = 0;
@@ -212,9 +212,11 @@ impl<'a> Solver<'a> {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, true);
             for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| takes_part(term)) {
                 let loss = self.bound.losses[at][number];
+                let lacking = self.bound.lacking(at, term);
+                let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
                 for row in term.first..term.first + term.rows {
                     let sigma = self.sigma(state, at, number, row);
-                    for p in 0..group.len() {
+                    for p in (0..group.len()).filter(is_there) {
                         let misfit = found.row(row, p);
                         if !misfit.is_finite() {
                             let name = format!("{}.{}", group.schema.name, term.name);
@@ -294,9 +296,11 @@ impl<'a> Solver<'a> {
                     continue;
                 }
                 let loss = self.bound.losses[at][number];
+                let lacking = self.bound.lacking(at, term);
+                let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
                 for row in term.first..term.first + term.rows {
                     let sigma = self.sigma(state, at, number, row);
-                    sum += (0..group.len()).map(|p| loss.rho(found.row(row, p) / sigma)).sum::<f64>();
+                    sum += (0..group.len()).filter(is_there).map(|p| loss.rho(found.row(row, p) / sigma)).sum::<f64>();
                 }
             }
         }
@@ -408,8 +412,11 @@ impl<'a> Solver<'a> {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
             let terms = group.schema.terms.iter().enumerate().map(|(number, term)| {
                 let rows = term.first..term.first + term.rows;
+                let lacking = self.bound.lacking(at, term);
+                let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
+                let places: Vec<usize> = (0..group.len()).filter(is_there).collect();
                 let misfits =
-                    rows.flat_map(|row| (0..group.len()).map(move |p| (row, p))).map(|(row, p)| found.row(row, p));
+                    rows.flat_map(|row| places.iter().map(move |&p| (row, p))).map(|(row, p)| found.row(row, p));
                 let is_data = term.kind == TermKind::Observation;
                 (misfits.collect(), is_data.then(|| state.classes[self.classes[at][number]].size))
             });

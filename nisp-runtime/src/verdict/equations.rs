@@ -16,8 +16,9 @@ const SOURCE: f64 = 0.3;
 const BALANCE: f64 = 0.2;
 /// Residual of a condition over its target, or over what the same quantity is elsewhere.
 const PART: f64 = 0.03;
-/// A source smaller than this share of an equation's largest part counts as so large: next to nothing acts.
-const NOTHING: f64 = 0.01;
+/// A source smaller than this share of an equation's largest part, or of its own natural size, counts as so large: next to
+/// nothing acts.
+const NOTHING: f64 = 0.05;
 /// What a condition states over the size that equations and data speak of.
 const STATED: f64 = 1e2;
 /// Points of a condition at most; more of them are held to an equation.
@@ -223,7 +224,8 @@ impl Judged<'_> {
             } else {
                 root_mean_square(slopes[at].iter().copied())
             };
-            slope * self.sizes.spread[jet.head] / over
+            let natural = if head.source { NOTHING * self.bound.head_scale(jet.head) } else { 0.0 };
+            slope * self.sizes.spread[jet.head].max(natural) / over
         });
         sizes.fold(0.0, f64::max)
     }

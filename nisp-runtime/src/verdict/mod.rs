@@ -8,6 +8,9 @@ mod clouds;
 mod equations;
 mod learned;
 mod observations;
+mod outliers;
+mod outside;
+mod slow;
 
 use crate::facts::Answer;
 use crate::noise::Noise;
@@ -16,8 +19,8 @@ use crate::problem::Bound;
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`, `distance`, `seen`,
-    /// `patch` or `range`.
+    /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`,
+    /// `outliers`, `outside`, `distance`, `seen`, `patch`, `determined` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars.
     pub group: &'static str,
@@ -74,6 +77,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         checks.extend(equations::checks(bound, at, (facts, &rows), programs, (&sizes, &answer.scalars)));
         checks.extend(observations::checks(bound, at, &rows, noise));
     }
+    checks.extend(outside::checks(bound));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));
     Verdict { checks }
@@ -92,6 +96,11 @@ pub(crate) fn patches(name: &'static str, values: &[f64], level: f64) -> Check {
         100.0 * share
     );
     Check::new("patch", ("", name), (share, LARGEST), said)
+}
+
+/// That equations and conditions without data leave nothing open; `open` says what they do.
+pub(crate) fn determined(name: &'static str, open: String) -> Check {
+    Check::new("determined", ("", name), (1.0, 0.0), open)
 }
 
 fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {

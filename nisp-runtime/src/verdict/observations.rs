@@ -1,10 +1,10 @@
 //! What an answer leaves of observations: it should be noise, no larger than the data's own, without a pattern.
 
-use super::{Check, root_mean_square};
-use crate::noise::{Noise, in_order};
+use super::{Check, outliers, root_mean_square, slow};
+use crate::noise::{Noise, ObservationNoise, in_order};
 use crate::problem::Bound;
 use crate::rhythm::rhythm;
-use crate::schema::{Loss, TermKind};
+use crate::schema::TermKind;
 
 /// Misfit over the noise that differences between neighbouring data show.
 const MISFIT: f64 = 1.6;
@@ -12,16 +12,20 @@ const MISFIT: f64 = 1.6;
 const TOLERANCE: f64 = 1.5;
 /// Misfit of data that are exact but for rounding, over their spread.
 const EXACT: f64 = 2e-3;
-/// Correlation of neighbouring misfits in its own standard deviations.
-const PATTERN: f64 = 5.0;
+/// Excess of slow misfits in standard deviations.
+const PATTERN: f64 = 4.0;
 /// Patterns with less than this share of the misfit's square do not matter.
-const SLIGHT: f64 = 0.15;
+const SLIGHT: f64 = 0.05;
 /// Misfit over the noise below which it has no pattern to speak of.
 const BELOW: f64 = 0.5;
 /// Amplitude of a rhythm over the noise below which it does not matter.
 const FAINT: f64 = 0.1;
 /// Values that say something of a correlation, at least.
 const FEW: usize = 16;
+/// Squares of outliers over those of noise.
+const OUTLIERS: f64 = 1.0;
+/// Digits that numbers in files may be rounded to, as a share of their spread: nothing smaller is an outlier's measure.
+const ROUNDING: f64 = 1e-5;
 
 /// Checks of the observations of a group.
 pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noise) -> Vec<Check> {
@@ -30,9 +34,15 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
     let terms = schema.terms.iter().enumerate();
     for (at, term) in terms.filter(|(_, term)| term.kind == TermKind::Observation) {
         let place = (schema.name, term.name);
-        let own = &rows[term.first..term.first + term.rows];
+        let own: Vec<Vec<f64>> =
+            rows[term.first..term.first + term.rows].iter().map(|row| bound.measured(group, term, row)).collect();
+        let own = &own[..];
+        let places = &bound.measured(group, term, &bound.coordinates[group])[..];
+        if places.is_empty() {
+            continue;
+        }
         let of = noise.of(group, at);
-        let robust = term.loss != Loss::Square;
+        let robust = bound.losses[group][at].is_robust();
         let rms = if robust { middle(own) } else { root_mean_square(own.iter().flatten().copied()) };
         let exact = of.is_some_and(|of| of.is_exact());
         let outward = bound.system.outward(&term.unit);
@@ -66,25 +76,27 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
             };
             checks.push(Check::new("misfit", place, (value, limit), said));
         }
+        let record = bound.problem.scene().schema.coordinates.len() == 1;
+        if let Some(of) = of.filter(|_| record && !robust) {
+            checks.extend(term.columns.iter().map(|&column| lonely(bound, (group, column), of, place, outward)));
+        }
         // A misfit far below the noise is what a fit that follows the data leaves, not a part that it leaves out.
         let is_below = of.is_some_and(|of| rms < BELOW * of.deviation);
-        let record = bound.problem.scene().schema.coordinates.len() == 1;
         if !record || robust || exact || is_below {
             continue;
         }
         for row in own.iter().filter(|row| row.len() >= FEW) {
-            let ordered = in_order(&bound.coordinates[group], row);
-            let correlation = correlation(&ordered);
-            let z = correlation * (row.len() as f64).sqrt();
-            let value = if correlation > SLIGHT { z } else { z.min(PATTERN) };
+            let (excess, share) = slow::excess(&in_order(places, row));
+            let value = if share > SLIGHT { excess } else { excess.min(PATTERN) };
             let said = format!(
-                "what is left of `{}` is no noise: neighbours correlate by {correlation:.2}, so a part of the data is smoothed \
-                 away or not described by the equations",
-                term.name
+                "what is left of `{}` is no noise: {:.0} % of its square is a slow course, so a part of the data is smoothed away or \
+                 not described by the equations",
+                term.name,
+                100.0 * share
             );
             checks.push(Check::new("pattern", place, (value, PATTERN), said));
         }
-        if let Some(swing) = of.and_then(|of| rhythm(&bound.coordinates[group], &own[0], of)) {
+        if let Some(swing) = of.and_then(|of| rhythm(places, &own[0], of)) {
             let said = format!(
                 "what is left of `{}` goes up and down {} times over the record by {:.2e} {unit}, which noise does not: a rhythm \
                  was smoothed away (another --seed, more --width)",
@@ -101,6 +113,32 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
         }
     }
     checks
+}
+
+/// Values of a measured column that stand alone.
+fn lonely(
+    bound: &Bound,
+    (group, column): (usize, usize),
+    of: ObservationNoise,
+    place: (&'static str, &'static str),
+    outward: f64,
+) -> Check {
+    let places: Vec<f64> = bound.coordinates[group].clone();
+    let there = |at: &usize| !bound.columns[group][column][*at].is_nan();
+    let rows: Vec<usize> = (0..places.len()).filter(there).collect();
+    let places = &rows.iter().map(|&at| places[at]).collect::<Vec<_>>()[..];
+    let values = rows.iter().map(|&at| bound.columns[group][column][at]).collect::<Vec<_>>();
+    let values = in_order(places, &values);
+    let deviation = of.deviation.max(ROUNDING * of.spread);
+    let (found, weight) = outliers::weight(&in_order(places, places), &values, deviation);
+    let said = format!(
+        "{} values of `{}` stand alone, more than ten times the noise of {:.2e} off their neighbours: the answer follows them; remove \
+         them, or give --robust",
+        found.len(),
+        bound.problem.scene().schema.groups[group].columns[column].name,
+        deviation * outward,
+    );
+    Check::new("outliers", place, (weight, OUTLIERS), said)
 }
 
 /// Root mean square of so many normal numbers of deviation one that four deviations of chance allow (Wilson and Hilferty
@@ -125,24 +163,9 @@ fn middle(rows: &[Vec<f64>]) -> f64 {
     magnitudes.get(magnitudes.len() / 2).copied().unwrap_or(0.0) * 1.4826
 }
 
-/// Correlation of neighbours, less what a single large value makes of it.
-fn correlation(values: &[f64]) -> f64 {
-    let square: f64 = values.iter().map(|x| x * x).sum();
-    let products: f64 = values.windows(2).map(|pair| pair[0] * pair[1]).sum();
-    if square > 0.0 { products / square } else { 0.0 }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_wave_correlates_and_an_alternation_does_not() {
-        let wave: Vec<f64> = (0..200).map(|i| (0.1 * f64::from(i)).sin()).collect();
-        assert!(correlation(&wave) > 0.9);
-        let alternation: Vec<f64> = (0..200).map(|i| f64::from(1 - 2 * (i % 2))).collect();
-        assert!(correlation(&alternation) < -0.9);
-    }
 
     /// Chi squared over its degrees of freedom has mean 1 and deviation sqrt(2 / n).
     #[test]

@@ -1,6 +1,6 @@
 //! How a scene is bound to points and data: a chain of types, one per binding, so that a missing one does not compile.
 
-use proc_macro2::TokenStream;
+use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::document::{comment, in_unit};
@@ -13,12 +13,11 @@ use crate::plan::{GroupPlan, Scalar, ScenePlan};
 pub(super) fn emit(model: &Model, scene: &ScenePlan, declared: &model::Scene) -> TokenStream {
     let parameters = parameters(model, scene, declared);
     let groups = public(model, scene);
-    let count = groups.len();
-    let steps = groups.iter().enumerate().map(|(at, group)| step(model, at, group));
+    let steps = (0..groups.len()).map(|at| step(model, at, &groups[at], groups.get(at + 1)));
     let list: Vec<String> = groups.iter().map(|group| format!("`{}`", model.groups[group.group].name.text)).collect();
     let doc = format!(" Begins to bind the scene: give its parameters, then its groups in order: {}.", list.join(", "));
-    let first = format_ident!("Needs0");
-    let last = format_ident!("Needs{count}");
+    let first = state(model, groups.first());
+    let last = state(model, None);
     quote! {
         #parameters
         #[doc = #doc]
@@ -86,12 +85,20 @@ fn learned(parameter: &model::Parameter, at: usize, scene: &model::Scene) -> Str
     }
 }
 
-/// The builder that waits for group `at`.
-fn step(model: &Model, at: usize, group: &GroupPlan) -> TokenStream {
+/// The builder that waits for a group, by its name: the compiler's message says what is missing. `Bound` if nothing is.
+fn state(model: &Model, group: Option<&GroupPlan>) -> Ident {
+    match group {
+        Some(group) => format_ident!("Needs{}", model.groups[group.group].camel_name()),
+        None => format_ident!("Bound"),
+    }
+}
+
+/// The builder that waits for group `at`, before that of the next.
+fn step(model: &Model, at: usize, group: &GroupPlan, next: Option<&GroupPlan>) -> TokenStream {
     let declared = &model.groups[group.group];
     let text = &declared.name.text;
     let method = raw(text, declared.name.span);
-    let (this, next) = (format_ident!("Needs{at}"), format_ident!("Needs{}", at + 1));
+    let (this, next) = (state(model, Some(group)), state(model, next));
     let waits = format!(" Waits for the points of group `{text}`.");
     let data = data::of(model, group);
     let coordinates: Vec<&str> = model.coordinates.iter().map(|c| c.name.text.as_str()).collect();

@@ -71,6 +71,13 @@ pub(crate) fn keyword_as_name(name: &str) -> String {
     help(format!("`{name}` is a word of Rust and cannot be a name"), format!("write `{name}_` or another name"))
 }
 
+pub(crate) fn raw_name(plain: &str) -> String {
+    help(
+        format!("`r#{plain}` cannot be a name: names are no raw identifiers"),
+        format!("write `{plain}_` or another name"),
+    )
+}
+
 pub(crate) fn expected_operator(text: &str, after: &str, found: &str) -> String {
     format!("expected `{text}` after `{after}`, found {found}")
 }

@@ -2,9 +2,9 @@
 
 use num_traits::{Signed, Zero};
 
-use super::build;
 use super::elaborate::Elaborator;
 use super::value::{Dim, Extent, Scalar, Value};
+use super::{Node, build};
 use crate::error::{Checked, Place, catalogue};
 use crate::syntax::{Expr, ExprKind, print_text};
 use crate::unit::Dimension;
@@ -117,6 +117,10 @@ impl Elaborator<'_> {
         let below = self.scalar(base, "the base of a power");
         let above = self.pure(exponent, "an exponent");
         let ((below, dim), above) = (below?, above?);
+        let is_too_large = matches!(*above.expr, Node::Real(value) if value.abs() > LARGEST_EXPONENT as f64);
+        if is_too_large {
+            return Err(self.errors.report(exponent.place, catalogue::exponent_too_large(LARGEST_EXPONENT)));
+        }
         let Some(literal) = above.as_number() else {
             self.require_pure(base, &dim, "the base of a power whose exponent is no literal number")?;
             return Ok(Value::scalar(build::general_power(&below, &above), dim));

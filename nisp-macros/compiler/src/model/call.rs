@@ -73,6 +73,7 @@ impl Elaborator<'_> {
             return Ok(Value::scalar(build::call(function, &argument), dim));
         }
         if analysis {
+            self.doubt_time(&name.text, place);
             return self.vector_analysis(&name.text, first, place);
         }
         match name.text.as_str() {
@@ -89,6 +90,19 @@ impl Elaborator<'_> {
             "min" | "max" => self.extremum(&name.text, arguments),
             "partner" => self.at_partner(first, place),
             _ => self.tensor_function(&name.text, arguments),
+        }
+    }
+
+    /// Without units nothing tells time from space but its declaration.
+    fn doubt_time(&mut self, operator: &str, place: Place) {
+        if self.units_checked || self.spatial.len() < 2 {
+            return;
+        }
+        let names = self.spatial.iter().map(|&at| &self.coordinates[at].name.text);
+        let Some(time) = names.into_iter().find(|name| matches!(name.as_str(), "t" | "time")).cloned() else { return };
+        let message = catalogue::operator_over_time(operator, &time);
+        if self.warnings.iter().all(|(other, _)| *other != message) {
+            self.warnings.push((message, place.start));
         }
     }
 

@@ -43,6 +43,9 @@ impl TermInput<'_, '_> {
     /// Columns named like what is observed, with the field's own unit.
     fn own_columns(&mut self, name: &Name, value: &Value) -> Checked<(Vec<Scalar>, Unit)> {
         let symbol = self.elaborator.scope.find(&name.text);
+        if symbol.is_some_and(|symbol| symbol.meaning == Meaning::Parameter) {
+            return Err(self.elaborator.errors.report(name.span, catalogue::observed_parameter(&name.text)));
+        }
         let field = symbol.filter(|symbol| matches!(symbol.meaning, Meaning::Field | Meaning::Source));
         let unit = match field.and_then(|symbol| self.fields.get(symbol.index)) {
             Some(field) => field.unit.clone(),

@@ -109,6 +109,9 @@ fn learn(
         if scene.fixed_parameters[index].is_some() {
             return Err(elaborator.errors.report(name.span, catalogue::learned_and_fixed(&name.text)));
         }
+        if scene.learned[index] {
+            return Err(elaborator.errors.report(name.span, catalogue::learned_twice(&name.text)));
+        }
         scene.learned[index] = true;
         scene.spreads[index] = spread.or(model.parameters[index].spread);
     }

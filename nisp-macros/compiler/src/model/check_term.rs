@@ -1,10 +1,12 @@
 //! Terms: conditions, complementarities and clouds, as rows of scalar expressions.
 
 use super::elaborate::Elaborator;
+use super::orders::Walker;
 use super::value::{Dim, Extent, Reads, Scalar, Value};
-use super::{Column, Expr, Field, Term, TermKind, build};
+use super::{Column, Expr, Field, Node, Term, TermKind, build, cancel};
 use crate::error::{Checked, catalogue};
-use crate::syntax::{self, Comparison, Condition, ExprKind, Relation, TermBody, print_latex, print_text};
+use crate::rational::Rational;
+use crate::syntax::{self, Comparison, Condition, ExprKind, Relation, TermBody, print_latex, print_text, real};
 use crate::unit::{Dimension, Unit};
 
 /// What terms are checked against.
@@ -80,7 +82,8 @@ impl TermInput<'_, '_> {
             return self.integrals(&relations);
         }
         let (mut rows, mut dims) = (Vec::new(), Vec::new());
-        let found: Vec<Checked<(Vec<Expr>, Dim)>> = relations.iter().map(|relation| self.rows(relation)).collect();
+        let found: Vec<Checked<(Vec<Expr>, Dim)>> =
+            relations.iter().map(|relation| self.rows(relation, term.within.is_some())).collect();
         for one in found {
             let (expressions, dim) = one?;
             rows.extend(expressions);
@@ -111,8 +114,9 @@ impl TermInput<'_, '_> {
         format!("{} {sign} {}", self.latex(&relation.left), self.latex(&relation.right))
     }
 
-    /// Both sides' difference, one entry per row, so that inequalities want it non-negative.
-    fn rows(&mut self, relation: &Comparison) -> Checked<(Vec<Expr>, Dim)> {
+    /// Both sides' difference, one entry per row, so that inequalities want it non-negative. A belief may be about parameters
+    /// alone.
+    fn rows(&mut self, relation: &Comparison, is_belief: bool) -> Checked<(Vec<Expr>, Dim)> {
         let (extent, dim, left, right) = self.sides(relation)?;
         let count = match extent {
             Extent::Scalar => 1,
@@ -134,7 +138,51 @@ impl TermInput<'_, '_> {
             let place = relation.left.place.to(relation.right.place);
             return Err(self.elaborator.errors.report(place, catalogue::nothing_to_solve(&equation(relation))));
         }
+        if relation.relation == Relation::Equal {
+            self.refuse_empty(&rows, relation, is_belief)?;
+        }
         Ok((rows.into_iter().map(|row| row.expr).collect(), dim))
+    }
+
+    /// Refuses an equation that always holds, that no unknown function is in, or that contradicts a bound.
+    fn refuse_empty(&mut self, rows: &[Scalar], relation: &Comparison, is_belief: bool) -> Checked<()> {
+        let left: Vec<_> = rows.iter().map(|row| cancel::parts(&row.expr)).collect();
+        let mut walker = Walker::default();
+        let mut reads_function = |(part, _): &(Expr, Rational)| {
+            walker.keep(Expr::clone(part));
+            !walker.fields(part).is_empty()
+        };
+        let text = || equation(relation);
+        let message = if left.iter().all(Vec::is_empty) {
+            catalogue::holds_always(&text())
+        } else if !is_belief && !left.iter().flatten().any(&mut reads_function) {
+            catalogue::no_unknown_function(&text())
+        } else if let Some(field) = left.iter().find_map(|parts| self.beyond_bound(parts)) {
+            catalogue::contradicts_bound(&text(), &self.fields[field].name.text)
+        } else {
+            return Ok(());
+        };
+        let place = relation.left.place.to(relation.right.place);
+        Err(self.elaborator.errors.report(place, message))
+    }
+
+    /// The field that a row sets to a number beyond its bounds.
+    fn beyond_bound(&self, parts: &[(Expr, Rational)]) -> Option<usize> {
+        let (mut field, mut constant) = (None, 0.0);
+        for (part, factor) in parts {
+            let factor = real(*factor);
+            match **part {
+                Node::Field(at) if field.is_none() => field = Some((at, factor)),
+                Node::Number(value) => constant += factor * real(value),
+                Node::Real(value) | Node::Quantity(value, _) => constant += factor * value,
+                _ => return None,
+            }
+        }
+        let (at, factor) = field?;
+        let (value, bounds) = (-constant / factor, &self.fields[at]);
+        let is_beyond =
+            bounds.lower.is_some_and(|lower| value < lower) || bounds.upper.is_some_and(|upper| value > upper);
+        is_beyond.then_some(at)
     }
 
     fn sides(&mut self, relation: &Comparison) -> Checked<(Extent, Dim, Value, Value)> {
@@ -166,7 +214,7 @@ impl TermInput<'_, '_> {
                 .errors
                 .report(relation.relation_place, catalogue::complementarity_of_equation()));
         }
-        let (rows, dim) = self.rows(relation)?;
+        let (rows, dim) = self.rows(relation, false)?;
         match rows.as_slice() {
             [only] => Ok((only.clone(), dim.known().cloned().unwrap_or_default())),
             _ => {
@@ -181,6 +229,9 @@ impl TermInput<'_, '_> {
         if !matches!(value.extent, Extent::Vector(2..=4)) {
             let message = catalogue::chamfer_of(&value.extent.to_string());
             return Err(self.elaborator.errors.report(point.place, message));
+        }
+        if !value.reads().any(Reads::FIELD.and(Reads::PARAMETER)) {
+            return Err(self.elaborator.errors.report(point.place, catalogue::rigid_surface(&print_text(point))));
         }
         let prefix =
             format!("{}{}chamfer", if symmetric { "symmetric " } else { "" }, if plane { "plane " } else { "" },);

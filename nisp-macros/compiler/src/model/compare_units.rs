@@ -16,11 +16,17 @@ impl Elaborator<'_> {
             let all_zero = parts.iter().all(|(_, dim)| **dim == Dim::Any);
             return if all_zero { Dim::Any } else { Dim::Unknown };
         };
-        let votes = |dimension: &Dimension| known.iter().filter(|(_, other)| *other == dimension).count();
-        let most = known.iter().map(|(_, dimension)| votes(dimension)).max().unwrap_or(0);
+        // A long sum has few different units.
+        let mut votes: Vec<(&Dimension, usize)> = Vec::new();
+        for (_, dimension) in &known {
+            match votes.iter_mut().find(|(other, _)| other == dimension) {
+                Some((_, count)) => *count += 1,
+                None => votes.push((dimension, 1)),
+            }
+        }
+        let most = votes.iter().map(|(_, count)| *count).max().unwrap_or(0);
         // Of equally frequent units the first is the reference: that is how one reads.
-        let reference = known.iter().map(|(_, dimension)| *dimension).find(|dimension| votes(dimension) == most);
-        let reference = reference.unwrap_or(first);
+        let reference = votes.iter().find(|(_, count)| *count == most).map_or(first, |(dimension, _)| dimension);
         let (Some(&(odd, found)), Some(&(other, _))) = (
             known.iter().find(|(_, dimension)| *dimension != reference),
             known.iter().find(|(_, dimension)| *dimension == reference),

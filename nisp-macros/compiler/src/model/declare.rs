@@ -13,6 +13,13 @@ use crate::unit::{Dimension, Unit};
 
 /// Declares everything a module declares outside its groups.
 pub(super) fn declare(module: &Module, elaborator: &mut Elaborator<'_>, model: &mut Model) {
+    module.declarations.iter().filter_map(|declaration| declaration.unit.as_ref()).for_each(|unit| {
+        let base = unit.dimension.to_string();
+        let is_compound = base.contains([' ', '/', '^']);
+        if is_compound && unit.factor == 1.0 && unit.text.len() <= base.len() && unit.text != base {
+            elaborator.errors.write_unit(format!("[{base}]"), format!("[{}]", unit.text));
+        }
+    });
     // In this order, because vectors have one component for each spatial coordinate, and sources come after fields.
     for kind in [Kind::Coordinate, Kind::Constant, Kind::Parameter, Kind::Field, Kind::Source] {
         for declaration in module.declarations.iter().filter(|declaration| declaration.kind == kind) {

@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::elaborate::Elaborator;
 use super::orders::{Orders, Walker, merge};
 use super::scope::Meaning;
-use super::{Expr, Model, Role, Scene, Term, TermKind, build};
+use super::{Expr, Model, Role, Scene, Term, TermKind, build, cancel, lint_scene};
 use crate::error::catalogue;
 
 /// What one term reads.
@@ -33,6 +33,7 @@ pub(super) fn check(elaborator: &mut Elaborator<'_>, model: &mut Model) {
         .map(|(number, group)| group.terms.iter().map(|term| row(number, term, &mut walker)).collect())
         .collect();
     sources_without_equation(elaborator, model, &rows);
+    lint_scene::check(elaborator, model);
     let mut said = BTreeSet::new();
     let open: Vec<Vec<(String, usize)>> = model.scenes.iter().map(|scene| unpinned(scene, model, &rows)).collect();
     for (scene, open) in model.scenes.iter_mut().zip(open) {
@@ -72,8 +73,12 @@ fn shadowed_derivatives(elaborator: &mut Elaborator<'_>) {
 fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
     let mut fields = BTreeMap::new();
     let expressions = expressions(term);
-    for expr in &expressions {
-        merge(&mut fields, &walker.fields(expr));
+    for expr in expressions {
+        // What cancels is not read.
+        for (part, _) in cancel::parts(expr) {
+            merge(&mut fields, &walker.fields(&part));
+            walker.keep(part);
+        }
     }
     let measured =
         matches!(term.kind, TermKind::Observation { .. } | TermKind::Chamfer { .. } | TermKind::Integral { .. });
@@ -84,7 +89,8 @@ fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
     Row { group, fields, measured, conditions }
 }
 
-fn expressions(term: &Term) -> Vec<&Expr> {
+/// All scalar expressions of a term.
+pub(super) fn expressions(term: &Term) -> Vec<&Expr> {
     match &term.kind {
         TermKind::Residual(rows) | TermKind::Observation { rows, .. } | TermKind::Inequality(rows) => {
             rows.iter().collect()
@@ -119,7 +125,11 @@ fn unpinned(scene: &Scene, model: &Model, rows: &[Vec<Row>]) -> Vec<(String, usi
     for (index, field) in model.fields.iter().enumerate() {
         let reading: Vec<&&Row> = used.iter().filter(|row| row.fields.contains_key(&index)).collect();
         let idle = scene.fixed_fields[index].is_some() || field.hard.is_some() || reading.is_empty();
-        if idle || reading.iter().any(|row| row.measured) {
+        if idle {
+            continue;
+        }
+        if reading.iter().any(|row| row.measured) {
+            found.extend(bare(&reading, index, &field.name.text, name).map(|message| (message, index)));
             continue;
         }
         let order = reading.iter().map(|row| row.fields[&index].total).max().unwrap_or(0);
@@ -133,6 +143,14 @@ fn unpinned(scene: &Scene, model: &Model, rows: &[Vec<Row>]) -> Vec<(String, usi
         }
     }
     found
+}
+
+/// Data tell a field and its slopes. Of an equation of fourth order they tell little where no condition helps them.
+fn bare(reading: &[&&Row], field: usize, text: &str, scene: Option<&str>) -> Option<String> {
+    let equations = || reading.iter().filter(|row| !row.measured);
+    let order = equations().map(|row| row.fields[&field].total).max()?;
+    let has_condition = equations().any(|row| row.fields[&field].total < order);
+    (order >= 4 && !has_condition).then(|| catalogue::few_conditions(text, order, order.div_ceil(2) as usize, 0, scene))
 }
 
 /// An equation of order 2k in space wants k conditions on each side of the domain; an ordinary one as many as its order.

@@ -15,6 +15,7 @@ use crate::unit::{Dimension, Unit};
 mod arithmetic;
 mod build;
 mod call;
+mod cancel;
 mod check;
 mod check_group;
 mod check_integral;
@@ -27,8 +28,10 @@ mod declare;
 mod differentiate;
 mod elaborate;
 mod lint;
+mod lint_scene;
 mod orders;
 mod resolve_name;
+mod scaling;
 mod scope;
 mod tensor;
 mod value;
@@ -201,14 +204,18 @@ impl Group {
         self.name.text.starts_with('(')
     }
 
-    /// Name of the struct of what belongs to its points: that of `soft_bubble` is `SoftBubbleData`.
-    pub(crate) fn data_name(&self) -> String {
+    /// Its name as a type's: that of `soft_bubble` is `SoftBubble`.
+    pub(crate) fn camel_name(&self) -> String {
         let word = |word: &str| {
             let mut letters = word.chars();
             letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
         };
-        let words: String = self.name.text.split(|c: char| !c.is_alphanumeric()).map(word).collect();
-        format!("{words}Data")
+        self.name.text.split(|c: char| !c.is_alphanumeric()).map(word).collect()
+    }
+
+    /// Name of the struct of what belongs to its points: that of `soft_bubble` is `SoftBubbleData`.
+    pub(crate) fn data_name(&self) -> String {
+        format!("{}Data", self.camel_name())
     }
 }
 

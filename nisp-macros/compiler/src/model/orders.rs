@@ -20,11 +20,18 @@ type Fields = Rc<BTreeMap<usize, Orders>>;
 #[derive(Default)]
 pub(super) struct Walker {
     seen: BTreeMap<*const Node, Fields>,
+    /// Expressions that were made to be walked: their addresses must not be used again while the walker remembers them.
+    kept: Vec<Expr>,
     /// Coordinates read, as themselves or by a derivative.
     pub(super) coordinates: std::collections::BTreeSet<usize>,
 }
 
 impl Walker {
+    /// Keeps an expression that nothing else keeps.
+    pub(super) fn keep(&mut self, expr: Expr) {
+        self.kept.push(expr);
+    }
+
     /// The fields in an expression with their derivatives' orders.
     pub(super) fn fields(&mut self, expr: &Expr) -> Fields {
         if let Some(found) = self.seen.get(&Rc::as_ptr(expr)) {

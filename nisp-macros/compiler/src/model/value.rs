@@ -140,6 +140,9 @@ impl Dim {
     ) -> Option<Dim> {
         Some(match (self, other) {
             (Dim::Known(a), Dim::Known(b)) => Dim::Known(operation(a, b)?),
+            // A literal zero brings no unit of its own, but zero times a length is a length.
+            (Dim::Any, Dim::Known(other)) if !other.is_none() => Dim::Known(operation(&Dimension::none(), other)?),
+            (Dim::Known(own), Dim::Any) if !own.is_none() => Dim::Known(own.clone()),
             (Dim::Any, _) | (_, Dim::Any) => Dim::Any,
             _ => Dim::Unknown,
         })

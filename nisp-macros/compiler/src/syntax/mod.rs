@@ -20,7 +20,7 @@
 //!           | let NAME = EXPR;
 //!           | NAME: condition, ... suffix? ;
 //!           | NAME: symmetric? plane? chamfer EXPR suffix? ;
-//!           | observe NAME, ... suffix? ;                       columns named like the fields, in their units
+//!           | observe (NAME, ... suffix?), ... ;                columns named like the fields, in their units
 //!           | observe NAME: EXPR ~ COLUMN UNIT? suffix? ;       a column declared above, or declared here
 //! condition   EXPR (== | >= | <=) EXPR
 //!           | integral(EXPR) == EXPR

@@ -40,7 +40,7 @@ fn statement(stream: &mut Stream<'_>, context: &mut Context<'_>, items: &mut Vec
                 stream.skip();
                 let path = path(stream, context)?;
                 recover::operator(stream, context, "=", "the term")?;
-                items.push(SceneItem::Weight(path, parse_term::positive(stream, context)?));
+                items.push(SceneItem::Weight(path, parse_term::positive(stream, context, parse_term::WEIGHT)?));
                 return end_statement(stream, context);
             }
             _ => return Err(context.errors.report(stream.place(), catalogue::expected_scene_item(&stream.found()))),

@@ -1,6 +1,6 @@
 //! Terms: what must hold at the points of a group.
 
-use proc_macro2::Delimiter;
+use proc_macro2::{Delimiter, Literal};
 
 use super::recover::{self, end_statement};
 use super::stream::{Context, Stream};
@@ -21,7 +21,7 @@ pub(super) fn named(stream: &mut Stream<'_>, context: &mut Context<'_>, docs: Ve
     }))
 }
 
-/// `observe NAME, NAME SUFFIXES;` or `observe NAME: EXPR ~ COLUMN [unit] SUFFIXES;`
+/// `observe NAME, NAME SUFFIXES, NAME SUFFIXES;` or `observe NAME: EXPR ~ COLUMN [unit] SUFFIXES;`
 pub(super) fn observe(
     stream: &mut Stream<'_>,
     context: &mut Context<'_>,
@@ -38,22 +38,35 @@ pub(super) fn observe(
             GroupItem::Broken(name)
         })]);
     }
-    let mut names = vec![name];
-    while stream.take(",").is_some() {
-        names.push(recover::name(stream, context, "what is observed")?);
+    // Names that wait for their suffixes, which stand behind the last of them.
+    let mut waiting = vec![name];
+    let mut terms = Vec::new();
+    loop {
+        if stream.take(",").is_some() {
+            waiting.push(recover::name(stream, context, "what is observed")?);
+            continue;
+        }
+        let suffixes = suffixes(stream, context)?;
+        terms.extend(waiting.drain(..).map(|name| observed(name, &suffixes, &docs)));
+        if stream.take(",").is_none() {
+            break;
+        }
+        waiting.push(recover::name(stream, context, "what is observed")?);
     }
-    let (loss, weight, within) = suffixes(stream, context)?;
     if stream.at("~") || stream.at("==") {
         return Err(context.errors.report(stream.place(), catalogue::unnamed_observation()));
     }
     end_statement(stream, context)?;
-    let terms = names.into_iter().map(|name| {
-        let place = name.span.into();
-        let value = Expr { kind: ExprKind::Name(name.text.clone()), place };
-        let body = TermBody::Observe { value, column: None, unit: None };
-        GroupItem::Term(Box::new(Term { name, body, loss, weight, within: within.clone(), docs: docs.clone(), place }))
-    });
-    Ok(terms.collect())
+    Ok(terms)
+}
+
+/// The observation of a field in a column named like it.
+fn observed(name: Name, (loss, weight, within): &Suffixes, docs: &[String]) -> GroupItem {
+    let place = name.span.into();
+    let value = Expr { kind: ExprKind::Name(name.text.clone()), place };
+    let body = TermBody::Observe { value, column: None, unit: None };
+    let (within, docs) = (within.clone(), docs.to_vec());
+    GroupItem::Term(Box::new(Term { name, body, loss: *loss, weight: *weight, within, docs, place }))
 }
 
 fn long_observation(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<TermBody> {
@@ -80,6 +93,9 @@ fn finish(
     Ok(GroupItem::Term(Box::new(Term { name, body, loss, weight, within, docs, place })))
 }
 
+/// What a number after `weight` is called where it is none.
+pub(super) const WEIGHT: &str = "a weight (terms are left out by `without`)";
+
 /// What stands after `with`, after `weight` and after `within`.
 type Suffixes = (Option<Robust>, Option<f64>, Option<Within>);
 
@@ -88,13 +104,10 @@ fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffi
     let (mut robust, mut weight, mut within) = (None, None, None);
     loop {
         if stream.take_word("weight") {
-            weight = Some(positive(stream, context)?);
+            weight = Some(positive(stream, context, WEIGHT)?);
         } else if stream.take_word("within") {
             let place = stream.place();
-            let value = positive(stream, context)?;
-            if value == 0.0 {
-                return Err(context.errors.report(place, catalogue::expected_positive("what rows may be off by")));
-            }
+            let value = positive(stream, context, "what rows may be off by")?;
             let unit = parse_unit::parse_optional(stream, context).transpose()?.map(Box::new);
             within = Some(Within { value, unit, place });
         } else if stream.take_word("with") {
@@ -106,8 +119,8 @@ fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffi
                 let message = catalogue::expected_operator("(threshold)", &name.text, &stream.found());
                 return Err(context.errors.report(stream.place(), message));
             };
-            let threshold = positive(&mut inside, context)?;
-            if threshold == 0.0 || !inside.at_end() {
+            let threshold = positive(&mut inside, context, "the threshold")?;
+            if !inside.at_end() {
                 return Err(context.errors.report(place, catalogue::expected_positive("the threshold")));
             }
             robust = Some(Robust { variant, threshold });
@@ -117,12 +130,20 @@ fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffi
     }
 }
 
-/// A literal that is not negative.
-pub(super) fn positive(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<f64> {
+/// A positive number, with or without digits before its point.
+pub(super) fn positive(stream: &mut Stream<'_>, context: &mut Context<'_>, what: &str) -> Checked<f64> {
     let place = stream.place();
-    match stream.take_literal() {
-        Some(literal) => Ok(parse_number::parse(&literal, context)?.value),
-        None => Err(context.errors.report(place, catalogue::expected_positive("a weight"))),
+    let is_below_one = stream.take(".").is_some();
+    let Some(mut literal) = stream.take_literal() else {
+        return Err(context.errors.report(place, catalogue::expected_positive(what)));
+    };
+    if is_below_one && let Ok(whole) = format!("0.{literal}").parse::<Literal>() {
+        literal = whole;
+    }
+    let place = place.to(stream.previous());
+    match parse_number::parse(&literal, context)?.value {
+        value if value > 0.0 => Ok(value),
+        _ => Err(context.errors.report(place, catalogue::expected_positive(what))),
     }
 }
 

@@ -85,6 +85,11 @@ pub(super) fn name(stream: &mut Stream<'_>, context: &mut Context<'_>, what: &st
     let Some(name) = stream.take_name() else {
         return Err(context.errors.report(place, catalogue::expected_name(what, &found)));
     };
+    if let Some(plain) = name.text.strip_prefix("r#") {
+        // Other statements may well mean it by its plain name.
+        context.broken.extend([plain.to_string(), name.text.clone()]);
+        return Err(context.errors.report(place, catalogue::raw_name(plain)));
+    }
     if name.text == "_" || syn::parse_str::<syn::Ident>(&name.text).is_err() {
         context.broken.insert(name.text.clone());
         return Err(context.errors.report(place, catalogue::keyword_as_name(&name.text)));

@@ -202,6 +202,80 @@ pub(crate) fn nothing_to_solve(text: &str) -> String {
     )
 }
 
+pub(crate) fn holds_always(text: &str) -> String {
+    help(
+        format!("`{}` holds whatever the solution is: everything cancels", shorten(text)),
+        "remove it, or correct a side",
+    )
+}
+
+pub(crate) fn no_unknown_function(text: &str) -> String {
+    help(
+        format!("`{}` contains no field and no source", shorten(text)),
+        "give a parameter its value where it is declared: `k [N/m] = 2`, or `within` what it is believed to be off by",
+    )
+}
+
+pub(crate) fn contradicts_bound(text: &str, name: &str) -> String {
+    help(
+        format!("`{}` contradicts the bound of `{name}`", shorten(text)),
+        format!("widen the bound of `{name}`, or correct the value"),
+    )
+}
+
+pub(crate) fn observed_parameter(name: &str) -> String {
+    help(
+        format!("`{name}` is a parameter, which is the same at all points"),
+        format!("write what is known of it where it is declared: `{name} = 5 within 0.5`"),
+    )
+}
+
+pub(crate) fn rigid_surface(text: &str) -> String {
+    help(
+        format!("the surface `{}` contains no field, source or parameter", shorten(text)),
+        "write where its points move to, for instance `chamfer [x + u, y + v, w]`",
+    )
+}
+
+pub(crate) fn nothing_unknown(scene: &str) -> String {
+    help(
+        format!("in the scene `{scene}` nothing is unknown: all fields and sources are fixed"),
+        "leave one of them open, or `learn` a parameter",
+    )
+}
+
+pub(crate) fn nothing_measured(scene: &str) -> String {
+    help(
+        format!("the scene `{scene}` has something to find, and nothing is measured"),
+        "observe a field: `on samples { observe u; }`",
+    )
+}
+
+pub(crate) fn learned_in_vain(parameter: &str, scene: &str) -> String {
+    help(
+        format!("`{parameter}` is learned in the scene `{scene}`, and no term of it reads `{parameter}`"),
+        "leave it out of `learn`, or use its term",
+    )
+}
+
+pub(crate) fn not_separable(parameter: &str, source: &str) -> String {
+    help(
+        format!(
+            "learned `{parameter}` and unknown `{source}` cannot be told apart: one may be doubled where the other is halved or doubled"
+        ),
+        format!(
+            "give `{parameter}` its value, say `within` what it is believed to be off by, or state a value of `{source}`"
+        ),
+    )
+}
+
+pub(crate) fn operator_over_time(operator: &str, time: &str) -> String {
+    help(
+        format!("`{operator}` also goes over `{time}`"),
+        format!("declare it as `{time}: time` if it is one: without units nothing else tells"),
+    )
+}
+
 pub(crate) fn nothing_to_observe(text: &str) -> String {
     format!("`{}` contains no field or source to observe", shorten(text))
 }

@@ -128,6 +128,10 @@ pub(crate) fn cannot_fix(name: &str, noun: &str) -> String {
     help(format!("`{name}` is a {noun} and cannot be fixed"), "scenes fix sources, fields and parameters")
 }
 
+pub(crate) fn learned_twice(name: &str) -> String {
+    format!("`{name}` is learned twice in this scene")
+}
+
 pub(crate) fn learned_and_fixed(name: &str) -> String {
     format!("`{name}` is both fixed and learned in this scene")
 }

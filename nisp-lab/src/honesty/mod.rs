@@ -1,0 +1,78 @@
+//! `nisp-lab honesty`: whether what is said of an answer is true, on data that are right and on data that are spoiled.
+//!
+//! Data are simulated, so that the truth is known. Every case is solved as the command line would solve it. What was said is then
+//! compared with what is true: a wrong answer that was called right is a lie, a right answer from right data that was not called
+//! right is a false alarm.
+
+mod bodies;
+mod corruption;
+mod equations;
+mod experiment;
+mod judge;
+mod random;
+mod report;
+mod rk4;
+mod series;
+mod study;
+
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use nisp_cli::interrupt;
+use nisp_cli::options::{count, seconds, seed};
+use nisp_cli::terminal::{print, progress};
+
+use report::{HEAD, counts, json, line};
+use study::{Run, run, subjects};
+
+/// Which cases to run, and how.
+#[derive(clap::Args)]
+pub(crate) struct Options {
+    /// One JSON object instead of a table.
+    #[arg(long)]
+    json: bool,
+    /// Only cases whose `equation: corruption` contains this.
+    #[arg(long, value_name = "NAME")]
+    only: Option<String>,
+    /// Seed of the noise and of the initial weights.
+    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, allow_negative_numbers = true)]
+    seed: u64,
+    /// Wall time of a case.
+    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds)]
+    budget: f64,
+    /// Threads [default: one per processor].
+    #[arg(long, value_name = "N", value_parser = count)]
+    threads: Option<usize>,
+    /// The repository, whose samples and truths are read.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    repository: PathBuf,
+}
+
+/// Runs the cases and prints what came of them.
+pub(crate) fn honesty(options: &Options) -> Result<ExitCode, String> {
+    interrupt::listen(crate::NAME)?;
+    let threads = options.threads.unwrap_or_else(nisp_cli::processors);
+    let how = Run { seed: options.seed, budget: options.budget, threads };
+    let mut rows = Vec::new();
+    let say = |text: &str| if options.json { Ok(()) } else { print(text) };
+    say(HEAD)?;
+    for subject in subjects(&options.repository) {
+        for case in &subject.cases {
+            let name = format!("{}: {}", subject.name, case.corruption);
+            if options.only.as_ref().is_some_and(|only| !name.contains(only)) {
+                continue;
+            }
+            progress(&name);
+            let row = run(&subject, case, &how)?;
+            interrupt::check()?;
+            say(&line(&row))?;
+            rows.push(row);
+        }
+    }
+    progress("");
+    if rows.is_empty() {
+        return Err("no case has such a name".into());
+    }
+    print(&if options.json { json(&rows) } else { counts(&rows) })?;
+    Ok(ExitCode::SUCCESS)
+}

@@ -1,0 +1,28 @@
+//! Normal numbers from a seed.
+
+use rand::{RngExt, SeedableRng, rngs::StdRng};
+
+/// A stream of random numbers.
+pub(super) struct Random(StdRng);
+
+impl Random {
+    pub(super) fn new(seed: u64) -> Self {
+        Self(StdRng::seed_from_u64(seed))
+    }
+
+    /// A number between 0 and 1.
+    pub(super) fn uniform(&mut self) -> f64 {
+        self.0.random()
+    }
+
+    /// A standard normal number: the polar method of Marsaglia and Bray.
+    pub(super) fn normal(&mut self) -> f64 {
+        loop {
+            let [x, y] = [(); 2].map(|()| 2.0 * self.uniform() - 1.0);
+            let square = x * x + y * y;
+            if square > 0.0 && square < 1.0 {
+                return x * (-2.0 * square.ln() / square).sqrt();
+            }
+        }
+    }
+}

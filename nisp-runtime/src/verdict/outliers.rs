@@ -1,0 +1,71 @@
+//! Outliers in a record: values that stand alone, far from the course of their neighbours, where a squared loss follows them.
+
+use nalgebra::{DMatrix, DVector};
+
+/// Neighbours on each side whose course a value is compared with.
+const SIDE: usize = 3;
+/// Numbers that describe the course: a parabola.
+const UNKNOWNS: usize = 3;
+/// Distance from that course, over its own roughness and the noise, that chance does not make.
+const FAR: f64 = 10.0;
+
+/// The places of outliers among values in the order of their coordinate, and the sum of the squares of their distances over that
+/// of noise of this deviation in all values.
+pub(super) fn weight(places: &[f64], values: &[f64], deviation: f64) -> (Vec<usize>, f64) {
+    let mut found = Vec::new();
+    let mut sum = 0.0;
+    for at in SIDE..values.len().saturating_sub(SIDE) {
+        let near: Vec<usize> = (at - SIDE..=at + SIDE).filter(|&other| other != at).collect();
+        let reach = (places[at + SIDE] - places[at - SIDE]).abs().max(f64::MIN_POSITIVE);
+        let away = |other: usize| (places[other] - places[at]) / reach;
+        let rows = near.iter().flat_map(|&other| [1.0, away(other), away(other).powi(2)]);
+        let design = DMatrix::from_row_iterator(near.len(), UNKNOWNS, rows);
+        let around = DVector::from_iterator(near.len(), near.iter().map(|&other| values[other]));
+        let Ok(course) = design.clone().svd(true, true).solve(&around, 1e-12) else { continue };
+        let freedom = (near.len() - UNKNOWNS) as f64;
+        let rough = ((&around - design * &course).norm_squared() / freedom).sqrt();
+        let distance = (values[at] - course[0]).abs();
+        if distance > FAR * rough.max(deviation) {
+            found.push(at);
+            sum += distance * distance;
+        }
+    }
+    let noise = deviation * deviation * values.len() as f64;
+    (found, if sum > 0.0 { sum / noise } else { 0.0 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::normal;
+    use rand::{SeedableRng, rngs::StdRng};
+
+    fn record(noise: f64, course: fn(f64) -> f64) -> (Vec<f64>, Vec<f64>) {
+        let mut random = StdRng::seed_from_u64(3);
+        let places: Vec<f64> = (0..200).map(|i| 0.05 * f64::from(i)).collect();
+        let values = places.iter().map(|&x| course(x) + noise * normal(&mut random)).collect();
+        (places, values)
+    }
+
+    #[test]
+    fn noise_layers_and_jumps_are_no_outliers() {
+        for noise in [1e-6, 1e-2, 0.3] {
+            let courses: [fn(f64) -> f64; 3] = [f64::sin, |x| (-x / 0.02).exp(), |x| if x > 5.02 { 1.0 } else { 0.0 }];
+            for course in courses {
+                let (places, values) = record(noise, course);
+                assert_eq!(weight(&places, &values, noise), (vec![], 0.0));
+            }
+        }
+    }
+
+    #[test]
+    fn values_that_stand_alone_are() {
+        let (places, mut values) = record(1e-2, f64::sin);
+        values[50] += 0.5;
+        values[120] -= 0.5;
+        let (found, weight) = weight(&places, &values, 1e-2);
+        assert_eq!(found, [50, 120]);
+        // Two squares of fifty deviations over two hundred, up to the neighbours' noise.
+        assert!((weight / 25.0 - 1.0).abs() < 0.2, "{weight}");
+    }
+}

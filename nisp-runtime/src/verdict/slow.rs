@@ -1,0 +1,84 @@
+//! Whether what is left of a record has a slow course: noise has none, and a fit takes away from what chance makes of it.
+
+use std::f64::consts::PI;
+
+/// Modes from here on, as a share of all, are taken for noise.
+const FAST: f64 = 0.5;
+/// Numbers of slow modes that are looked at: twice as many each time, from these on.
+const FEWEST: usize = 4;
+
+/// How much more power the slow modes of ordered misfits have than noise would give them, in standard deviations, and the share
+/// of all power that is too much. The level of noise is that of the fast modes; a fit that follows its data leaves the slow ones
+/// below it.
+pub(super) fn excess(misfits: &[f64]) -> (f64, f64) {
+    let powers = powers(misfits);
+    let fast = &powers[(FAST * powers.len() as f64) as usize..];
+    let total: f64 = powers.iter().sum();
+    let level = fast.iter().sum::<f64>() / fast.len().max(1) as f64;
+    if level == 0.0 || total == 0.0 {
+        return (0.0, 0.0);
+    }
+    let counts = std::iter::successors(Some(FEWEST), |count| Some(2 * count));
+    let excesses = counts.take_while(|count| 4 * count <= misfits.len()).map(|count| {
+        let slow: f64 = powers[..count].iter().sum();
+        (deviations(slow / level, count), (slow - level * count as f64) / total)
+    });
+    excesses.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
+}
+
+/// Squares of the coefficients of cosines with 0, 1, 2, ... half waves (discrete cosine transform, orthonormal): of noise, each
+/// has the noise's variance for its mean.
+fn powers(values: &[f64]) -> Vec<f64> {
+    let count = values.len() as f64;
+    let power = |mode: usize| {
+        let wave = |(at, value): (usize, &f64)| value * (PI * mode as f64 * (at as f64 + 0.5) / count).cos();
+        let sum: f64 = values.iter().enumerate().map(wave).sum();
+        sum * sum * if mode == 0 { 1.0 } else { 2.0 } / count
+    };
+    (0..values.len()).map(power).collect()
+}
+
+/// A chi squared of so many degrees of freedom in standard deviations of a normal number (Wilson and Hilferty 1931).
+fn deviations(square: f64, freedom: usize) -> f64 {
+    let part = 2.0 / (9.0 * freedom as f64);
+    ((square / freedom as f64).cbrt() - (1.0 - part)) / part.sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::normal;
+    use rand::{SeedableRng, rngs::StdRng};
+
+    fn noise(seed: u64, count: usize) -> Vec<f64> {
+        let mut random = StdRng::seed_from_u64(seed);
+        (0..count).map(|_| normal(&mut random)).collect()
+    }
+
+    #[test]
+    fn powers_sum_to_the_square() {
+        let values = noise(1, 50);
+        let square: f64 = values.iter().map(|x| x * x).sum();
+        assert!((powers(&values).iter().sum::<f64>() / square - 1.0).abs() < 1e-12);
+    }
+
+    /// The largest of five normal numbers stays below four, but for one time in six thousand.
+    #[test]
+    fn noise_has_no_slow_course() {
+        for seed in 0..50 {
+            let (excess, _) = excess(&noise(seed, 200));
+            assert!(excess < 4.0, "{seed}: {excess}");
+        }
+    }
+
+    /// A wave of amplitude 0.7 has a quarter of the noise's power, a hundred times that of a mode, in one or two modes.
+    #[test]
+    fn a_wave_below_the_noise_is_seen() {
+        for seed in 0..20 {
+            let mut values = noise(seed, 400);
+            values.iter_mut().enumerate().for_each(|(at, value)| *value += 0.7 * (0.05 * at as f64).sin());
+            let (excess, share) = excess(&values);
+            assert!(excess > 4.0 && share > 0.02, "{seed}: {excess} {share}");
+        }
+    }
+}
