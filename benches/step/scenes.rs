@@ -1,5 +1,8 @@
 //! The paper's scenes at the paper's sizes, on points that fill their domains evenly.
 
+// In some scenes, which are timed and not solved, nothing is measured; the macro warns of that.
+#![allow(deprecated)]
+
 use nisp::{Points, Problem, SceneRef, scene_in_both_precisions as scene};
 
 use crate::support::{group, scatter};

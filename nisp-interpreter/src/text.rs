@@ -116,5 +116,5 @@ fn is_module(tokens: &TokenStream) -> bool {
 fn identifier(name: &str) -> String {
     let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let begins = plain.chars().next().is_some_and(|c| !c.is_ascii_digit());
-    if begins && plain.trim_matches('_') != "" { plain } else { format!("equation_{plain}") }
+    if begins && !plain.trim_matches('_').is_empty() { plain } else { format!("equation_{plain}") }
 }

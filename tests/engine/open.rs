@@ -1,5 +1,8 @@
 //! A stiffness and a load that only occur as a ratio: what the data leave open is named, and what closes it.
 
+// The macro warns of what is left open; here the solver is asked.
+#![allow(deprecated)]
+
 use nisp::solve::driver::{Flow, WarningKind};
 use nisp::{Optimizer, Problem, Settings, Solution, recover};
 

@@ -20,7 +20,7 @@ const FILES: [&str; 6] = ["plot.svg", "source.csv", "state.csv", "surface.ply", 
 #[test]
 fn a_contact_is_scored_beside_a_classical_way_and_its_surface_is_written() {
     let place = Place::new();
-    let ran = place.run("solve membrane --carrier network --iterations 3 --width 6 --out out");
+    let ran = place.run("solve membrane --carrier network --iterations 3 --width 6 --rivals --out out");
     assert_eq!(ran.code, Some(3), "{}", ran.stderr);
     for row in ["y_shape_1_cloud_1.ply", "net force", "overlap of the patch (IoU)", "spline of the cloud"] {
         assert!(ran.stdout.contains(row), "no `{row}` in: {}", ran.stdout);

@@ -105,12 +105,6 @@ fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<Vec<Column>
         let what = "the first line holds numbers; put a line of column names above it, for instance `t [s],q [m]`";
         return Err(DataError::file(path, what));
     }
-    for (at, header) in headers.iter().enumerate().filter(|(_, header)| !header.is_empty()) {
-        if let Some(before) = headers.iter().take(at).position(|other| other == header) {
-            let what = format!("columns {} and {} are both named `{header}`; rename one of them", before + 1, at + 1);
-            return Err(DataError::file(path, what));
-        }
-    }
     Ok(headers.iter().map(|header| Column { header: header.to_string(), values: Vec::new(), fault: None }).collect())
 }
 

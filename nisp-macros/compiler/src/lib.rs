@@ -36,7 +36,7 @@ pub fn compile(tokens: TokenStream) -> TokenStream {
         Ok((model, plan)) => code::emit(&model, &plan),
         Err(Failure { errors, model }) => {
             let mut tokens = errors.into_compile_errors();
-            tokens.extend(model.as_ref().map(code::skeleton));
+            tokens.extend(model.as_deref().map(code::skeleton));
             tokens
         }
     }
@@ -48,7 +48,7 @@ pub struct Failure {
     /// The errors.
     pub errors: error::Errors,
     /// The model, where names could be resolved.
-    pub model: Option<model::Model>,
+    pub model: Option<Box<model::Model>>,
 }
 
 /// Every stage but the last: a model and its plan.
@@ -61,7 +61,7 @@ pub fn analyse(tokens: TokenStream) -> Result<(model::Model, plan::Plan), Failur
     let checked = module.and_then(|module| model::check(&module, &mut errors));
     let Some(mut model) = checked else { return Err(Failure { errors, model: None }) };
     if !errors.is_empty() {
-        return Err(Failure { errors, model: Some(model) });
+        return Err(Failure { errors, model: Some(Box::new(model)) });
     }
     match plan_with_outputs(&mut model) {
         Ok(plan) => Ok((model, plan)),
@@ -69,7 +69,7 @@ pub fn analyse(tokens: TokenStream) -> Result<(model::Model, plan::Plan), Failur
             for fault in faults {
                 errors.push(fault.span.unwrap_or(model.name.span), fault.message);
             }
-            Err(Failure { errors, model: Some(model) })
+            Err(Failure { errors, model: Some(Box::new(model)) })
         }
     }
 }

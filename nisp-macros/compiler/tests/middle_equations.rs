@@ -84,7 +84,7 @@ impl Author {
         let terms: String = (0..rows)
             .map(|row| {
                 // The fifth power cancels nothing: an equation in which everything cancels is refused.
-                let kept = &self.fields[0].clone();
+                let kept = self.fields[0];
                 format!(
                     "r{row}: {} + {} + {kept}^5 == {};",
                     self.derivative(1),

@@ -35,10 +35,9 @@ pub(super) fn check(elaborator: &mut Elaborator<'_>, model: &mut Model) {
                 && read.fields.contains(at)
         };
         let sources: Vec<usize> = model.fields.iter().enumerate().filter(is_open).map(|(at, _)| at).collect();
-        let is_measured = |term: &&Term| {
-            matches!(term.kind, TermKind::Observation { .. } | TermKind::Chamfer { .. } | TermKind::Integral { .. })
-        };
-        if !terms.iter().any(|term| is_measured(term)) && !(sources.is_empty() && searched.is_empty()) {
+        let is_measured = read.columns || terms.iter().any(|term| is_measurement(term));
+        let is_known = sources.is_empty() && searched.is_empty();
+        if !is_measured && !is_known {
             warnings.push((catalogue::nothing_measured(&name.text), name.span));
             continue;
         }
@@ -56,6 +55,11 @@ pub(super) fn check(elaborator: &mut Elaborator<'_>, model: &mut Model) {
     model.warnings.append(&mut warnings);
 }
 
+/// True if a term compares the answer with something that was measured; conditions may do so by a column.
+fn is_measurement(term: &Term) -> bool {
+    matches!(term.kind, TermKind::Observation { .. } | TermKind::Chamfer { .. } | TermKind::Integral { .. })
+}
+
 /// The terms that a scene uses.
 fn used<'a>(scene: &'a Scene, model: &'a Model) -> impl Iterator<Item = &'a Term> {
     let groups = model.groups.iter().zip(&scene.uses);
@@ -67,6 +71,7 @@ fn used<'a>(scene: &'a Scene, model: &'a Model) -> impl Iterator<Item = &'a Term
 struct Read {
     fields: BTreeSet<usize>,
     parameters: BTreeSet<usize>,
+    columns: bool,
     seen: BTreeSet<*const Node>,
 }
 
@@ -84,7 +89,8 @@ impl Read {
         match &**expr {
             Node::Field(at) => drop(self.fields.insert(*at)),
             Node::Parameter(at) => drop(self.parameters.insert(*at)),
-            Node::Number(_) | Node::Real(_) | Node::Quantity(..) | Node::Coordinate(_) | Node::Column(_) => {}
+            Node::Column(_) => self.columns = true,
+            Node::Number(_) | Node::Real(_) | Node::Quantity(..) | Node::Coordinate(_) => {}
             Node::Add(parts) | Node::Mul(parts) => parts.iter().for_each(|part| self.walk(part)),
             Node::Div(a, b) | Node::Power(a, b) | Node::Min(a, b) | Node::Max(a, b) => {
                 self.walk(a);
