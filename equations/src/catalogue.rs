@@ -1,8 +1,8 @@
 //! The equations by name, and how a user's request becomes a bound problem.
 //!
-//! A new equation is one new file with its `pde!` and its `ENTRY`, and one line in [`catalogue`].
+//! A new equation is one new file with its `pde!` and its entry, and one line in [`catalogue`].
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use nisp::local::Local;
 use nisp::{Carrier, Settings};
@@ -15,25 +15,25 @@ use crate::error::PrepareError;
 use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::series::Series;
 use crate::truth::Truth;
-use crate::{membrane, pendulum, plate, rlc, sponge};
+use crate::{membrane, pendulum, plate, rlc, sponge, tables};
 
-/// Everything that the command line knows.
-// Inlined, its function pointers would have every crate that asks compile all kernels again.
+/// The equations that are shipped.
+// Inlined, the scenes would have every crate that asks compile all kernels again.
 #[inline(never)]
 pub fn catalogue() -> [Entry; 5] {
-    [pendulum::ENTRY, rlc::ENTRY, plate::ENTRY, membrane::ENTRY, sponge::ENTRY]
+    [pendulum::entry(), rlc::entry(), plate::entry(), membrane::entry(), sponge::entry()]
 }
 
-/// An equation that the command line knows by name.
-#[derive(Clone, Copy, Debug)]
+/// An equation and how it is bound to data.
+#[derive(Clone, Debug)]
 pub struct Entry {
     /// Name on the command line.
     pub name: &'static str,
     /// One line about it.
     pub about: &'static str,
     /// Its scenes; the first is the default.
-    pub scenes: &'static [fn() -> SceneRef],
-    /// Path of the example's data in the repository; empty if there is none.
+    pub scenes: Vec<SceneRef>,
+    /// Path of the example's data in the repository; empty if there are none.
     pub data: &'static str,
     /// How it is bound.
     pub binding: Binding,
@@ -42,8 +42,10 @@ pub struct Entry {
 /// How an entry's scenes are bound to what a user asks for.
 #[derive(Clone, Copy, Debug)]
 pub enum Binding {
-    /// To tables over time.
+    /// To tables over time, one of which is shipped.
     Series(Series),
+    /// To tables of its user's own.
+    Tables,
     /// In a way of its own.
     Own(fn(&Entry, &Request) -> Result<Prepared, PrepareError>),
     /// To a point cloud.
@@ -56,10 +58,9 @@ impl Entry {
     /// # Errors
     /// No such scene.
     pub fn scene(&self, name: Option<&str>) -> Result<SceneRef, PrepareError> {
-        let mut scenes = self.scenes.iter().map(|scene| scene());
-        let Some(name) = name else { return Ok(self.scenes[0]()) };
-        scenes.find(|scene| scene.schema.name == name).ok_or_else(|| {
-            let have: Vec<_> = self.scenes.iter().map(|scene| scene().schema.name).collect();
+        let Some(name) = name else { return Ok(self.scenes[0]) };
+        self.scenes.iter().find(|scene| scene.schema.name == name).copied().ok_or_else(|| {
+            let have: Vec<_> = self.scenes.iter().map(|scene| scene.schema.name).collect();
             PrepareError::Scene { entry: self.name, scene: name.into(), hint: hint(name, &have), have: have.join(", ") }
         })
     }
@@ -74,6 +75,7 @@ impl Entry {
         }
         match &self.binding {
             Binding::Series(series) => series.prepare(self, request),
+            Binding::Tables => tables::prepare(self, request),
             Binding::Own(prepare) | Binding::Cloud(prepare) => prepare(self, request),
         }
     }
@@ -82,7 +84,7 @@ impl Entry {
     pub fn series(&self) -> Option<&Series> {
         match &self.binding {
             Binding::Series(series) => Some(series),
-            Binding::Own(_) | Binding::Cloud(_) => None,
+            Binding::Tables | Binding::Own(_) | Binding::Cloud(_) => None,
         }
     }
 
@@ -108,8 +110,10 @@ impl Entry {
 pub struct Request {
     /// Scene of the entry, or its default.
     pub scene: Option<String>,
-    /// Table or cloud of measurements, or the example's.
-    pub data: Option<PathBuf>,
+    /// Tables or a cloud of measurements, or else the example's: each for a group or, without a name, for all that want data.
+    pub data: Vec<(Option<String>, PathBuf)>,
+    /// Where the answer is wanted, if not where it was measured.
+    pub wanted: Option<Wanted>,
     /// File with a sample's parameters and the names of its clouds.
     pub sample: Option<PathBuf>,
     /// Which of the sample's clouds, counted from zero.
@@ -126,6 +130,23 @@ pub struct Request {
     pub parameters: Vec<(String, f64)>,
 }
 
+impl Request {
+    /// The only file of data, for entries that take one.
+    ///
+    /// # Errors
+    /// Several files, or one for a group.
+    pub(crate) fn file(&self, entry: &Entry) -> Result<Option<&Path>, PrepareError> {
+        match self.data.as_slice() {
+            [] => Ok(None),
+            [(None, path)] => Ok(Some(path)),
+            _ => {
+                let instead = "it takes one file: --data FILE";
+                Err(PrepareError::Option { entry: entry.name, option: "data GROUP=FILE", instead })
+            }
+        }
+    }
+}
+
 /// A bound problem, what was measured, and what is true if that is known.
 pub struct Prepared {
     /// The problem.
@@ -134,8 +155,8 @@ pub struct Prepared {
     pub points: Vec<f64>,
     /// The edge of a plane domain, for pictures; empty otherwise.
     pub outline: Vec<[f64; 2]>,
-    /// Measured values by field.
-    pub measured: Vec<(&'static str, Vec<f64>)>,
+    /// What was measured over one coordinate.
+    pub measured: Vec<Measured>,
     /// Truth, for scoring only.
     pub truth: Option<Truth>,
     /// Where the data came from.
@@ -150,6 +171,26 @@ pub struct Prepared {
     pub local: Option<Local>,
     /// The body whose surface was seen, where the data are a cloud.
     pub contact: Option<Contact>,
+}
+
+/// A measured column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Its name.
+    pub name: &'static str,
+    /// The places of its rows.
+    pub at: Vec<f64>,
+    /// Its values, NaN where nothing was measured.
+    pub values: Vec<f64>,
+}
+
+/// Where an answer is wanted.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wanted {
+    /// At the rows of a table with a column for each coordinate.
+    At(PathBuf),
+    /// On a grid over the domain, so many points along each coordinate.
+    Grid(Vec<usize>),
 }
 
 /// A parameter or size that nobody gave.
@@ -176,7 +217,7 @@ impl Prepared {
     /// are given the noise that they find themselves.
     pub fn contest(&self, at: &[f64], truth: &[f64]) -> Vec<Answer> {
         let Some(system) = &self.rival else { return Vec::new() };
-        let states: Vec<&[f64]> = self.measured.iter().map(|(_, values)| values.as_slice()).collect();
+        let states: Vec<&[f64]> = self.measured.iter().map(|measured| measured.values.as_slice()).collect();
         let noise: Result<Vec<f64>, _> = states.iter().map(|values| noise_level(&self.points, values)).collect();
         let answers = noise.and_then(|noise| {
             contest(system.as_ref(), &Measurements { times: &self.points, states: &states, noise: &noise }, at, truth)

@@ -36,6 +36,45 @@ pub enum PrepareError {
         /// The names there are.
         have: String,
     },
+    /// A file for a group that there is not.
+    #[error("--data {group}={}: the scene has no group `{group}`{hint}; it has: {have}", .path.display())]
+    Group {
+        /// The group named.
+        group: String,
+        /// Its file.
+        path: PathBuf,
+        /// The group that may have been meant.
+        hint: String,
+        /// The groups there are.
+        have: String,
+    },
+    /// A group whose measurements nobody gave.
+    #[error("group `{group}` wants measurements of {columns}; give a table: --data {group}=FILE")]
+    Unmeasured {
+        /// The group.
+        group: &'static str,
+        /// Its columns.
+        columns: String,
+    },
+    /// A group whose points nobody gave.
+    #[error(
+        "nothing says where `{group}` lies; declare a domain in the equation and write `on {group} in DOMAIN`, or give its \
+         points as a table of {coordinates}: --data {group}=FILE"
+    )]
+    Nowhere {
+        /// The group.
+        group: &'static str,
+        /// The coordinates.
+        coordinates: String,
+    },
+    /// A grid of another dimension.
+    #[error("--grid has {given} numbers; give one for each of {coordinates}, for instance 61x61 for two")]
+    Grid {
+        /// How many numbers were given.
+        given: usize,
+        /// The coordinates.
+        coordinates: String,
+    },
     /// An option that an entry has no use for.
     #[error("`{entry}` takes no --{option}; {instead}")]
     Option {

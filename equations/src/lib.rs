@@ -6,15 +6,17 @@ mod copies;
 mod error;
 pub mod membrane;
 pub mod pendulum;
+mod places;
 pub mod plate;
 pub mod rivals;
 pub mod rlc;
 pub mod series;
 pub mod sponge;
+mod tables;
 pub mod truth;
 mod yardsticks;
 
-pub use catalogue::{Assumed, Binding, Entry, Prepared, Request, catalogue};
+pub use catalogue::{Assumed, Binding, Entry, Measured, Prepared, Request, Wanted, catalogue};
 pub use contact::Contact;
 pub use copies::noisy_copy;
 pub use error::PrepareError;

@@ -6,21 +6,23 @@ use crate::catalogue::{Binding, Entry};
 use crate::contact;
 
 /// The membrane on the command line.
-pub(crate) const ENTRY: Entry = Entry {
-    name: "membrane",
-    about: "the contact pressure on an inflated membrane, or its modulus, from a point cloud",
-    scenes: &[
-        scene::<membrane::contact::Scene>,
-        scene::<membrane::identify::Scene>,
-        scene::<membrane::contact_no_inplane::Scene>,
-        scene::<membrane::identify_no_inplane::Scene>,
-        scene::<membrane::contact_bending::Scene>,
-        scene::<membrane::identify_bending::Scene>,
-        scene::<membrane::identify_unknown_pressure::Scene>,
-    ],
-    data: "data/membrane/y_shape_1.toml",
-    binding: Binding::Cloud(contact::prepare_membrane),
-};
+pub(crate) fn entry() -> Entry {
+    Entry {
+        name: "membrane",
+        about: "the contact pressure on an inflated membrane, or its modulus, from a point cloud",
+        scenes: vec![
+            scene::<membrane::contact::Scene>(),
+            scene::<membrane::identify::Scene>(),
+            scene::<membrane::contact_no_inplane::Scene>(),
+            scene::<membrane::identify_no_inplane::Scene>(),
+            scene::<membrane::contact_bending::Scene>(),
+            scene::<membrane::identify_bending::Scene>(),
+            scene::<membrane::identify_unknown_pressure::Scene>(),
+        ],
+        data: "data/membrane/y_shape_1.toml",
+        binding: Binding::Cloud(contact::prepare_membrane),
+    }
+}
 
 nisp::pde! {
     /// Von Karman's plate: small strains, finite slopes. A point at rest at `(alpha, beta, 0)` moves to

@@ -7,19 +7,22 @@ use nisp_data::Table;
 use nisp_data::domain::{Domain, Sampling};
 use nisp_data::input::read_text;
 use serde::Deserialize;
+use std::path::Path;
 
 use crate::catalogue::{Binding, Entry, Prepared, Request};
 use crate::error::PrepareError;
 use crate::truth::{Headers, Truth};
 
 /// The plate on the command line.
-pub(crate) const ENTRY: Entry = Entry {
-    name: "plate",
-    about: "the deflection of a clamped circular plate under pressure: a forward problem",
-    scenes: &[scene::<plate::clamped::Scene>, scene::<plate::edge_only::Scene>],
-    data: "data/plate/plate.toml",
-    binding: Binding::Own(prepare),
-};
+pub(crate) fn entry() -> Entry {
+    Entry {
+        name: "plate",
+        about: "the deflection of a clamped circular plate under pressure: a forward problem",
+        scenes: vec![scene::<plate::clamped::Scene>(), scene::<plate::edge_only::Scene>()],
+        data: "data/plate/plate.toml",
+        binding: Binding::Own(prepare),
+    }
+}
 
 /// A plate in a file, in SI units.
 #[derive(Deserialize)]
@@ -41,9 +44,10 @@ const POINTS: (usize, usize) = (400, 80);
 fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
     const EXAMPLE: &str = include_str!("../../data/plate/plate.toml");
     const TRUTH: &[u8] = include_bytes!("../../data/plate/plate_points.csv");
-    let path = request.data.clone().unwrap_or_else(|| entry.data.into());
+    let file = request.file(entry)?;
+    let path = file.map_or_else(|| entry.data.into(), Path::to_path_buf);
     let fault = |reason: String| PrepareError::File { path: path.clone(), reason };
-    let text = match &request.data {
+    let text = match file {
         Some(path) => read_text(path)?,
         None => EXAMPLE.into(),
     };
@@ -64,9 +68,9 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
     let normals = (0..asked).map(|axis| normals.iter().skip(axis).step_by(2).copied().collect()).collect();
     problem.set_group("interior", Points::from(interior.coords), Vec::new())?;
     problem.set_group("rim", Points::from(rim.coords), normals)?;
-    let truth = match (&request.truth, &request.data) {
+    let truth = match (&request.truth, file) {
         (Some(path), _) => Some(Table::read(path)?),
-        (None, None) => Some(Table::parse(std::path::Path::new("data/plate/plate_points.csv"), TRUTH)?),
+        (None, None) => Some(Table::parse(Path::new("data/plate/plate_points.csv"), TRUTH)?),
         (None, Some(_)) => None,
     };
     let truth = truth.map(|table| Truth::read(&table, scene.schema, None, Headers::default())).transpose()?;

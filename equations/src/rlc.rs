@@ -9,13 +9,15 @@ use crate::rivals::{Rlc, System};
 use crate::series::{Given, Series};
 
 /// The circuit on the command line.
-pub(crate) const ENTRY: Entry = Entry {
-    name: "rlc",
-    about: "the voltage that drives a circuit, from the voltage that answers",
-    scenes: &[scene::<rlc::recover::Scene>, scene::<rlc::free::Scene>],
-    data: "data/rlc/rlc_exponential.csv",
-    binding: Binding::Series(SERIES),
-};
+pub(crate) fn entry() -> Entry {
+    Entry {
+        name: "rlc",
+        about: "the voltage that drives a circuit, from the voltage that answers",
+        scenes: vec![scene::<rlc::recover::Scene>(), scene::<rlc::free::Scene>()],
+        data: "data/rlc/rlc_exponential.csv",
+        binding: Binding::Series(SERIES),
+    }
+}
 
 const SERIES: Series = Series {
     data: include_bytes!("../../data/rlc/rlc_exponential.csv"),

@@ -6,17 +6,19 @@ use crate::catalogue::{Binding, Entry};
 use crate::contact;
 
 /// The sponge on the command line.
-pub(crate) const ENTRY: Entry = Entry {
-    name: "sponge",
-    about: "the contact pressure on a soft cube pressed on unknown terrain, from a point cloud and a wrench",
-    scenes: &[
-        scene::<sponge::unknown_terrain::Scene>,
-        scene::<sponge::known_terrain::Scene>,
-        scene::<sponge::displacement::Scene>,
-    ],
-    data: "data/sponge/plane_1.toml",
-    binding: Binding::Cloud(contact::prepare_sponge),
-};
+pub(crate) fn entry() -> Entry {
+    Entry {
+        name: "sponge",
+        about: "the contact pressure on a soft cube pressed on unknown terrain, from a point cloud and a wrench",
+        scenes: vec![
+            scene::<sponge::unknown_terrain::Scene>(),
+            scene::<sponge::known_terrain::Scene>(),
+            scene::<sponge::displacement::Scene>(),
+        ],
+        data: "data/sponge/plane_1.toml",
+        binding: Binding::Cloud(contact::prepare_sponge),
+    }
+}
 
 nisp::pde! {
     /// A cube held at its top face. The contact pressure `f` presses along `m`: the terrain's normal where it is known,

@@ -18,9 +18,32 @@ pub(crate) struct Args {
 pub(crate) enum Command {
     /// Show the equations that can be solved.
     List,
+    /// Say what was understood of an equation and of its data, before anything is solved.
+    Check {
+        /// Equation: a text file (heat.pde) or one that is shipped (see `nisp list`).
+        #[arg(value_name = "SCENE")]
+        equation: String,
+        /// One of its scenes.
+        #[arg(long, value_name = "NAME")]
+        scene: Option<String>,
+        /// Tables as for `nisp solve`. Repeatable.
+        #[arg(long, value_name = "[GROUP=]FILE", value_parser = data)]
+        data: Vec<(Option<String>, PathBuf)>,
+        /// Header of the column that holds a quantity. Repeatable.
+        #[arg(long, value_name = "NAME=HEADER", value_parser = pair)]
+        column: Vec<(String, String)>,
+        /// Show the conditions as LaTeX too.
+        #[arg(long)]
+        latex: bool,
+    },
+    /// Write a folder with a small equation of your own that already solves: its text, data and a README.
+    New {
+        /// Name of the equation and of the folder: letters, digits and underscores.
+        name: String,
+    },
     /// Show a scene's equations, units, channels, what a point costs and what is skipped.
     Explain {
-        /// Equation (see `nisp list`).
+        /// Equation: a text file (heat.pde) or one that is shipped (see `nisp list`).
         #[arg(value_name = "SCENE")]
         equation: String,
         /// One of its scenes.
@@ -41,21 +64,28 @@ pub(crate) enum Command {
 /// How and from what to solve.
 #[derive(Group)]
 pub(crate) struct Options {
-    /// Equation to solve (see `nisp list`).
+    /// Equation to solve: a text file (heat.pde) or one that is shipped (see `nisp list`).
     #[arg(value_name = "SCENE")]
     pub(crate) equation: String,
     /// One of the equation's scenes [default: its first].
     #[arg(long, value_name = "NAME")]
     pub(crate) scene: Option<String>,
-    /// CSV of measurements with a column for the time, or a point cloud [default: the repository's example].
-    #[arg(long, value_name = "FILE", help_heading = DATA)]
-    pub(crate) data: Option<PathBuf>,
+    /// CSV of measurements, or a point cloud [default: the repository's example, if the equation is shipped]. With GROUP=, for
+    /// a group of that name alone, its points included. Repeatable.
+    #[arg(long, value_name = "[GROUP=]FILE", value_parser = data, help_heading = DATA)]
+    pub(crate) data: Vec<(Option<String>, PathBuf)>,
     /// TOML of a sample: its parameters, and the names of its point clouds.
     #[arg(long, value_name = "FILE", help_heading = DATA)]
     pub(crate) sample: Option<PathBuf>,
     /// Which of the sample's clouds, counted from 0 [default: 0].
     #[arg(long, value_name = "K", allow_negative_numbers = true, help_heading = DATA)]
     pub(crate) cloud: Option<usize>,
+    /// Table of the points at which the answer is wanted [default: where it was measured, or a grid].
+    #[arg(long, value_name = "FILE", conflicts_with = "grid", help_heading = DATA)]
+    pub(crate) at: Option<PathBuf>,
+    /// Points of the answer along each coordinate, for instance 200x100.
+    #[arg(long, value_name = "NxM", value_parser = grid, help_heading = DATA)]
+    pub(crate) grid: Option<Grid>,
     /// Unit of the cloud's coordinates: m, cm, mm, um or in [default: m].
     #[arg(long, value_name = "UNIT", help_heading = DATA)]
     pub(crate) unit: Option<LengthUnit>,
@@ -146,12 +176,16 @@ Examples:
   nisp solve membrane --scene identify --data bubble.ply --unit mm --set p=5670
       your cloud; nothing touches the membrane, and its modulus is wanted
   nisp solve sponge --data sides.ply --set force_z=2.4 --set force_x=0 ...
+  nisp new cooling, then nisp solve cooling/cooling.pde --data cooling/data.csv
+      an equation of your own, in a text file
+  nisp solve heat.pde --data probes=probes.csv --data wall=wall.csv --grid 100x50
+      a table for each group that was measured; the answer on a grid
   nisp solve plate --budget 600 --checkpoint
   nisp solve plate --budget 600 --checkpoint --resume nisp-out
       goes on where the first run stopped, or was stopped
 
 Data:
-  A CSV with one header line, a time that rises, and a column for each observed quantity. For `q` in metres the headers
+  A CSV with one header line, a column for each coordinate (one alone must rise) and for each observed quantity. For `q` in metres the headers
   `q`, `q [m]` and `q_m` are found by themselves; `q_mm` is converted. Any other header is chosen with --column. A
   header without a unit is taken in the declared one: `nisp explain SCENE` shows units and parameters. Files may have
   256 MiB; devices and pipes are not read.
@@ -186,6 +220,36 @@ Exit codes:
   2  bad input; nothing was written
   3  not converged, or interrupted (status `not_converged`); the best state was written
   4  the results could not be written to the folder of --out, or to standard output";
+
+/// Points along each coordinate.
+#[derive(Clone, Debug)]
+pub(crate) struct Grid(pub(crate) Vec<usize>);
+
+fn grid(text: &str) -> Result<Grid, String> {
+    let counts = text.split(['x', ',']).map(|part| count(part.trim())).collect::<Result<Vec<_>, _>>();
+    let counts = counts.map_err(|_| "give whole numbers with `x` between them, for instance 200x100")?;
+    match counts
+        .iter()
+        .try_fold(1_usize, |total, count| total.checked_mul(*count))
+        .filter(|total| *total <= MOST_POINTS)
+    {
+        Some(_) => Ok(Grid(counts)),
+        None => Err(format!("at most {MOST_POINTS} points in all")),
+    }
+}
+
+/// A grid with more points is a slip.
+const MOST_POINTS: usize = 10_000_000;
+
+/// `FILE` or `GROUP=FILE`.
+fn data(text: &str) -> Result<(Option<String>, PathBuf), String> {
+    let is_name = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    match text.split_once('=').map(|(group, path)| (group.trim(), path.trim())) {
+        Some((group, "")) if is_name(group) => Err(format!("no file behind `{group}=`")),
+        Some((group, path)) if is_name(group) => Ok((Some(group.into()), path.into())),
+        _ => Ok((None, text.into())),
+    }
+}
 
 fn pair(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=HEADER, for instance q=q_m_sigma0.01")?;

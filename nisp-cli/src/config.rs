@@ -32,6 +32,14 @@ pub(crate) fn flags(path: &Path) -> Result<Vec<OsString>, String> {
                     flags.push(format!("--{key}={name}={value}").into());
                 }
             }
+            Value::Table(files) if key == "data" => {
+                for (group, file) in files {
+                    let Some(file) = plain(file) else { return refuse("takes GROUP = FILE pairs") };
+                    let mut flag = OsString::from(format!("--data={group}="));
+                    flag.push(folder.join(file));
+                    flags.push(flag);
+                }
+            }
             Value::Boolean(false) => {}
             Value::Boolean(true) => flags.push(format!("--{key}").into()),
             _ => {

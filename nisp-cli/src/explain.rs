@@ -4,7 +4,7 @@ use std::fmt::Write;
 use std::process::ExitCode;
 
 use nisp::network::Architecture;
-use nisp::schema::{Origin, Unit};
+use nisp::schema::{Origin, Scene, Unit};
 
 /// Prints a scene's equations, units, channels and savings, and what a point costs in a network of this shape.
 pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Architecture) -> Result<ExitCode, String> {
@@ -15,24 +15,7 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Archite
     let mut line = |content: String| {
         let _ = writeln!(text, "{}", content.trim_end());
     };
-    line(format!("{}, scene {}: {}", schema.module, schema.name, schema.docs.lines().next().unwrap_or_default()));
-    for coordinate in schema.coordinates {
-        line(format!("  coordinate {:5} {}", coordinate.name, unit(&coordinate.unit)));
-    }
-    for head in schema.heads {
-        let kind = if head.source { "source" } else { "field" };
-        line(format!("  {kind:10} {:5} {:9} {}", head.name, unit(&head.unit), head.docs));
-    }
-    for scalar in schema.scalars {
-        let (kind, value) = match scalar.origin {
-            Origin::Given(value) => ("parameter", value),
-            Origin::Learned { start, .. } => ("learned", start),
-            Origin::Literal(_) | Origin::HeadScale(_) | Origin::SideScale { .. } => continue,
-        };
-        let value =
-            value.map_or_else(|| "must be --set".into(), |value| format!("{}", rounded(value / scalar.unit.factor)));
-        line(format!("  {kind:10} {:5} {:9} {value}", scalar.name, unit(&scalar.unit)));
-    }
+    unknowns(schema).into_iter().for_each(&mut line);
     line(format!("in a network of {} layers of {} units, with gates:", architecture.layers, architecture.width));
     for group in schema.groups {
         line(format!("group {}", group.name));
@@ -61,7 +44,32 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Archite
     Ok(ExitCode::SUCCESS)
 }
 
-fn unit(unit: &Unit) -> String {
+/// A scene in a few lines: what it is, its coordinates, what is unknown, what is given.
+pub(crate) fn unknowns(schema: &Scene) -> Vec<String> {
+    let about = schema.docs.lines().next().unwrap_or_default();
+    let mut lines = vec![format!("{}, scene {}: {about}", schema.module, schema.name)];
+    let mut line = |content: String| lines.push(content);
+    for coordinate in schema.coordinates {
+        line(format!("  coordinate {:5} {}", coordinate.name, unit(&coordinate.unit)));
+    }
+    for head in schema.heads {
+        let kind = if head.source { "source" } else { "field" };
+        line(format!("  {kind:10} {:5} {:9} {}", head.name, unit(&head.unit), head.docs));
+    }
+    for scalar in schema.scalars {
+        let (kind, value) = match scalar.origin {
+            Origin::Given(value) => ("parameter", value),
+            Origin::Learned { start, .. } => ("learned", start),
+            Origin::Literal(_) | Origin::HeadScale(_) | Origin::SideScale { .. } => continue,
+        };
+        let value =
+            value.map_or_else(|| "must be --set".into(), |value| format!("{}", rounded(value / scalar.unit.factor)));
+        line(format!("  {kind:10} {:5} {:9} {value}", scalar.name, unit(&scalar.unit)));
+    }
+    lines
+}
+
+pub(crate) fn unit(unit: &Unit) -> String {
     format!("[{}]", unit.text)
 }
 

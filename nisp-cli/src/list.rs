@@ -7,7 +7,7 @@ pub(crate) fn list() -> Result<ExitCode, String> {
     let mut text = String::new();
     for entry in nisp_equations::catalogue() {
         text += &format!("{:10} {}\n", entry.name, entry.about);
-        let schemas: Vec<_> = entry.scenes.iter().map(|scene| scene().schema).collect();
+        let schemas: Vec<_> = entry.scenes.iter().map(|scene| scene.schema).collect();
         let widest = schemas.iter().map(|schema| schema.name.len()).max().unwrap_or(0);
         for schema in schemas {
             let about = schema.docs.lines().next().unwrap_or_default();

@@ -1,10 +1,12 @@
-//! The `nisp` command: list, explain and solve the equations that NISP ships.
+//! The `nisp` command: check, explain and solve equations, shipped ones and those in text files.
 
 mod args;
+mod check;
 mod checkpoint;
 mod config;
 mod explain;
 mod list;
+mod new;
 mod report;
 mod results;
 mod solve;
@@ -26,6 +28,10 @@ fn main() -> ExitCode {
     let result = parse(std::env::args_os().collect()).and_then(|args| match args {
         Parsed::Shown(code) => Ok(code),
         Parsed::Asked(Args { command: Command::List }) => list::list(),
+        Parsed::Asked(Args { command: Command::Check { equation, scene, data, column, latex } }) => {
+            check::check(&equation, scene, data, column, latex)
+        }
+        Parsed::Asked(Args { command: Command::New { name } }) => new::new(&name),
         Parsed::Asked(Args { command: Command::Explain { equation, scene, width, layers } }) => {
             explain::explain(&equation, scene.as_deref(), Architecture::modified(width, layers))
         }

@@ -10,7 +10,7 @@ use nisp_cli::score::Found;
 use nisp_cli::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print, progress};
 use nisp_cli::{interrupt, processors};
 use nisp_data::OutDir;
-use nisp_equations::{Prepared, Request, Truth};
+use nisp_equations::{Prepared, Request, Truth, Wanted};
 
 use crate::args::Options;
 use crate::checkpoint::{self, Keeper};
@@ -27,6 +27,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         sample: options.sample.clone(),
         cloud: options.cloud,
         unit: options.unit,
+        wanted: wanted(options),
         truth: options.truth.clone(),
         network: settings.carrier == Carrier::Network,
         columns: options.column.clone(),
@@ -73,6 +74,12 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         (true, None) => ExitCode::from(NOT_CONVERGED),
         (false, None) => ExitCode::SUCCESS,
     })
+}
+
+/// Where the user wants the answer.
+fn wanted(options: &Options) -> Option<Wanted> {
+    let grid = options.grid.as_ref().map(|grid| Wanted::Grid(grid.0.clone()));
+    options.at.clone().map(Wanted::At).or(grid)
 }
 
 /// All that the user should know, one line each; `more` is of this run's files.

@@ -8,7 +8,8 @@ use nisp_compiler::plan::{self, GroupPlan, Plan, RowKind, ScenePlan, TermPlan};
 use nisp_compiler::symbolic::exact::to_f64;
 use nisp_compiler::unit;
 use nisp_runtime::schema::{
-    Column, Coordinate, Group, Head, Jet, Loss, Origin, RuleFlops, Scalar, Scene, Term, TermKind, Unit,
+    Column, Coordinate, Group, Head, Jet, Loss, Origin, Place, Portion, Region, RuleFlops, Scalar, Scene, Term,
+    TermKind, Unit,
 };
 
 /// The schema of a scene.
@@ -106,10 +107,26 @@ fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene,
         ),
         terms: list(group.terms.iter().map(|t| term(declared, group, source, t))),
         rows: group.terms.iter().map(|term| term.rows).sum(),
+        place: source.place.as_ref().map(place),
         paired: source.paired,
         flops: [group.residual.flops(), group.adjoint.flops()],
         rule_flops: RuleFlops { compose, affine, product },
     }
+}
+
+fn place(place: &model::Place) -> Place {
+    let regions = place.domain.iter().map(|region| match region {
+        model::Region::Box(ranges) => Region::Box(list(ranges.iter().copied())),
+        model::Region::Ellipse { centre, semi_axes } => Region::Ellipse { centre: *centre, semi_axes: *semi_axes },
+        model::Region::Polygon(corners) => Region::Polygon(list(corners.iter().copied())),
+    });
+    let portion = match place.portion {
+        model::Portion::Inside => Portion::Inside,
+        model::Portion::Boundary => Portion::Boundary,
+        model::Portion::Start => Portion::Start,
+        model::Portion::End => Portion::End,
+    };
+    Place { portion, domain: list(regions) }
 }
 
 fn jet(model: &Model, scene: &ScenePlan, jet: &plan::Jet) -> Jet {

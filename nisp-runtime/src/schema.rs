@@ -134,6 +134,8 @@ pub struct Group {
     pub terms: &'static [Term],
     /// Rows of all terms.
     pub rows: usize,
+    /// Where its points lie, if a domain says so.
+    pub place: Option<Place>,
     /// True if every point has a partner.
     pub paired: bool,
     /// Floating-point operations per point of the residual program and its adjoint.
@@ -156,6 +158,44 @@ impl Group {
         let alone = readers.next().is_some_and(|term| term.columns == [at] && term.rows == 1);
         alone && readers.next().is_none() && self.terms.iter().all(|term| term.kind == TermKind::Observation)
     }
+}
+
+/// Where a group's points lie, in the declared units of the coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Which part of the domain.
+    pub portion: Portion,
+    /// The domain: a product of regions over the coordinates in their order.
+    pub domain: &'static [Region],
+}
+
+/// A part of a domain.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Portion {
+    /// Everywhere in it.
+    Inside,
+    /// On the edge of its first region.
+    Boundary,
+    /// Where its last region, an interval, begins.
+    Start,
+    /// Where its last region ends.
+    End,
+}
+
+/// A region over some coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Region {
+    /// Lower and upper end for each coordinate.
+    Box(&'static [[f64; 2]]),
+    /// An ellipse with its axes along the coordinates; a disc.
+    Ellipse {
+        /// Its centre.
+        centre: [f64; 2],
+        /// Half its diameters.
+        semi_axes: [f64; 2],
+    },
+    /// The corners of a polygon.
+    Polygon(&'static [[f64; 2]]),
 }
 
 /// Floating-point operations of propagation rules on all channels, forward and on the way back (which computes a layer

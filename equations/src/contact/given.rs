@@ -70,7 +70,7 @@ impl Given<'_> {
     /// As [`Given::problem`].
     pub(super) fn assumed(&self) -> Result<Vec<Assumed>, PrepareError> {
         let mut assumed = Vec::new();
-        if self.request.data.is_none() {
+        if self.request.data.is_empty() {
             return Ok(assumed);
         }
         let schema = self.scene.schema;

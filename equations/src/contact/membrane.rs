@@ -85,7 +85,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let scene = entry.scene(request.scene.as_deref())?;
     let schema = scene.schema;
     let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
-    let observed = Observed::read(request, if pressure.is_some() { &PRESSED } else { &INFLATED })?;
+    let observed = Observed::read(entry, request, if pressure.is_some() { &PRESSED } else { &INFLATED })?;
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };

@@ -8,7 +8,7 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::PrepareError;
-use crate::catalogue::Request;
+use crate::catalogue::{Entry, Request};
 
 /// A sample that is part of the program.
 pub(super) struct Example {
@@ -86,19 +86,19 @@ impl Sample {
 
 impl Observed {
     /// Reads what is asked for; without data and sample, the example.
-    pub(super) fn read(request: &Request, example: &Example) -> Result<Self, PrepareError> {
-        let (sample, data) = match (&request.sample, &request.data) {
+    pub(super) fn read(entry: &Entry, request: &Request, example: &Example) -> Result<Self, PrepareError> {
+        let (sample, data) = match (&request.sample, request.file(entry)?) {
             (None, Some(data)) => match sample_beside(data) {
                 Some(path) => (Some(path), None),
                 None => (None, Some(data)),
             },
-            (sample, data) => (sample.clone(), data.as_ref()),
+            (sample, data) => (sample.clone(), data),
         };
         let sample = sample.map(|path| Sample::read(&path)).transpose()?;
         let alone = |what: &str| Err(PrepareError::Cloud { index: request.cloud.unwrap_or(0), instead: what.into() });
         let (source, mut cloud) = match (&sample, data) {
             (_, Some(_)) if request.cloud.is_some() => return alone("--data names a cloud already"),
-            (_, Some(data)) => (data.clone(), Cloud::read(data)?),
+            (_, Some(data)) => (data.to_path_buf(), Cloud::read(data)?),
             (Some(sample), None) => {
                 let path = sample.cloud(request.cloud.unwrap_or(0))?;
                 let cloud = Cloud::read(&path)?;

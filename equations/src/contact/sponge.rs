@@ -99,7 +99,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     if schema.groups.iter().flat_map(|group| group.columns).any(|column| column.name == "clearance") {
         return Err(PrepareError::Terrain { scene: schema.name });
     }
-    let observed = Observed::read(request, &EXAMPLE)?;
+    let observed = Observed::read(entry, request, &EXAMPLE)?;
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };

@@ -1,6 +1,6 @@
 //! A run as one JSON object for programs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use nisp::solve::driver::Status;
 use nisp::{Estimate, LearnedValue, Solution, TermReport};
@@ -161,7 +161,7 @@ fn settings(solution: &Solution, run: &Run<'_>) -> Value {
     let pairs = |own: &[(String, String)]| own.iter().cloned().collect::<std::collections::BTreeMap<_, _>>();
     json!({
         "scene": solution.scene().name,
-        "data": options.data.as_deref().map(text),
+        "data": files_of(&options.data),
         "sample": options.sample.as_deref().map(text),
         "cloud": options.cloud,
         "unit": options.unit.map(LengthUnit::symbol),
@@ -181,6 +181,19 @@ fn settings(solution: &Solution, run: &Run<'_>) -> Value {
         "resume": options.resume.as_deref().map(text),
         "isa": solution.isa(),
     })
+}
+
+/// A file alone as its path; several, or one for a group, as `GROUP=FILE`.
+fn files_of(data: &[(Option<String>, PathBuf)]) -> Value {
+    let one = |(group, path): &(Option<String>, PathBuf)| match group {
+        Some(group) => format!("{group}={}", text(path)),
+        None => text(path),
+    };
+    match data {
+        [] => Value::Null,
+        [only @ (None, _)] => one(only).into(),
+        _ => data.iter().map(one).collect(),
+    }
 }
 
 /// A path as text; letters that are none are replaced.

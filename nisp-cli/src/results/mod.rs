@@ -116,9 +116,9 @@ fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estima
         let mut panel = LinePanel::new(Quantity::new(estimate.name, estimate.unit.text));
         let head = scene.heads.iter().find(|head| head.name == estimate.name);
         panel.caption = head.map_or_else(String::new, |head| first_line(head.docs).into());
-        let measured = prepared.measured.iter().find(|(name, _)| *name == estimate.name);
-        let measured = measured.map(|(_, values)| {
-            let rows = prepared.points.iter().copied().zip(values.iter().copied());
+        let measured = prepared.measured.iter().find(|measured| measured.name == estimate.name);
+        let measured = measured.map(|measured| {
+            let rows = measured.at.iter().copied().zip(measured.values.iter().copied());
             rows.filter(|(_, value)| !value.is_nan()).unzip::<f64, f64, Vec<f64>, Vec<f64>>()
         });
         panel.measured = measured.as_ref().map(|(times, values)| Curve::new(times, values));
@@ -128,7 +128,7 @@ fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estima
         panel.truth = truth.and_then(|truth| Some(Curve::new(&truth.points, truth.of(estimate.name)?)));
         panel
     });
-    let x = Quantity::new("t", "s");
+    let x = Quantity::new(scene.coordinates[0].name, scene.coordinates[0].unit.text);
     line_plot(&LinePlot { title: title(solution), subtitle: subtitle(prepared, solution), x, panels: panels.collect() })
 }
 

@@ -41,6 +41,7 @@ pub(crate) fn append(model: &mut Model) {
         name: Name { text: NAME.into(), span: Span::call_site() },
         columns: model.parameters.iter().map(column).collect(),
         terms,
+        place: None,
         paired: false,
         definitions: Vec::new(),
         docs: Vec::new(),

@@ -35,6 +35,7 @@ pub(crate) fn append(model: &mut Model, plan: &Plan) {
         name: name(NAME),
         columns: Vec::new(),
         terms,
+        place: None,
         paired: false,
         definitions: Vec::new(),
         docs: Vec::new(),

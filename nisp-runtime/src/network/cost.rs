@@ -63,6 +63,7 @@ mod tests {
             columns: &[],
             terms: &[],
             rows: 1,
+            place: None,
             paired: false,
             flops: [0, 0],
             rule_flops: RuleFlops { compose: [11, 23], affine: [5, 7], product: [2, 3] },

@@ -105,6 +105,13 @@ impl Problem {
         Self { scene, ..self }
     }
 
+    /// What is bound to a group: its points and its columns, in declared units. Nothing for an unknown group or one that is
+    /// not bound.
+    pub fn group(&self, name: &str) -> Option<(&Points, &[Vec<f64>])> {
+        let at = self.scene.schema.groups.iter().position(|own| own.name == name)?;
+        self.groups[at].as_ref().map(|binding| (&binding.points, binding.columns.as_slice()))
+    }
+
     /// Gives a parameter its value, in its declared unit.
     ///
     /// # Errors

@@ -5,7 +5,7 @@ use quote::quote;
 
 use crate::describe;
 use crate::loss::Robust;
-use crate::model::{self, Model, Role};
+use crate::model::{self, Model, Region, Role};
 use crate::plan::{GroupPlan, Jet, Plan, RowKind, Scalar, ScenePlan, TermPlan};
 use crate::symbolic::exact::to_f64;
 use crate::unit::{Dimension, Unit};
@@ -95,6 +95,7 @@ fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &Sc
 fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene, group: &GroupPlan) -> TokenStream {
     let source = &model.groups[group.group];
     let (name, docs, paired) = (&source.name.text, describe::text(&source.docs), source.paired);
+    let place = source.place.as_ref().map_or_else(|| quote!(None), place);
     let set = &plan.sets[group.hidden].set;
     let channels = describe::channel_names(set, model);
     let (order, dense) = (set.order() as usize, describe::dense(set));
@@ -113,9 +114,31 @@ fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene,
         schema::Group {
             name: #name, docs: #docs, channels: &[#(#channels),*], order: #order, dense: #dense,
             jets: &[#(#jets),*], columns: &[#(#columns),*], terms: &[#(#terms),*],
-            rows: #rows, paired: #paired, flops: [#(#flops),*], rule_flops: #rule_flops,
+            rows: #rows, place: #place, paired: #paired, flops: [#(#flops),*], rule_flops: #rule_flops,
         }
     }
+}
+
+fn place(place: &model::Place) -> TokenStream {
+    let portion = Ident::new(&format!("{:?}", place.portion), Span::call_site());
+    let pairs = |pairs: &[[f64; 2]]| {
+        let pairs = pairs.iter().map(|[a, b]| quote!([#a, #b]));
+        quote!(&[#(#pairs),*])
+    };
+    let regions = place.domain.iter().map(|region| match region {
+        Region::Box(ranges) => {
+            let ranges = pairs(ranges);
+            quote!(schema::Region::Box(#ranges))
+        }
+        Region::Ellipse { centre: [x, y], semi_axes: [a, b] } => {
+            quote!(schema::Region::Ellipse { centre: [#x, #y], semi_axes: [#a, #b] })
+        }
+        Region::Polygon(corners) => {
+            let corners = pairs(corners);
+            quote!(schema::Region::Polygon(#corners))
+        }
+    });
+    quote!(Some(schema::Place { portion: schema::Portion::#portion, domain: &[#(#regions),*] }))
 }
 
 fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {

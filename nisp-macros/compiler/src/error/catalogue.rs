@@ -278,6 +278,10 @@ pub(crate) fn expected_statement(found: &str, word: &str, known: &[&'static str]
     help(format!("expected a declaration, `let`, `on` or `scene`, found {found}"), step)
 }
 
+pub(crate) fn expected_of(word: &str, found: &str) -> String {
+    help(format!("expected `of` and a domain, found {found}"), format!("write `on NAME {word} of DOMAIN {{ ... }}`"))
+}
+
 pub(crate) fn expected_by(found: &str) -> String {
     help(
         format!("expected `by` and a distance, found {found}"),

@@ -6,7 +6,7 @@ use super::check_group::{self, GroupNames};
 use super::elaborate::Elaborator;
 use super::scope::Meaning;
 use super::value::Reads;
-use super::{Definition, Group, Hard, Model, Name, check_scene, declare, lint};
+use super::{Definition, Group, Hard, Model, Name, check_domain, check_scene, declare, lint};
 use crate::error::{Checked, Errors, catalogue};
 use crate::syntax::{self, Item, Module, print_text};
 
@@ -55,13 +55,15 @@ fn definitions(module: &Module, elaborator: &mut Elaborator<'_>) -> Vec<Definiti
 }
 
 fn groups(module: &Module, elaborator: &mut Elaborator<'_>, model: &mut Model) -> Vec<GroupNames> {
+    let mut domains = check_domain::check(module, &model.coordinates, elaborator);
     let mut names: Vec<GroupNames> = Vec::new();
     for item in &module.items {
         let Item::Group(group) = item else { continue };
         if names.iter().any(|other| other.name == group.name.text) {
             elaborator.errors.push(group.name.span, catalogue::group_declared_twice(&group.name.text));
         }
-        let (checked, found) = check_group::check(group, elaborator, &model.fields);
+        let (mut checked, found) = check_group::check(group, elaborator, &model.fields);
+        checked.place = domains.locate(group.location.as_ref(), elaborator);
         let alike = |other: &&Group| other.name.text != checked.name.text && other.data_name() == checked.data_name();
         if let Some(other) = model.groups.iter().find(alike) {
             let message = catalogue::groups_alike(&checked.name.text, &other.name.text, &checked.data_name());
@@ -70,6 +72,7 @@ fn groups(module: &Module, elaborator: &mut Elaborator<'_>, model: &mut Model) -
         model.groups.push(checked);
         names.push(found);
     }
+    domains.warn(elaborator);
     if names.is_empty() && !elaborator.errors.found_any() {
         elaborator.errors.push(module.name.span, catalogue::no_groups());
     }

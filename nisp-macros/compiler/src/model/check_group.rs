@@ -26,6 +26,7 @@ pub(super) fn check(group: &syntax::Group, elaborator: &mut Elaborator<'_>, fiel
         definitions: Vec::new(),
         columns: Vec::new(),
         terms: Vec::new(),
+        place: None,
         paired: group.paired,
         docs: group.docs.clone(),
     };

@@ -20,7 +20,7 @@ pub(super) fn everything(model: &Model, name: Name) -> Scene {
         spreads: vec![None; model.parameters.len()],
         warnings: Vec::new(),
         weights: model.groups.iter().map(|group| group.terms.iter().map(|term| term.weight).collect()).collect(),
-        docs: Vec::new(),
+        docs: model.docs.clone(),
     }
 }
 

@@ -9,7 +9,7 @@ use proc_macro2::{Span, TokenStream};
 
 use crate::loss::Robust;
 use crate::rational::Rational;
-pub use crate::syntax::Name;
+pub use crate::syntax::{Name, Portion};
 use crate::unit::{Dimension, Unit};
 
 mod arithmetic;
@@ -17,6 +17,7 @@ mod build;
 mod call;
 mod cancel;
 mod check;
+mod check_domain;
 mod check_group;
 mod check_integral;
 mod check_observation;
@@ -192,10 +193,37 @@ pub struct Group {
     pub columns: Vec<Column>,
     /// What must hold.
     pub terms: Vec<Term>,
+    /// Where its points lie, if a domain says so.
+    pub place: Option<Place>,
     /// True if every point has a partner (periodic pairs): [`Node::Partner`] may occur.
     pub paired: bool,
     /// Doc comment.
     pub docs: Vec<String>,
+}
+
+/// Where a group's points lie.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place {
+    /// Which part of the domain.
+    pub portion: Portion,
+    /// The domain's factors.
+    pub domain: Vec<Region>,
+}
+
+/// A region over some coordinates, in their declared units.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Region {
+    /// Lower and upper end for each coordinate.
+    Box(Vec<[f64; 2]>),
+    /// An ellipse with its axes along the coordinates; a disc.
+    Ellipse {
+        /// Its centre.
+        centre: [f64; 2],
+        /// Half its diameters.
+        semi_axes: [f64; 2],
+    },
+    /// The corners of a polygon.
+    Polygon(Vec<[f64; 2]>),
 }
 
 impl Group {

@@ -10,11 +10,13 @@
 //! statement   coordinates: (NAME (: time)? UNIT?), ... ;
 //!           | fields: declared, ... ;  | sources: declared, ... ;  | parameters: (declared (= EXPR)? (within EXPR)?), ... ;
 //!           | constants: (NAME UNIT? = EXPR), ... ;
+//!           | domains: (NAME = region (times region)...), ... ;   regions of the coordinates in order, in their units
 //!           | units: off;
 //!           | let NAME = EXPR;
 //!           | hard FIELD = EXPR by EXPR;                        value on the boundary, distance that is zero there
-//!           | on NAME pairs? { item... }
+//!           | on NAME (in DOMAIN | boundary of DOMAIN | start of DOMAIN | end of DOMAIN)? pairs? { item... }
 //!           | scene NAME { choice... }
+//! region      EXPR .. EXPR | box(EXPR .. EXPR, ...) | disc(x, y, radius) | ellipse(x, y, a, b) | polygon([x, y], ...)
 //! declared    NAME (: vector | : vector(3))? UNIT? (>= EXPR | <= EXPR | in EXPR .. EXPR)?
 //! item        columns: (NAME (: vector)? UNIT?), ... ;
 //!           | let NAME = EXPR;
@@ -42,6 +44,7 @@ use crate::error::Errors;
 
 mod limit_depth;
 mod parse_declarations;
+mod parse_domain;
 mod parse_expression;
 mod parse_group;
 mod parse_module;

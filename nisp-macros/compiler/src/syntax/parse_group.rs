@@ -1,20 +1,21 @@
-//! `on NAME { ... }`
+//! `on NAME { ... }`, `on NAME in DOMAIN { ... }`
 
 use super::recover;
 use super::stream::{Context, Stream};
 use super::tree::{Group, GroupItem, Kind, Let};
-use super::{parse_declarations, parse_expression, parse_term};
+use super::{parse_declarations, parse_domain, parse_expression, parse_term};
 use crate::error::{Checked, catalogue};
 
 /// Reads a group after its doc comment.
 pub(super) fn parse(stream: &mut Stream<'_>, context: &mut Context<'_>, docs: Vec<String>) -> Checked<Group> {
     stream.skip();
     let name = recover::name(stream, context, "a group of points")?;
+    let location = parse_domain::location(stream, context)?;
     let paired = stream.take_word("pairs");
     let mut inside = recover::block(stream, context, &name.text)?;
     let mut items = Vec::new();
     recover::statements(&mut inside, context, |stream, context| statement(stream, context, &mut items));
-    Ok(Group { name, paired, items, docs })
+    Ok(Group { name, location, paired, items, docs })
 }
 
 fn statement(stream: &mut Stream<'_>, context: &mut Context<'_>, items: &mut Vec<GroupItem>) -> Checked<()> {

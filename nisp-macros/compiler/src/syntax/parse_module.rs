@@ -5,7 +5,7 @@ use proc_macro2::{Delimiter, TokenStream};
 use super::recover::{self, STATEMENTS};
 use super::stream::{Context, Stream};
 use super::tree::{Hard, Item, Kind, Module};
-use super::{parse_declarations, parse_expression, parse_group, parse_scene};
+use super::{parse_declarations, parse_domain, parse_expression, parse_group, parse_scene};
 use crate::error::{Checked, catalogue};
 
 /// Reads the one module of an invocation.
@@ -60,6 +60,7 @@ fn statement(stream: &mut Stream<'_>, context: &mut Context<'_>, module: &mut Mo
         "let" => module.items.push(Item::Let(parse_group::definition(stream, context)?)),
         "on" => module.items.push(Item::Group(parse_group::parse(stream, context, docs)?)),
         "scene" => module.items.push(Item::Scene(parse_scene::parse(stream, context, docs)?)),
+        "domains" => module.items.extend(parse_domain::parse(stream, context)?.into_iter().map(Item::Domain)),
         "hard" => module.items.push(Item::Hard(hard(stream, context)?)),
         _ => {
             let message = catalogue::expected_statement(&stream.found(), &word, &STATEMENTS);

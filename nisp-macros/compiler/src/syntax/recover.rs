@@ -7,8 +7,8 @@ use super::tree::Name;
 use crate::error::{Checked, Place, catalogue};
 
 /// Words that begin a statement of a module.
-pub(super) const STATEMENTS: [&str; 10] =
-    ["coordinates", "fields", "sources", "parameters", "constants", "units", "let", "on", "scene", "hard"];
+pub(super) const STATEMENTS: [&str; 11] =
+    ["coordinates", "fields", "sources", "parameters", "constants", "domains", "units", "let", "on", "scene", "hard"];
 
 /// True where a new statement evidently begins, so that a `;` must have been forgotten before it.
 pub(super) fn at_statement(stream: &Stream<'_>) -> bool {

@@ -97,6 +97,7 @@ pub enum Item {
     Group(Group),
     Scene(Scene),
     Hard(Hard),
+    Domain(Domain),
 }
 
 /// `let NAME = EXPR;`
@@ -119,11 +120,66 @@ pub struct Hard {
     pub distance: Expr,
 }
 
+/// A domain: regions over the coordinates in their order, as a product.
+#[derive(Clone, Debug)]
+pub struct Domain {
+    /// Its name.
+    pub name: Name,
+    /// Its factors.
+    pub regions: Vec<Region>,
+}
+
+/// A region over one or more coordinates.
+#[derive(Clone, Debug)]
+pub struct Region {
+    /// What it is.
+    pub kind: RegionKind,
+    /// Where it stands.
+    pub place: Place,
+}
+
+/// What a region is, as written.
+#[derive(Clone, Debug)]
+pub enum RegionKind {
+    /// `a .. b` or `box(a .. b, ...)`.
+    Box(Vec<(Expr, Expr)>),
+    /// `disc(x, y, radius)`.
+    Disc(Vec<Expr>),
+    /// `ellipse(x, y, a, b)`.
+    Ellipse(Vec<Expr>),
+    /// `polygon([x, y], ...)`.
+    Polygon(Vec<Expr>),
+}
+
+/// Which part of a domain a group lies in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Portion {
+    /// Everywhere in it.
+    Inside,
+    /// On the edge of its first factor.
+    Boundary,
+    /// Where the last factor, an interval, begins.
+    Start,
+    /// Where the last factor ends.
+    End,
+}
+
+/// `in D`, `boundary of D`, `start of D` or `end of D`.
+#[derive(Clone, Debug)]
+pub struct Location {
+    /// Which part.
+    pub portion: Portion,
+    /// The domain's name.
+    pub domain: Name,
+}
+
 /// `on NAME { ... }`
 #[derive(Clone, Debug)]
 pub struct Group {
     /// Its name.
     pub name: Name,
+    /// Where its points lie, if it says so.
+    pub location: Option<Location>,
     /// True after `on NAME pairs`.
     pub paired: bool,
     /// Statements in order.

@@ -158,6 +158,7 @@ impl Build for Model {
             name: name(text),
             columns: (0..columns).map(column).collect(),
             terms: terms.into_iter().map(term).collect(),
+            place: None,
             paired: false,
             definitions: Vec::new(),
             docs: Vec::new(),

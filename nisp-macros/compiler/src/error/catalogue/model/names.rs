@@ -44,6 +44,40 @@ pub(crate) fn group_declared_twice(name: &str) -> String {
     help(format!("there are two groups `{}`", shorten(name)), "put all terms of a group into one block")
 }
 
+pub(crate) fn domain_declared_twice(name: &str) -> String {
+    help(format!("there are two domains `{}`", shorten(name)), "give one of them another name")
+}
+
+pub(crate) fn no_domain(name: &str, nearest: Option<&str>) -> String {
+    help(
+        format!("there is no domain `{}`", shorten(name)),
+        meant(nearest, "declare it: `domains: plate = disc(0, 0, 1);`"),
+    )
+}
+
+pub(crate) fn no_ends(name: &str) -> String {
+    help(
+        format!("`{}` has no start and no end: its last region is no interval", shorten(name)),
+        "write the interval of the last coordinate last: `domains: slab = disc(0, 0, 1) times 0 .. 5;`",
+    )
+}
+
+pub(crate) fn domain_of_other_dimension(name: &str, coordinates: &str) -> String {
+    help(
+        format!("the regions of `{}` do not match the coordinates {coordinates}", shorten(name)),
+        "a region for all coordinates, in their order: an interval takes one, a disc, an ellipse and a polygon two, a box \
+         one for each of its ranges",
+    )
+}
+
+pub(crate) fn no_region() -> String {
+    help(
+        "this is no region",
+        "write `0 .. 2`, `box(0 .. 2, 0 .. 1)`, `disc(x, y, radius)`, `ellipse(x, y, a, b)` or `polygon([x, y], ...)`: lower \
+         ends first, radii above zero, three corners or more",
+    )
+}
+
 pub(crate) fn groups_alike(name: &str, other: &str, data: &str) -> String {
     help(
         format!("`{}` and `{}` differ too little", shorten(name), shorten(other)),
