@@ -155,6 +155,8 @@ pub struct Prepared {
     pub points: Vec<f64>,
     /// The edge of a plane domain, for pictures; empty otherwise.
     pub outline: Vec<[f64; 2]>,
+    /// Over three coordinates and more, the points of planes to draw, and what they are called; none otherwise.
+    pub planes: Vec<(String, Vec<f64>)>,
     /// What was measured over one coordinate.
     pub measured: Vec<Measured>,
     /// Truth, for scoring only.

@@ -55,12 +55,9 @@ impl Body {
         })
     }
 
-    /// The edge of a plane domain, for pictures; empty of others.
+    /// The edge over the first two coordinates, for pictures; empty if these are of two regions.
     pub(crate) fn outline(&self) -> Vec<[f64; 2]> {
-        match self.factors.as_slice() {
-            [plane] => plane.outline(200),
-            _ => Vec::new(),
-        }
+        self.factors.first().map_or_else(Vec::new, |first| first.outline(200))
     }
 
     /// Points of one of its portions.

@@ -80,6 +80,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         problem,
         points,
         outline: disc.outline(200),
+        planes: Vec::new(),
         measured: Vec::new(),
         truth,
         source,

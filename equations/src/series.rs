@@ -110,6 +110,7 @@ impl Series {
             problem: found.problem,
             points: found.places,
             outline: Vec::new(),
+            planes: Vec::new(),
             measured: found.measured,
             truth,
             source: table.path().display().to_string(),

@@ -26,14 +26,21 @@ nisp::pde! {
 }
 
 nisp::pde! {
-    mod poisson {
+    pub(crate) mod poisson {
         units: off;
         coordinates: x, y;
         fields: u;
         sources: s;
-        on inside { balance: laplacian(u) == s; }
-        on rim { held: u == x * y; }
-        scene solve { }
+        domains:
+            square = box(-1 .. 1, -1 .. 1), round = disc(0, 0, 2), three = polygon([0, 0], [1, 0], [0, 1]),
+            strip = 0 .. 1 times -1 .. 3;
+        on inside in square { balance: laplacian(u) == s; }
+        on rim boundary of round { held: u == x * y; }
+        on corner in three { held: u == 1 within 5; }
+        on early start of strip { held: u == 2 within 5; }
+        on late end of strip { held: u == 3 within 5; }
+        scene solve { only inside.balance, rim.held; }
+        scene everywhere { }
     }
 }
 

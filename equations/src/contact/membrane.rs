@@ -135,6 +135,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         problem,
         points: grid(&ellipse),
         outline: ellipse.outline(200),
+        planes: Vec::new(),
         measured: Vec::new(),
         truth,
         source: observed.source.display().to_string(),

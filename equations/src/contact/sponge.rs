@@ -158,6 +158,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         problem,
         points: nodes,
         outline: square.outline(4),
+        planes: Vec::new(),
         measured: Vec::new(),
         truth,
         source: observed.source.display().to_string(),

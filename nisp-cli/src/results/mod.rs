@@ -58,9 +58,10 @@ pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution) -> Result<Ans
         return contact::answer(prepared, contact, solution);
     }
     let times = &prepared.points;
-    if let [_, _] = solution.scene().coordinates {
+    if solution.scene().coordinates.len() > 1 {
         let estimates = evaluate(solution, times);
-        let plot = maps(prepared, solution, &estimates).map(|plot| plot.svg().into());
+        let draw = if prepared.planes.is_empty() { maps } else { planes };
+        let plot = draw(prepared, solution, &estimates).map(|plot| plot.svg().into());
         let mut answer = Answer::new(prepared, estimates)?;
         answer.show(PLOT, plot);
         return Ok(answer);
@@ -154,6 +155,36 @@ fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Res
             shown.iter().map(panel).collect::<Result<_, DataError>>()?
         }
     };
+    let quantity = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
+    field_map(&FieldMap {
+        title: title(solution),
+        subtitle: subtitle(prepared, solution),
+        x: quantity(0),
+        y: quantity(1),
+        outline: prepared.outline.clone(),
+        panels,
+    })
+}
+
+/// The first source, or field if there is none, over planes of the first two coordinates.
+fn planes(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Result<Picture, DataError> {
+    let scene = solution.scene();
+    let shown = estimates.iter().find(|estimate| estimate.source).or(estimates.first());
+    let name = shown.map_or("", |estimate| estimate.name);
+    let drawn = prepared.planes.iter().map(|(title, points)| {
+        let found = solution.evaluate(points).into_iter().find(|estimate| estimate.name == name);
+        let places = points.chunks_exact(scene.coordinates.len()).map(|point| [point[0], point[1]]);
+        found.map(|estimate| (title, estimate, places.collect::<Vec<_>>()))
+    });
+    let drawn: Vec<_> = drawn.flatten().collect();
+    let values: Vec<f64> = drawn.iter().flat_map(|(_, estimate, _)| estimate.values.iter().copied()).collect();
+    // One scale for all, so that they can be compared.
+    let scale = ColourScale::sequential(&values);
+    let panels = drawn.iter().map(|(title, estimate, places)| {
+        let value = Quantity::new(estimate.name, estimate.unit.text);
+        Ok(panel(title, value, Grid::from_points(places, &estimate.values)?, scale))
+    });
+    let panels = panels.collect::<Result<_, DataError>>()?;
     let quantity = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
     field_map(&FieldMap {
         title: title(solution),

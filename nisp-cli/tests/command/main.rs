@@ -14,4 +14,5 @@ mod plate;
 mod readme;
 mod resume;
 mod streams;
+mod text;
 mod verdict;

@@ -139,7 +139,7 @@ fn bind_body(body: Body, (sample, truth): (&Path, &Path), samples: &Samples, tol
     let request = Request {
         scene: Some(body.scene.into()),
         sample: Some(sample.into()),
-        data: Some(cloud.path().into()),
+        data: vec![(None, cloud.path().into())],
         truth: (!body.truth.is_empty()).then(|| truth.into()),
         parameters: told.iter().map(|(name, value)| ((*name).into(), *value)).collect(),
         ..Request::default()

@@ -12,7 +12,7 @@ use nisp_compiler::error::{Errors, Place};
 use nisp_compiler::model::check;
 use nisp_compiler::syntax::parse;
 
-const FILES: [&str; 6] = ["syntax", "declarations", "units", "shapes", "terms", "scenes"];
+const FILES: [&str; 7] = ["syntax", "declarations", "domains", "units", "shapes", "terms", "scenes"];
 
 #[test]
 fn every_mistake_is_reported_once_where_it_is() {

@@ -11,6 +11,7 @@ mod observations;
 mod outliers;
 mod outside;
 mod slow;
+mod smooth;
 
 use crate::facts::Answer;
 use crate::noise::Noise;

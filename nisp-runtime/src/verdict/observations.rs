@@ -1,6 +1,6 @@
 //! What an answer leaves of observations: it should be noise, no larger than the data's own, without a pattern.
 
-use super::{Check, outliers, root_mean_square, slow};
+use super::{Check, outliers, root_mean_square, slow, smooth};
 use crate::noise::{Noise, ObservationNoise, in_order};
 use crate::problem::Bound;
 use crate::rhythm::rhythm;
@@ -14,6 +14,8 @@ const TOLERANCE: f64 = 1.5;
 const EXACT: f64 = 2e-3;
 /// Excess of slow misfits in standard deviations.
 const PATTERN: f64 = 4.0;
+/// Excess of smooth misfits over several coordinates in standard deviations.
+const SMOOTH: f64 = 5.0;
 /// Patterns with less than this share of the misfit's square do not matter.
 const SLIGHT: f64 = 0.05;
 /// Misfit over the noise below which it has no pattern to speak of.
@@ -82,7 +84,21 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
         }
         // A misfit far below the noise is what a fit that follows the data leaves, not a part that it leaves out.
         let is_below = of.is_some_and(|of| rms < BELOW * of.deviation);
-        if !record || robust || exact || is_below {
+        if robust || exact || is_below {
+            continue;
+        }
+        if !record {
+            let axes = bound.problem.scene().schema.coordinates.len();
+            for row in own.iter().filter(|row| row.len() >= FEW) {
+                let (excess, share) = smooth::excess(places, axes, row);
+                let said = format!(
+                    "what is left of `{}` is no noise: {:.1} % of its square is smooth, so the equations or a parameter do not fit \
+                     these data, or a part of them is smoothed away",
+                    term.name,
+                    100.0 * share
+                );
+                checks.push(Check::new("pattern", place, (excess, SMOOTH), said));
+            }
             continue;
         }
         for row in own.iter().filter(|row| row.len() >= FEW) {

@@ -39,7 +39,7 @@ fn powers(values: &[f64]) -> Vec<f64> {
 }
 
 /// A chi squared of so many degrees of freedom in standard deviations of a normal number (Wilson and Hilferty 1931).
-fn deviations(square: f64, freedom: usize) -> f64 {
+pub(super) fn deviations(square: f64, freedom: usize) -> f64 {
     let part = 2.0 / (9.0 * freedom as f64);
     ((square / freedom as f64).cbrt() - (1.0 - part)) / part.sqrt()
 }

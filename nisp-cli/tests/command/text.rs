@@ -1,0 +1,144 @@
+//! Equations in text files.
+
+use std::fs;
+
+use crate::common::{Place, Ran, circuit_table, names};
+use serde_json::Value;
+
+fn object(ran: &Ran) -> Value {
+    serde_json::from_str(&ran.stdout).unwrap_or_else(|_| panic!("{}", ran.stderr))
+}
+
+/// The rows of a CSV without its header.
+fn rows(place: &Place, file: &str) -> Vec<Vec<f64>> {
+    let text = fs::read_to_string(place.path(file)).unwrap();
+    text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
+}
+
+#[test]
+fn a_shipped_equation_in_a_text_has_the_same_answer() {
+    const SOURCE: &str = include_str!("../../../equations/src/rlc.rs");
+    let place = Place::new();
+    let (_, text) = SOURCE.split_once("pde! {").unwrap();
+    place.put("circuit.pde", text.split_once("\n}\n").unwrap().0);
+    place.put("volts.csv", &circuit_table());
+    let solve = |name: &str| object(&place.run(&format!("solve {name} --data volts.csv --iterations 40 --json")));
+    let [shipped, read] = ["rlc", "circuit.pde"].map(solve);
+    let loss = |object: &Value| object["loss"].as_f64().unwrap();
+    assert!((loss(&shipped) / loss(&read) - 1.0).abs() < 1e-9, "{} {}", loss(&shipped), loss(&read));
+    let values = |object: &Value| -> Vec<f64> {
+        object["sources"][0]["values"].as_array().unwrap().iter().map(|value| value.as_f64().unwrap()).collect()
+    };
+    assert_eq!(values(&read).len(), 60);
+    for (a, b) in values(&shipped).iter().zip(values(&read)) {
+        assert!((a - b).abs() < 1e-6, "{a} {b}");
+    }
+}
+
+#[test]
+fn a_new_equation_already_solves() {
+    let place = Place::new();
+    let made = place.run("new cup");
+    assert_eq!(made.code, Some(0), "{}", made.stderr);
+    assert_eq!(names(&place.path("cup")), ["README.md", "cup.pde", "data.csv", "truth.csv"]);
+    let readme = fs::read_to_string(place.path("cup/README.md")).unwrap();
+    for command in ["nisp check cup.pde --data data.csv", "nisp solve cup.pde --data data.csv --truth truth.csv"] {
+        assert!(readme.contains(command), "{readme}");
+    }
+    let checked = place.run("check cup/cup.pde --data cup/data.csv --latex");
+    let seen =
+        ["A body that an unknown heater warms", "source     P     [W]", "samples: 121 points", "\\frac", "noise about"];
+    assert!(seen.iter().all(|part| checked.stdout.contains(part)), "{}", checked.stdout);
+    let ran = place.run("solve cup/cup.pde --data cup/data.csv --truth cup/truth.csv --budget 60 --json");
+    assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
+    let errors = &object(&ran)["errors"];
+    // Two per cent of the power that the data were made with.
+    let [error, size] = ["P", "P_if_zero"].map(|name| errors[name].as_f64().unwrap());
+    assert!(error < 0.02 * size, "{errors}");
+    let again = place.run("new cup");
+    assert!(again.code == Some(2) && again.stderr.contains("cup is there already"), "{}", again.stderr);
+    assert!(place.run("new 3d").stderr.contains("letters, digits and underscores"));
+}
+
+#[test]
+fn mistakes_have_their_place() {
+    let place = Place::new();
+    place
+        .put("spring.pde", "coordinates: t [s];\nfields: y [m];\nsources: f [N];\non motion { a: d(y, t, 2) == f; }\n");
+    let ran = place.run("solve spring.pde");
+    assert_eq!((ran.code, ran.stdout.as_str()), (Some(2), ""));
+    for part in ["spring.pde:4:", "units differ", "4| on motion { a: d(y, t, 2) == f; }", "^"] {
+        assert!(ran.stderr.contains(part), "{}", ran.stderr);
+    }
+    assert!(place.run("explain nowhere.pde").stderr.contains("nowhere.pde"));
+}
+
+const DISC: &str = "
+    /// A membrane under even load, held along a circle.
+    coordinates: x [m], y [m];
+    fields: u [mm];
+    parameters: k [mm/m^2] = 4;
+    domains: disc = disc(0.5, 0, 200 [cm]);
+    on inside in disc { balance: -laplacian(u) == k; }
+    on edge boundary of disc { held: u == 0; }
+";
+
+#[test]
+fn a_domain_says_where_groups_lie() {
+    let place = Place::new();
+    place.put("disc.pde", DISC);
+    place.put("at.csv", "x_m,y_m\n0.5,0\n1.5,0\n0.5,-1.2\n");
+    let ran = place.run("solve disc.pde --at at.csv --budget 60");
+    assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
+    // k (r^2 - |x - c|^2) / 4
+    let exact = [4.0, 3.0, 4.0 - 1.44];
+    for (row, exact) in rows(&place, "nisp-out/state.csv").iter().zip(exact) {
+        assert!((row[2] - exact).abs() < 1e-4, "{row:?}");
+    }
+    let ran = place.run("solve disc.pde --grid 9x5 --iterations 2 --out grid");
+    let grid = rows(&place, "grid/state.csv");
+    assert!(ran.code == Some(3) && grid.iter().all(|row| (row[0] - 0.5).hypot(row[1]) <= 2.0), "{}", ran.stderr);
+    // Points of the grid that lie in the disc.
+    let inside = (0..45).filter(|i| (f64::from(i % 9) * 0.5 - 2.0).hypot(f64::from(i / 9) - 2.0) <= 2.0);
+    assert_eq!(grid.len(), inside.count());
+}
+
+#[test]
+fn what_is_missing_is_named() {
+    let place = Place::new();
+    let text = "units: off; coordinates: x, y; fields: u; sources: f;
+        on inside { balance: laplacian(u) == f; } on probes { observe u; } on edge { held: u == 0; }";
+    place.put("plate.pde", text);
+    place.put("u.csv", "x,y,u\n0,0,1\n1,0,2\n0,1,3\n");
+    let refused = |line: &str, parts: &[&str]| {
+        let ran = place.run(&format!("solve plate.pde {line}"));
+        assert_eq!((ran.code, ran.stdout.as_str()), (Some(2), ""), "{line}");
+        assert!(parts.iter().all(|part| ran.stderr.contains(part)), "{line}: {}", ran.stderr);
+    };
+    refused("--data inside=u.csv --data edge=u.csv", &["`probes` wants measurements of u", "--data probes=FILE"]);
+    refused("--data u.csv", &["nothing says where `inside` lies", "on inside in DOMAIN", "--data inside=FILE"]);
+    refused("--data prob=u.csv", &["no group `prob`, did you mean `probes`?"]);
+    refused("--data u.csv --data inside=u.csv --data edge=u.csv --grid 5", &["--grid has 1 numbers", "x, y"]);
+    refused("--data u.csv --unit mm", &["takes no --unit"]);
+    assert_eq!(place.names(), ["plate.pde", "u.csv"]);
+    let ran = place.run("solve plate.pde --data u.csv --data inside=u.csv --data edge=u.csv --grid 3x3 --iterations 2");
+    assert_eq!(ran.code, Some(3), "{}", ran.stderr);
+    assert_eq!(rows(&place, "nisp-out/source.csv").len(), 9);
+}
+
+/// Over three coordinates the answer is drawn in planes.
+#[test]
+fn a_slab_is_drawn_in_planes() {
+    let place = Place::new();
+    let text = "coordinates: x [m], y [m], t: time [s]; fields: u [K]; parameters: k [m^2/s] = 1;
+        domains: slab = box(0 .. 1, 0 .. 1) times 0 .. 5;
+        on inside in slab { balance: d(u, t) == k * laplacian(u); }
+        on edge boundary of slab { held: u == 0; }
+        on cold start of slab { rest: u == 1 [K]; }";
+    place.put("slab.pde", text);
+    let ran = place.run("solve slab.pde --iterations 2 --width 6 --grid 3x3x2");
+    assert_eq!(ran.code, Some(3), "{}", ran.stderr);
+    assert_eq!(rows(&place, "nisp-out/state.csv").len(), 18);
+    let plot = fs::read_to_string(place.path("nisp-out/plot.svg")).unwrap();
+    assert!(["t = 0 s", "t = 2.5 s", "t = 5 s"].iter().all(|title| plot.contains(title)));
+}
