@@ -4,6 +4,9 @@ mod ablate;
 mod frontier;
 mod honesty;
 mod measure;
+mod peers;
+mod random;
+mod rk4;
 
 use std::process::ExitCode;
 
@@ -27,6 +30,8 @@ enum Command {
     Ablate(Box<ablate::Options>),
     /// Measure whether what is said of answers is true, on right and on spoiled data.
     Honesty(Box<honesty::Options>),
+    /// Solve problems that others publish with their programs, from texts and data made anew.
+    Peers(peers::Options),
 }
 
 /// The program's name, in its messages.
@@ -37,6 +42,7 @@ fn main() -> ExitCode {
         Ok(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),
         Ok(Args { command: Command::Ablate(options) }) => ablate::ablate(&options),
         Ok(Args { command: Command::Honesty(options) }) => honesty::honesty(&options),
+        Ok(Args { command: Command::Peers(options) }) => peers::peers(&options),
         Err(error) => show(&error),
     };
     end(NAME, result)

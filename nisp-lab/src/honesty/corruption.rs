@@ -3,7 +3,7 @@
 use std::fmt;
 
 use super::experiment::Samples;
-use super::random::Random;
+use crate::random::Random;
 
 /// What is done to an experiment before it is solved.
 #[derive(Clone, Copy, Debug, PartialEq)]

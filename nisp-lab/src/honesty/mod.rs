@@ -9,9 +9,7 @@ mod corruption;
 mod equations;
 mod experiment;
 mod judge;
-mod random;
 mod report;
-mod rk4;
 mod series;
 mod study;
 

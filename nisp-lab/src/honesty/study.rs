@@ -10,8 +10,8 @@ use nisp_cli::interrupt;
 use super::corruption::Corruption;
 use super::experiment::{Case, Physics, Ready, Stated, Subject, Truth};
 use super::judge::{Judgement, Off, Unknown, judge};
-use super::random::Random;
 use super::{bodies, equations, series};
+use crate::random::Random;
 
 /// How cases are run.
 pub(super) struct Run {

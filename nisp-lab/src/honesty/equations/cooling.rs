@@ -4,7 +4,7 @@ use nisp::scene;
 
 use super::super::corruption::Corruption::{Exact, Few, Gap, Moved, Nothing, Outliers, Parameter, Physics, Swapped};
 use super::super::experiment::{Physics as Kind, Plain, Samples, Stated, Subject, Truth, cases, line};
-use super::super::rk4::integrate;
+use crate::rk4::integrate;
 
 nisp::pde! {
     /// Newton's cooling of a body through its shell.

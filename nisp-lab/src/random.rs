@@ -3,20 +3,20 @@
 use rand::{RngExt, SeedableRng, rngs::StdRng};
 
 /// A stream of random numbers.
-pub(super) struct Random(StdRng);
+pub(crate) struct Random(StdRng);
 
 impl Random {
-    pub(super) fn new(seed: u64) -> Self {
+    pub(crate) fn new(seed: u64) -> Self {
         Self(StdRng::seed_from_u64(seed))
     }
 
     /// A number between 0 and 1.
-    pub(super) fn uniform(&mut self) -> f64 {
+    pub(crate) fn uniform(&mut self) -> f64 {
         self.0.random()
     }
 
     /// A standard normal number: the polar method of Marsaglia and Bray.
-    pub(super) fn normal(&mut self) -> f64 {
+    pub(crate) fn normal(&mut self) -> f64 {
         loop {
             let [x, y] = [(); 2].map(|()| 2.0 * self.uniform() - 1.0);
             let square = x * x + y * y;

@@ -4,7 +4,7 @@
 const STEPS: usize = 50;
 
 /// States at rising times, the first of which is the start.
-pub(super) fn integrate<const N: usize>(
+pub(crate) fn integrate<const N: usize>(
     slope: impl Fn(f64, [f64; N]) -> [f64; N],
     start: [f64; N],
     times: &[f64],
