@@ -1,7 +1,9 @@
 //! What the command line takes.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args as Group, Parser, Subcommand};
 use nisp_cli::options::{count, optimizers, precisions, seconds, seed, size};
 use nisp_data::cloud::LengthUnit;
@@ -27,7 +29,7 @@ pub(crate) enum Command {
         #[arg(long, value_name = "NAME")]
         scene: Option<String>,
         /// Tables as for `nisp solve`. Repeatable.
-        #[arg(long, value_name = "[GROUP=]FILE", value_parser = data)]
+        #[arg(long, value_name = "[GROUP=]FILE", value_parser = data_parser())]
         data: Vec<(Option<String>, PathBuf)>,
         /// Header of the column that holds a quantity. Repeatable.
         #[arg(long, value_name = "NAME=HEADER", value_parser = pair)]
@@ -70,9 +72,8 @@ pub(crate) struct Options {
     /// One of the equation's scenes [default: its first].
     #[arg(long, value_name = "NAME")]
     pub(crate) scene: Option<String>,
-    /// CSV of measurements, or a point cloud [default: the repository's example, if the equation is shipped]. With GROUP=, for
-    /// a group of that name alone, its points included. Repeatable.
-    #[arg(long, value_name = "[GROUP=]FILE", value_parser = data, help_heading = DATA)]
+    /// CSV of measurements, or a point cloud [default: a shipped equation's example]. GROUP=FILE is for one group.
+    #[arg(long, value_name = "[GROUP=]FILE", value_parser = data_parser(), help_heading = DATA)]
     pub(crate) data: Vec<(Option<String>, PathBuf)>,
     /// TOML of a sample: its parameters, and the names of its point clouds.
     #[arg(long, value_name = "FILE", help_heading = DATA)]
@@ -185,7 +186,8 @@ Examples:
       goes on where the first run stopped, or was stopped
 
 Data:
-  A CSV with one header line, a column for each coordinate (one alone must rise) and for each observed quantity. For `q` in metres the headers
+  A CSV with one header line, a column for each coordinate (one alone must rise) and for each observed quantity. A group
+  of several, or one whose points are wanted from a table, is named before its file. For `q` in metres the headers
   `q`, `q [m]` and `q_m` are found by themselves; `q_mm` is converted. Any other header is chosen with --column. A
   header without a unit is taken in the declared one: `nisp explain SCENE` shows units and parameters. Files may have
   256 MiB; devices and pipes are not read.
@@ -241,8 +243,14 @@ fn grid(text: &str) -> Result<Grid, String> {
 /// A grid with more points is a slip.
 const MOST_POINTS: usize = 10_000_000;
 
-/// `FILE` or `GROUP=FILE`.
-fn data(text: &str) -> Result<(Option<String>, PathBuf), String> {
+/// A parser of [`data`], for paths that are no text too.
+fn data_parser() -> impl TypedValueParser<Value = (Option<String>, PathBuf)> {
+    OsStringValueParser::new().try_map(data)
+}
+
+/// `FILE` or `GROUP=FILE`; what is no text is a file.
+fn data(word: OsString) -> Result<(Option<String>, PathBuf), String> {
+    let Some(text) = word.to_str() else { return Ok((None, word.into())) };
     let is_name = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
     match text.split_once('=').map(|(group, path)| (group.trim(), path.trim())) {
         Some((group, "")) if is_name(group) => Err(format!("no file behind `{group}=`")),

@@ -173,7 +173,10 @@ impl<E: Real> Kernel<E> for FeaturesKernel<'_, E> {
                             straight = V::load(linear.as_ptr().add(axis * shape.width + at)).mul_add(x, straight);
                         }
                         straight.store(line.row(0).add(i * V::LANES));
-                        V::splat(E::ONE).store(line.row(1).add(i * V::LANES));
+                        for n in 1..count {
+                            let slope = if n == 1 { E::ONE } else { E::ZERO };
+                            V::splat(slope).store(line.row(n).add(i * V::LANES));
+                        }
                     }
                     let [curved, straight] = &mut runs;
                     for (run, phi, factors) in [(&mut *curved, &curve, projections), (&mut *straight, &line, linear)] {

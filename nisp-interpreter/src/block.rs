@@ -3,10 +3,10 @@
 use std::marker::PhantomData;
 
 use nisp_compiler::program::Slot;
-use nisp_runtime::aligned::AlignedVec;
 use nisp_runtime::real::Real;
 use nisp_runtime::simd::{Isa, Kernel, Simd, dispatch};
 
+use crate::scratch::Scratch;
 use crate::tape::{Code, Step, Tape};
 
 /// Vectors in a block at most.
@@ -17,8 +17,9 @@ pub(crate) struct Run<'a, V: Simd> {
     tape: &'a Tape,
     /// Address of every place. Registers lie in `memory`; inputs are the caller's.
     at: Vec<*mut V::Elem>,
-    /// A block of zeros, then the registers.
-    memory: AlignedVec<V::Elem>,
+    /// A block of zeros, then the registers: what `at` points into.
+    start: *const V::Elem,
+    _memory: Scratch,
     isa: Isa,
     vector: PhantomData<V>,
 }
@@ -30,12 +31,15 @@ impl<'a, V: Simd> Run<'a, V> {
     /// Memory for a tape. Inputs point at zeros until they are [set](Run::point).
     #[inline(always)]
     pub(crate) fn new(isa: Isa, tape: &'a Tape) -> Self {
-        let mut memory = AlignedVec::zeros((1 + tape.registers) * Self::BLOCK);
-        let start: *mut V::Elem = memory.as_mut_ptr();
-        let mut at = vec![start; tape.inputs.len()];
+        let mut memory = Scratch::of::<V::Elem>((1 + tape.registers) * Self::BLOCK);
+        let start: *mut V::Elem = memory.start();
+        let mut at = Vec::with_capacity(tape.inputs.len() + tape.registers);
+        at.resize(tape.inputs.len(), start);
+        // SAFETY: the block of zeros is the first of the memory. What was there before is overwritten.
+        unsafe { (0..VECTORS).for_each(|i| V::splat(V::Elem::ZERO).store(start.add(i * V::LANES))) };
         // SAFETY: registers lie within the memory.
         at.extend((1..=tape.registers).map(|register| unsafe { start.add(register * Self::BLOCK) }));
-        Self { tape, at, memory, isa, vector: PhantomData }
+        Self { tape, at, start, _memory: memory, isa, vector: PhantomData }
     }
 
     /// Points every input, by its number and by what it is, at where `address` has it.
@@ -70,13 +74,13 @@ impl<'a, V: Simd> Run<'a, V> {
     /// Where an output is: readable until the next run; zeros for a structural zero.
     #[inline(always)]
     pub(crate) fn output(&self, index: usize) -> *const V::Elem {
-        self.tape.outputs[index].map_or(self.memory.as_ptr(), |place| self.at[place].cast_const())
+        self.tape.outputs[index].map_or(self.start, |place| self.at[place].cast_const())
     }
 
     /// A block of zeros.
     #[inline(always)]
     pub(crate) fn zeros(&self) -> *const V::Elem {
-        self.memory.as_ptr()
+        self.start
     }
 }
 
@@ -120,20 +124,21 @@ impl<E: Real> Kernel<E> for Steps<'_, E> {
 #[inline(always)]
 unsafe fn run<V: Simd, const N: usize>(steps: &[Step], at: &[*mut V::Elem]) {
     for step in steps {
-        // A macro and no closure: a closure that is not inlined loses the instruction set.
-        macro_rules! each {
-            (|$i:ident| $value:expr) => {
-                for $i in 0..N {
-                    let value: V = $value;
-                    value.store((*at.get_unchecked(step.to)).add($i * V::LANES));
-                }
-            };
-        }
         // SAFETY: as the caller vouches. A vector is read before it is written, so that places may be the same.
         unsafe {
+            let to = *at.get_unchecked(step.to);
             let a = *at.get_unchecked(step.from[0]);
             let b = *at.get_unchecked(step.from[1]);
             let c = *at.get_unchecked(step.from[2]);
+            // A macro and no closure: a closure that is not inlined loses the instruction set.
+            macro_rules! each {
+                (|$i:ident| $value:expr) => {
+                    for $i in 0..N {
+                        let value: V = $value;
+                        value.store(to.add($i * V::LANES));
+                    }
+                };
+            }
             match step.code {
                 Code::Constant(value) => each!(|i| V::lit(value)),
                 Code::Add => each!(|i| load::<V>(a, i).add(load(b, i))),

@@ -24,6 +24,7 @@ mod block;
 mod layers;
 mod programs;
 mod schema;
+mod scratch;
 mod slopes;
 mod tape;
 mod text;

@@ -1,12 +1,12 @@
 //! The activation and its derivatives on a block.
 
-use nisp_runtime::aligned::AlignedVec;
 use nisp_runtime::layer::takes_values;
 use nisp_runtime::real::Real;
 use nisp_runtime::simd::Simd;
 use nisp_runtime::tanh;
 
 use crate::block::{VECTORS, load};
+use crate::scratch::Scratch;
 
 /// How many derivatives of `tanh` are wanted: the compiled functions know it when they are compiled, so that one of a few is
 /// chosen.
@@ -66,7 +66,8 @@ impl Slopes {
     /// Memory for a block's derivatives.
     #[inline(always)]
     pub(crate) fn run<V: Simd>(self) -> SlopesRun<V> {
-        SlopesRun { count: self.count, rows: AlignedVec::zeros(self.count * VECTORS * V::LANES) }
+        let mut memory = Scratch::of::<V::Elem>(self.count * VECTORS * V::LANES);
+        SlopesRun { count: self.count, rows: memory.start(), _memory: memory }
     }
 
     /// How many there are.
@@ -78,7 +79,9 @@ impl Slopes {
 /// `tanh` and its derivatives on a block.
 pub(crate) struct SlopesRun<V: Simd> {
     count: usize,
-    rows: AlignedVec<V::Elem>,
+    /// A block for each derivative.
+    rows: *mut V::Elem,
+    _memory: Scratch,
 }
 
 impl<V: Simd> SlopesRun<V> {
@@ -131,12 +134,14 @@ impl<V: Simd> SlopesRun<V> {
     /// Where derivative `n` is.
     #[inline(always)]
     pub(crate) fn derivative(&self, n: usize) -> *const V::Elem {
-        self.rows[n * VECTORS * V::LANES..].as_ptr()
+        debug_assert!(n < self.count);
+        // SAFETY: there is a block for each derivative.
+        unsafe { self.rows.add(n * VECTORS * V::LANES) }
     }
 
     /// Where derivative `n` is written.
     #[inline(always)]
     pub(crate) fn row(&mut self, n: usize) -> *mut V::Elem {
-        self.rows[n * VECTORS * V::LANES..].as_mut_ptr()
+        self.derivative(n).cast_mut()
     }
 }

@@ -11,7 +11,7 @@ use nisp::{Settings, Solution, recover};
 use nisp_cli::interrupt;
 use nisp_cli::options::{count, seconds, seed};
 use nisp_cli::terminal::{print, progress};
-use nisp_equations::Request;
+use nisp_equations::{Prepared, Request};
 use serde_json::json;
 
 use crate::random::Random;
@@ -80,17 +80,22 @@ pub(crate) fn peers(options: &Options) -> Result<ExitCode, String> {
     Ok(ExitCode::SUCCESS)
 }
 
-fn solve(problem: &Problem, options: &Options) -> Result<Vec<Row>, String> {
+/// Reads a problem's text and binds it to its data.
+fn prepare(problem: &Problem, data: &Data) -> Result<Prepared, String> {
     let fault = |error: std::io::Error| error.to_string();
-    let data = (problem.data)(&mut Random::new(options.seed));
     let folder = tempfile::tempdir().map_err(fault)?;
     let [text, table] = [format!("{}.pde", problem.name), "data.csv".into()].map(|name| folder.path().join(name));
     fs::write(&text, problem.text).map_err(fault)?;
-    fs::write(&table, csv(&data)).map_err(fault)?;
-    let start = Instant::now();
+    fs::write(&table, csv(data)).map_err(fault)?;
     let entry = nisp_cli::entry(&text.to_string_lossy())?;
     let request = Request { data: vec![(None, table)], ..Request::default() };
-    let prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
+    entry.prepare(&request).map_err(|error| error.to_string())
+}
+
+fn solve(problem: &Problem, options: &Options) -> Result<Vec<Row>, String> {
+    let data = (problem.data)(&mut Random::new(options.seed));
+    let start = Instant::now();
+    let prepared = prepare(problem, &data)?;
     let settings = Settings {
         seed: options.seed,
         budget: Some(Duration::from_secs_f64(options.budget)),
@@ -169,4 +174,31 @@ fn object(row: &Row) -> serde_json::Value {
         "status": row.status,
         "sound": row.sound,
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_problem_is_bound_and_has_what_is_sought() {
+        for problem in problems() {
+            let data = (problem.data)(&mut Random::new(0));
+            let prepared = prepare(&problem, &data).unwrap_or_else(|error| panic!("{}: {error}", problem.name));
+            let schema = prepared.problem.scene().schema;
+            match data.truth {
+                Truth::Source(name, places, values) => {
+                    assert!(schema.heads.iter().any(|head| head.name == name && head.source), "{}", problem.name);
+                    assert!(places.len() == values.len() && places[0].len() == schema.coordinates.len());
+                }
+                Truth::Parameters(sought) => {
+                    let is_learned = |name: &str| {
+                        let own = schema.scalars.iter().find(|scalar| scalar.name == name);
+                        own.is_some_and(|own| matches!(own.origin, nisp::schema::Origin::Learned { .. }))
+                    };
+                    assert!(sought.iter().all(|(name, _)| is_learned(name)), "{}", problem.name);
+                }
+            }
+        }
+    }
 }
