@@ -69,7 +69,10 @@ fn origin(group: &Group, prepared: Option<&Prepared>) -> String {
     let axes = prepared.map(|prepared| prepared.problem.scene().schema.coordinates.len());
     let points = prepared.and_then(|prepared| prepared.problem.group(group.name));
     match points.zip(axes) {
-        Some(((points, _), axes)) => format!(": {} points{lies}", points.coordinates.len() / axes),
+        Some(((points, _), axes)) => match points.coordinates.len() / axes {
+            1 => format!(": 1 point{lies}"),
+            count => format!(": {count} points{lies}"),
+        },
         None if lies.is_empty() => String::new(),
         None => format!(":{lies}"),
     }
@@ -106,5 +109,10 @@ fn range(name: &str, unit: String, values: impl Iterator<Item = f64>) -> String 
     let ends = values.filter(|value| !value.is_nan());
     let [low, high] =
         ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
-    format!("  {name} {unit}: {low:.6} to {high:.6}")
+    format!("  {name} {unit}: {} to {}", short(low), short(high))
+}
+
+/// Six digits at most.
+fn short(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
 }

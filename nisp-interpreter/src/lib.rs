@@ -5,6 +5,7 @@
 //!
 //! ```
 //! let text = "
+//!     /// A driven oscillator.
 //!     coordinates: t [s];
 //!     fields: y [m];
 //!     sources: f [m/s^2];
@@ -13,10 +14,11 @@
 //!     on samples { observe y; }
 //! ";
 //! let equation = nisp_interpreter::read(text, "oscillator").unwrap();
+//! assert_eq!(equation.docs.trim(), "A driven oscillator.");
 //! assert_eq!(equation.scenes[0].schema.heads[1].name, "f");
 //!
 //! let mistakes = nisp_interpreter::read(&text.replace("w^2", "w"), "oscillator").unwrap_err();
-//! assert_eq!(mistakes.0[0].line, 6);
+//! assert_eq!(mistakes.0[0].line, 7);
 //! ```
 
 mod affine;

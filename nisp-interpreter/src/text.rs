@@ -85,16 +85,21 @@ fn split(message: &str) -> (String, Option<String>) {
     }
 }
 
-/// The tokens of a text: `mod NAME { ... }` as it is, declarations alone as a module of this name.
+/// The tokens of a text: `mod NAME { ... }` as it is, declarations alone as a module of this name, whose documentation is what
+/// stands first.
 pub(crate) fn tokens(text: &str, name: &str) -> Result<TokenStream, Mistake> {
     let tokens: TokenStream = text.parse().map_err(|error| Mistake::lexical(&error, text))?;
     if is_module(&tokens) {
         return Ok(tokens);
     }
     let span = Span::call_site();
-    let words = [Ident::new("mod", span), Ident::new(&identifier(name), span)];
-    let inside = Group::new(Delimiter::Brace, tokens);
-    Ok(words.into_iter().map(TokenTree::from).chain([inside.into()]).collect())
+    let words = [Ident::new("mod", span), Ident::new(&identifier(name), span)].map(TokenTree::from);
+    let (mut docs, mut tokens) = (Vec::new(), tokens.into_iter().peekable());
+    while let Some(sign) = tokens.next_if(|token| matches!(token, TokenTree::Punct(sign) if sign.as_char() == '#')) {
+        docs.extend([sign].into_iter().chain(tokens.next()));
+    }
+    let inside = Group::new(Delimiter::Brace, tokens.collect());
+    Ok(docs.into_iter().chain(words).chain([inside.into()]).collect())
 }
 
 /// True if a `mod` or `pub` comes first, after any documentation.

@@ -88,6 +88,7 @@ fn a_domain_says_where_groups_lie() {
     let place = Place::new();
     place.put("disc.pde", DISC);
     place.put("at.csv", "x_m,y_m\n0.5,0\n1.5,0\n0.5,-1.2\n");
+    assert!(place.run("check disc.pde").stdout.contains("disc, scene all: A membrane under even load"));
     let ran = place.run("solve disc.pde --at at.csv --budget 60");
     assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
     // k (r^2 - |x - c|^2) / 4
