@@ -7,7 +7,7 @@ use nisp_runtime::real::Real;
 use nisp_runtime::simd::{Isa, Kernel, Simd};
 
 use crate::block::{Run, load, vectors};
-use crate::layers::{InterpretedLayers, holds};
+use crate::rules::{InterpretedLayers, holds};
 
 /// Derivatives of features at most; the compiler refuses equations of higher order.
 const MOST: usize = nisp_compiler::plan::MAX_ORDER as usize + 2;

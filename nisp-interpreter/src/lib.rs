@@ -23,8 +23,10 @@
 
 mod affine;
 mod block;
+mod hidden;
 mod layers;
 mod programs;
+mod rules;
 mod schema;
 mod scratch;
 mod slopes;
@@ -38,8 +40,8 @@ use nisp_runtime::kernel::{GroupKernel, Kernels, SceneRef};
 use nisp_runtime::real::Real;
 use thiserror::Error;
 
-use layers::InterpretedLayers;
 use programs::InterpretedPrograms;
+use rules::InterpretedLayers;
 pub use text::Mistake;
 
 /// An equation that was read.

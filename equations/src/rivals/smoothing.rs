@@ -7,7 +7,7 @@ use super::{Estimate, Measurements, RivalError, System, check};
 
 /// Decades of the penalty's weight that are looked at.
 const DECADES: (i32, i32) = (-16, 2);
-/// Noise below this share of the values themselves is none.
+/// Noise below this share of the values' spread is none.
 const NEGLIGIBLE: f64 = 1e-3;
 
 /// The source at times `at` from smoothing splines of the states. `chosen` is the first state's weight.
@@ -40,7 +40,8 @@ pub fn noise_level(times: &[f64], values: &[f64]) -> Result<f64, RivalError> {
     let smoother = Smoother::new(times);
     let decade = best_decade(DECADES.0, DECADES.1, |decade| smoother.cross_validation(10f64.powf(decade), values))?;
     let (squares, free) = smoother.residual(10f64.powf(decade), values)?;
-    let size = values.iter().map(|value| value * value).sum::<f64>() / values.len() as f64;
+    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let size = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / values.len() as f64;
     let noise = (squares / free.max(1.0)).sqrt();
     Ok(if noise > NEGLIGIBLE * size.sqrt() { noise } else { 0.0 })
 }

@@ -5,7 +5,7 @@ use nisp::{Estimate, Solution};
 use nisp_data::DataError;
 use nisp_data::colour::ColourScale;
 use nisp_data::export::Mesh;
-use nisp_data::picture::{FieldMap, Grid, MapPanel, Picture, Quantity, SurfaceView, field_map, surface_view};
+use nisp_data::picture::{Grid, MapPanel, Picture, Quantity, SurfaceView, surface_view};
 use nisp_equations::{Contact, Prepared};
 
 use super::Answer;
@@ -114,13 +114,5 @@ fn maps(
             ]
         }
     };
-    let axis = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
-    field_map(&FieldMap {
-        title: super::title(solution),
-        subtitle: super::subtitle(prepared, solution),
-        x: axis(0),
-        y: axis(1),
-        outline: prepared.outline.clone(),
-        panels,
-    })
+    super::map(prepared, solution, panels)
 }

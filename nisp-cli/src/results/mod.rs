@@ -135,7 +135,6 @@ fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estima
 
 /// Sources, or fields if there are none, over a plane domain: a lone one beside its truth where that is known.
 fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Result<Picture, DataError> {
-    let scene = solution.scene();
     let (points, _) = prepared.points.as_chunks::<2>();
     let sources = estimates.iter().any(|estimate| estimate.source);
     let shown: Vec<&Estimate> = estimates.iter().filter(|estimate| estimate.source == sources).take(3).collect();
@@ -155,15 +154,7 @@ fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Res
             shown.iter().map(panel).collect::<Result<_, DataError>>()?
         }
     };
-    let quantity = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
-    field_map(&FieldMap {
-        title: title(solution),
-        subtitle: subtitle(prepared, solution),
-        x: quantity(0),
-        y: quantity(1),
-        outline: prepared.outline.clone(),
-        panels,
-    })
+    map(prepared, solution, panels)
 }
 
 /// The first source, or field if there is none, over planes of the first two coordinates.
@@ -185,6 +176,12 @@ fn planes(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> R
         Ok(panel(title, value, Grid::from_points(places, &estimate.values)?, scale))
     });
     let panels = panels.collect::<Result<_, DataError>>()?;
+    map(prepared, solution, panels)
+}
+
+/// Panels over the first two coordinates.
+fn map(prepared: &Prepared, solution: &Solution, panels: Vec<MapPanel>) -> Result<Picture, DataError> {
+    let scene = solution.scene();
     let quantity = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
     field_map(&FieldMap {
         title: title(solution),
