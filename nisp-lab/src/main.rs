@@ -1,6 +1,7 @@
 //! The `nisp-lab` command: measures how good the answers of `nisp` are, for those who work on it.
 
 mod ablate;
+mod cases;
 mod frontier;
 mod honesty;
 mod measure;
@@ -31,7 +32,7 @@ enum Command {
     /// Measure whether what is said of answers is true, on right and on spoiled data.
     Honesty(Box<honesty::Options>),
     /// Solve problems that others publish with their programs, from texts and data made anew.
-    Peers(peers::Options),
+    Peers(cases::Cases),
 }
 
 /// The program's name, in its messages.

@@ -10,7 +10,8 @@ use nisp_equations::{Prepared, Request};
 use super::corruption::Corruption::{
     Early, Exact, Few, Mirrored, Moved, Nothing, Outliers, Parameter, Scaled, Swapped, Turned,
 };
-use super::experiment::{Bind, Column, Experiment, Ready, Samples, Stated, Subject, Told, Truth, cases};
+use super::experiment::{Bind, Experiment, Ready, Stated, Subject, Told, Truth, cases};
+use super::samples::{Column, Samples};
 
 /// All of them.
 pub(super) fn subjects(repository: &Path) -> Vec<Subject> {

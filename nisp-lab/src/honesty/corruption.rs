@@ -2,7 +2,7 @@
 
 use std::fmt;
 
-use super::experiment::Samples;
+use super::samples::Samples;
 use crate::random::Random;
 
 /// What is done to an experiment before it is solved.

@@ -10,6 +10,7 @@ mod equations;
 mod experiment;
 mod judge;
 mod report;
+mod samples;
 mod series;
 mod study;
 
@@ -17,30 +18,17 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 
 use nisp_cli::interrupt;
-use nisp_cli::options::{count, seconds, seed};
 use nisp_cli::terminal::{print, progress};
 
+use crate::cases::Cases;
 use report::{HEAD, counts, json, line};
 use study::{Run, run, subjects};
 
 /// Which cases to run, and how.
 #[derive(clap::Args)]
 pub(crate) struct Options {
-    /// One JSON object instead of a table.
-    #[arg(long)]
-    json: bool,
-    /// Only cases whose `equation: corruption` contains this.
-    #[arg(long, value_name = "NAME")]
-    only: Option<String>,
-    /// Seed of the noise and of the initial weights.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, allow_negative_numbers = true)]
-    seed: u64,
-    /// Wall time of a case.
-    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds)]
-    budget: f64,
-    /// Threads [default: one per processor].
-    #[arg(long, value_name = "N", value_parser = count)]
-    threads: Option<usize>,
+    #[command(flatten)]
+    cases: Cases,
     /// The repository, whose samples and truths are read.
     #[arg(long, value_name = "DIR", default_value = ".")]
     repository: PathBuf,
@@ -49,15 +37,15 @@ pub(crate) struct Options {
 /// Runs the cases and prints what came of them.
 pub(crate) fn honesty(options: &Options) -> Result<ExitCode, String> {
     interrupt::listen(crate::NAME)?;
-    let threads = options.threads.unwrap_or_else(nisp_cli::processors);
-    let how = Run { seed: options.seed, budget: options.budget, threads };
+    let threads = options.cases.threads();
+    let how = Run { seed: options.cases.seed, budget: options.cases.budget, threads };
     let mut rows = Vec::new();
-    let say = |text: &str| if options.json { Ok(()) } else { print(text) };
+    let say = |text: &str| if options.cases.json { Ok(()) } else { print(text) };
     say(HEAD)?;
     for subject in subjects(&options.repository) {
         for case in &subject.cases {
             let name = format!("{}: {}", subject.name, case.corruption);
-            if options.only.as_ref().is_some_and(|only| !name.contains(only)) {
+            if options.cases.only.as_ref().is_some_and(|only| !name.contains(only)) {
                 continue;
             }
             progress(&name);
@@ -71,6 +59,6 @@ pub(crate) fn honesty(options: &Options) -> Result<ExitCode, String> {
     if rows.is_empty() {
         return Err("no case has such a name".into());
     }
-    print(&if options.json { json(&rows) } else { counts(&rows) })?;
+    print(&if options.cases.json { json(&rows) } else { counts(&rows) })?;
     Ok(ExitCode::SUCCESS)
 }

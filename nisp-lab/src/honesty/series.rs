@@ -8,7 +8,8 @@ use nisp_data::Table;
 use nisp_equations::{Entry, Request};
 
 use super::corruption::Corruption::{Early, Exact, Few, Gap, Moved, Nothing, Outliers, Parameter, Scaled, Swapped};
-use super::experiment::{Case, Column, Experiment, Ready, Samples, Stated, Subject, Told, Truth, cases};
+use super::experiment::{Case, Experiment, Ready, Stated, Subject, Told, Truth, cases};
+use super::samples::{Column, Samples};
 
 /// Both, the pendulum with little and with much noise.
 pub(super) fn subjects(repository: &Path) -> Vec<Subject> {

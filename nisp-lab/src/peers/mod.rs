@@ -9,33 +9,13 @@ use std::time::{Duration, Instant};
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Settings, Solution, recover};
 use nisp_cli::interrupt;
-use nisp_cli::options::{count, seconds, seed};
 use nisp_cli::terminal::{print, progress};
 use nisp_equations::{Prepared, Request};
 use serde_json::json;
 
+use crate::cases::Cases;
 use crate::random::Random;
 use problem::{Data, Problem, Truth, problems};
-
-/// Which problems to solve, and how.
-#[derive(clap::Args)]
-pub(crate) struct Options {
-    /// One JSON object instead of a table.
-    #[arg(long)]
-    json: bool,
-    /// Only problems whose name contains this.
-    #[arg(long, value_name = "NAME")]
-    only: Option<String>,
-    /// Seed of the noise and of the initial weights.
-    #[arg(long, value_name = "N", default_value_t = 0, value_parser = seed, allow_negative_numbers = true)]
-    seed: u64,
-    /// Wall time of a problem.
-    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds)]
-    budget: f64,
-    /// Threads [default: one per processor].
-    #[arg(long, value_name = "N", value_parser = count)]
-    threads: Option<usize>,
-}
 
 /// What came of an unknown.
 struct Row {
@@ -52,7 +32,7 @@ struct Row {
 }
 
 /// Solves the problems and prints what came of them.
-pub(crate) fn peers(options: &Options) -> Result<ExitCode, String> {
+pub(crate) fn peers(options: &Cases) -> Result<ExitCode, String> {
     interrupt::listen(crate::NAME)?;
     let mut rows = Vec::new();
     if !options.json {
@@ -92,14 +72,14 @@ fn prepare(problem: &Problem, data: &Data) -> Result<Prepared, String> {
     entry.prepare(&request).map_err(|error| error.to_string())
 }
 
-fn solve(problem: &Problem, options: &Options) -> Result<Vec<Row>, String> {
+fn solve(problem: &Problem, options: &Cases) -> Result<Vec<Row>, String> {
     let data = (problem.data)(&mut Random::new(options.seed));
     let start = Instant::now();
     let prepared = prepare(problem, &data)?;
     let settings = Settings {
         seed: options.seed,
         budget: Some(Duration::from_secs_f64(options.budget)),
-        threads: options.threads.unwrap_or_else(nisp_cli::processors),
+        threads: options.threads(),
         ..Settings::default()
     };
     let mut watch = |_: nisp::Report<'_>| if interrupt::asked() { Flow::Stop } else { Flow::Continue };

@@ -3,7 +3,8 @@
 use nisp::scene;
 
 use super::super::corruption::Corruption::{Exact, Few, Mirrored, Nothing, Outliers, Physics, Scaled, Swapped};
-use super::super::experiment::{Physics as Kind, Plain, Samples, Subject, Truth, axis, cases, lattice, line};
+use super::super::experiment::{Physics as Kind, Plain, Subject, Truth, axis, cases, lattice, line};
+use super::super::samples::Samples;
 
 nisp::pde! {
     /// Transport without spreading.

@@ -7,7 +7,8 @@ use nisp::{Points, scene};
 use super::super::corruption::Corruption::{
     Exact, Few, Gap, Mirrored, Moved, Nothing, Outliers, Parameter, Physics, Scaled,
 };
-use super::super::experiment::{Physics as Kind, Plain, Samples, Stated, Subject, Truth, cases, line};
+use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, cases, line};
+use super::super::samples::Samples;
 
 nisp::pde! {
     /// Euler's and Bernoulli's beam; its moment is a field of its own.

@@ -5,7 +5,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use nisp::scene;
 
 use super::super::corruption::Corruption::{Early, Exact, Few, Gap, Nothing, Outliers, Parameter};
-use super::super::experiment::{Physics as Kind, Plain, Samples, Subject, Truth, cases, line};
+use super::super::experiment::{Physics as Kind, Plain, Subject, Truth, cases, line};
+use super::super::samples::Samples;
 
 nisp::pde! {
     /// An oscillator with a hardening spring.

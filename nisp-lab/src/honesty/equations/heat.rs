@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use nisp::scene;
 
 use super::super::corruption::Corruption::{Exact, Few, Mirrored, Moved, Nothing, Outliers, Physics, Scaled, Swapped};
-use super::super::experiment::{Physics as Kind, Plain, Samples, Stated, Subject, Truth, axis, cases, lattice, line};
+use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, axis, cases, lattice, line};
+use super::super::samples::Samples;
 
 nisp::pde! {
     /// Fourier's equation.

@@ -3,7 +3,8 @@
 use nisp::scene;
 
 use super::super::corruption::Corruption::{Early, Exact, Few, Moved, Nothing, Outliers, Physics, Scaled};
-use super::super::experiment::{Physics as Kind, Plain, Samples, Subject, Truth, cases, line};
+use super::super::experiment::{Physics as Kind, Plain, Subject, Truth, cases, line};
+use super::super::samples::Samples;
 
 nisp::pde! {
     /// Verhulst's equation.

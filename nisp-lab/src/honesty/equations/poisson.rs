@@ -5,7 +5,8 @@ use std::f64::consts::PI;
 use nisp::scene;
 
 use super::super::corruption::Corruption::{Early, Exact, Few, Moved, Nothing, Outliers, Scaled, Swapped};
-use super::super::experiment::{Physics as Kind, Plain, Samples, Stated, Subject, Truth, axis, cases, lattice, line};
+use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, axis, cases, lattice, line};
+use super::super::samples::Samples;
 
 nisp::pde! {
     /// A membrane under an unknown pressure, in plain numbers.

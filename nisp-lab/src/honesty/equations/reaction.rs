@@ -3,7 +3,8 @@
 use nisp::scene;
 
 use super::super::corruption::Corruption::{Exact, Few, Gap, Nothing, Outliers, Physics, Scaled, Swapped};
-use super::super::experiment::{Physics as Kind, Plain, Samples, Stated, Subject, Truth, cases, line};
+use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, cases, line};
+use super::super::samples::Samples;
 use crate::rk4::integrate;
 
 nisp::pde! {
