@@ -73,6 +73,11 @@ impl Entry {
         if !matches!(self.binding, Binding::Cloud(_)) {
             self.refuse_clouds(request)?;
         }
+        if let (Some(wanted), false) = (&request.wanted, matches!(self.binding, Binding::Tables)) {
+            let option = if matches!(wanted, Wanted::At(_)) { "at" } else { "grid" };
+            let instead = "its answer is written where it was measured, or over its own domain";
+            return Err(PrepareError::Option { entry: self.name, option, instead });
+        }
         match &self.binding {
             Binding::Series(series) => series.prepare(self, request),
             Binding::Tables => tables::prepare(self, request),

@@ -81,10 +81,10 @@ pub(crate) struct Options {
     /// Which of the sample's clouds, counted from 0 [default: 0].
     #[arg(long, value_name = "K", allow_negative_numbers = true, help_heading = DATA)]
     pub(crate) cloud: Option<usize>,
-    /// Table of the points at which the answer is wanted [default: where it was measured, or a grid].
+    /// Of a text file: table of the points at which the answer is wanted [default: where it was measured, or a grid].
     #[arg(long, value_name = "FILE", conflicts_with = "grid", help_heading = DATA)]
     pub(crate) at: Option<PathBuf>,
-    /// Points of the answer along each coordinate, for instance 200x100.
+    /// Of a text file: points of the answer along each coordinate, for instance 200x100.
     #[arg(long, value_name = "NxM", value_parser = grid, help_heading = DATA)]
     pub(crate) grid: Option<Grid>,
     /// Unit of the cloud's coordinates: m, cm, mm, um or in [default: m].

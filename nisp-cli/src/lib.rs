@@ -14,7 +14,7 @@ pub mod terminal;
 /// There is none, and what to type instead; or everything that is wrong with the text.
 pub fn entry(name: &str) -> Result<nisp_equations::Entry, String> {
     let path = Path::new(name);
-    if path.extension().is_some_and(|extension| extension == TEXT) || path.is_file() {
+    if path.extension().is_some_and(|extension| extension == TEXT) {
         return text_entry(path);
     }
     let entries = nisp_equations::catalogue();

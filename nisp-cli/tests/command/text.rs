@@ -121,6 +121,12 @@ fn what_is_missing_is_named() {
     refused("--data prob=u.csv", &["no group `prob`, did you mean `probes`?"]);
     refused("--data u.csv --data inside=u.csv --data edge=u.csv --grid 5", &["--grid has 1 numbers", "x, y"]);
     refused("--data u.csv --unit mm", &["takes no --unit"]);
+    // Options that an equation has no use for are refused, and a file without the extension stands for nothing.
+    let ran = place.run("solve rlc --grid 30");
+    assert!(ran.code == Some(2) && ran.stderr.contains("`rlc` takes no --grid"), "{}", ran.stderr);
+    place.put("rlc", "no equation");
+    assert_eq!(place.run("explain rlc").code, Some(0));
+    fs::remove_file(place.path("rlc")).unwrap();
     assert_eq!(place.names(), ["plate.pde", "u.csv"]);
     let ran = place.run("solve plate.pde --data u.csv --data inside=u.csv --data edge=u.csv --grid 3x3 --iterations 2");
     assert_eq!(ran.code, Some(3), "{}", ran.stderr);
