@@ -7,6 +7,7 @@ pub mod compiled;
 pub mod engine;
 mod facts;
 pub mod features;
+mod fourier;
 pub mod functions;
 pub mod gemm;
 pub mod kernel;

@@ -1,6 +1,8 @@
 //! Which cells carry the heads, and where equations are asked to hold.
 
 use super::basis::{Basis, HIGHEST_DEGREE};
+use super::resolved;
+use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
@@ -15,8 +17,15 @@ const GAP: f64 = 30.0;
 /// Points of an equation at least that stand for an interval.
 const MANY: usize = 8;
 
-/// Breakpoints of the cells: one at every place of a measurement, and more where those are far apart.
-pub(super) fn breakpoints(bound: &Bound) -> Vec<f64> {
+/// Breakpoints of the cells: one at every place of a measurement, and more where those are far apart; fewer where a record is
+/// long and says no more.
+pub(super) fn breakpoints(bound: &Bound, noise: &Noise) -> Vec<f64> {
+    let all = all_breakpoints(bound);
+    if all.len() > LONG { resolved::breakpoints(bound, noise, all) } else { all }
+}
+
+/// Breakpoints at all measurements.
+pub(super) fn all_breakpoints(bound: &Bound) -> Vec<f64> {
     let groups = bound.problem.scene().schema.groups.iter().zip(&bound.coordinates);
     let mut measured: Vec<f64> = groups.filter(|(g, _)| !g.columns.is_empty()).flat_map(|(_, c)| c).copied().collect();
     let all = || bound.coordinates.iter().flatten().copied();
@@ -36,17 +45,31 @@ pub(super) fn breakpoints(bound: &Bound) -> Vec<f64> {
     breakpoints
 }
 
-/// Measurements that say how smooth a source is.
+/// Breakpoints from which on a record is asked how many of them it needs.
+const LONG: usize = 4000;
+/// Measurements, and cells, that say how smooth a source is.
 const TELLING: usize = 2000;
+const TELLING_CELLS: usize = 400;
 
-/// The middle of a record that is much longer than it need be to say how smooth its sources are.
-pub(super) fn middle(bound: &Bound) -> Option<(f64, f64)> {
+/// The middle of a record that is much longer than it need be to say how smooth its sources are: its breakpoints.
+pub(super) fn middle<'a>(bound: &Bound, breakpoints: &'a [f64]) -> Option<&'a [f64]> {
     let groups = bound.problem.scene().schema.groups.iter().zip(&bound.coordinates);
     let (_, longest) = groups.filter(|(g, _)| !g.columns.is_empty()).max_by_key(|(_, points)| points.len())?;
     let mut sorted = longest.clone();
     sorted.sort_by(f64::total_cmp);
-    let first = sorted.len().checked_sub(TELLING)? / 2;
-    (sorted.len() > 2 * TELLING).then(|| (sorted[first], sorted[first + TELLING - 1]))
+    let cells = breakpoints.len() - 1;
+    let share = (TELLING as f64 / sorted.len() as f64).max(TELLING_CELLS as f64 / cells as f64);
+    if share >= 0.5 {
+        return None;
+    }
+    let at = |part: f64| sorted[(part * (sorted.len() - 1) as f64) as usize];
+    // Of the measurements, and of the cells, whichever takes more of the record.
+    let by_rows = [0.5 - share / 2.0, 0.5 + share / 2.0].map(at);
+    let by_cells = [cells - TELLING_CELLS, cells + TELLING_CELLS].map(|twice| breakpoints[twice.div_ceil(2)]);
+    let (low, high) = (by_rows[0].min(by_cells[0]), by_rows[1].max(by_cells[1]));
+    let first = breakpoints.partition_point(|&at| at < low);
+    let last = breakpoints.partition_point(|&at| at <= high).min(cells);
+    (last - first < cells / 2 + 1).then(|| &breakpoints[first..=last])
 }
 
 /// Degrees of the heads' splines: so much above the order of their highest derivative that residuals are smooth. Nothing where
@@ -60,23 +83,24 @@ pub(super) fn degrees(schema: &schema::Scene) -> Option<Vec<usize>> {
     degrees.iter().all(|&degree| degree <= HIGHEST_DEGREE).then_some(degrees)
 }
 
-/// Places where a group's rows are asked for: those of its data or conditions, or as many on the interval that an equation's
-/// points stand for as its residual has freedom.
-pub(super) fn places(bound: &Bound, group: usize, breakpoints: &[f64]) -> Vec<f64> {
+/// Places where the rows of a group of equations are asked for instead of at its points: as many on the interval that those
+/// stand for as its residual has freedom. Nothing where it is asked for at its points, as data and conditions are.
+pub(super) fn places(bound: &Bound, group: usize, breakpoints: &[f64]) -> Option<Vec<f64>> {
     let own = &bound.coordinates[group];
     let schema = &bound.problem.scene().schema.groups[group];
     let only_equations = schema.columns.is_empty() && schema.terms.iter().all(|term| term.kind == TermKind::Residual);
     let mut sorted = own.clone();
     sorted.sort_by(f64::total_cmp);
     if !only_equations || sorted.len() < MANY {
-        return own.clone();
+        return None;
     }
     let (low, high) = (sorted[0], sorted[sorted.len() - 1]);
     let longest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
     if longest * (sorted.len() - 1) as f64 > GAP * (high - low) {
-        return own.clone();
+        return None;
     }
     let residual = Basis::new(SMOOTH, breakpoints);
     let slack = 1e-9 * (high - low);
-    (0..residual.len()).map(|i| residual.centre(i)).filter(|at| (low - slack..=high + slack).contains(at)).collect()
+    let centres = (0..residual.len()).map(|i| residual.centre(i));
+    Some(centres.filter(|at| (low - slack..=high + slack).contains(at)).collect())
 }

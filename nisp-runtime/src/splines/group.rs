@@ -1,7 +1,7 @@
 //! The rows of a group: misfits of its terms at its places, and their derivatives by the coefficients around each.
 
 use super::heads::Heads;
-use super::triangle::Row;
+use super::rows::Bundle;
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
 use crate::residual::Points;
@@ -164,17 +164,39 @@ impl Group {
         rows.chunks_exact(self.stride.max(1)).map(|row| row[..self.len()].to_vec()).collect()
     }
 
-    /// A row at a place, multiplied with `factor`; `by` are the learned scalars' derivatives by their parameters.
-    pub(super) fn row(
+    /// Places by cell, those that count: each cell with its places.
+    pub(super) fn by_cell<'a>(&'a self, counts: impl Fn(usize) -> bool) -> impl Iterator<Item = (usize, Vec<usize>)> + 'a {
+        let mut order: Vec<usize> = (0..self.len()).filter(|&p| counts(p)).collect();
+        order.sort_by_key(|&p| self.cells[p]);
+        let mut order = order.into_iter().peekable();
+        std::iter::from_fn(move || {
+            let first = order.next()?;
+            let cell = self.cells[first];
+            let mut own = vec![first];
+            own.extend(std::iter::from_fn(|| order.next_if(|&p| self.cells[p] == cell)));
+            Some((cell, own))
+        })
+    }
+
+    /// No rows yet on a cell.
+    pub(super) fn bundle(&self, heads: &Heads, cell: usize, shared: usize) -> Bundle {
+        let (first, width) = heads.span(&self.read, cell);
+        Bundle::new(first, width, shared)
+    }
+
+    /// Adds a row at a place of the cell, multiplied with `factor`; `by` are the learned scalars' derivatives by their
+    /// parameters.
+    pub(super) fn add_row(
         &self,
         heads: &Heads,
         (found, row, p): (&Evaluated, usize, usize),
         by: &[f64],
         factor: f64,
-    ) -> Row {
+        out: &mut Bundle,
+    ) {
         let cell = self.cells[p];
-        let (first, width) = heads.span(&self.read, cell);
-        let mut slopes = vec![0.0; width];
+        let (first, _) = heads.span(&self.read, cell);
+        let (slopes, shared, value) = out.add();
         let bar = |number: usize| factor * found.bars[row][number * found.stride + p];
         for (number, jet) in self.schema.jets.iter().enumerate() {
             let seed = bar(number) * heads.scale[jet.head];
@@ -190,8 +212,8 @@ impl Group {
             }
         }
         let jets = self.schema.jets.len();
-        let shared = by.iter().enumerate().map(|(at, by)| bar(jets + at) * by).collect();
-        Row { first, slopes, shared, value: factor * found.row(row, p) }
+        shared.iter_mut().zip(by).enumerate().for_each(|(at, (out, by))| *out = bar(jets + at) * by);
+        *value = factor * found.row(row, p);
     }
 }
 

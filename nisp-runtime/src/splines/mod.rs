@@ -10,13 +10,15 @@ mod basis;
 mod cells;
 mod group;
 mod heads;
+mod resolved;
+mod rows;
 mod solver;
 mod triangle;
 mod weighed;
 
 use std::time::Instant;
 
-use crate::facts::{Answer, Facts};
+use crate::facts::Answer;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
@@ -24,7 +26,6 @@ use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::state;
 
-use group::Group;
 use solver::{Phase, Solver, State, TOLERANCE};
 use triangle::Covariance;
 use weighed::{Class, restore_classes, save_classes};
@@ -41,6 +42,8 @@ const RESTING: f64 = 0.02;
 const SETTLED: f64 = 1e-4;
 /// Steps of an order at most.
 const MOST_STEPS: u64 = 60;
+/// The end of the error bars' steps at the latest, beside the budget.
+const LATE: f64 = 1.05;
 /// Name of the method in saved states.
 pub(crate) const METHOD: &str = "splines";
 
@@ -111,16 +114,18 @@ pub(crate) fn solve(
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
 ) -> Result<SplineSolution, Fault> {
     let start = Instant::now();
-    let mut solver = Solver::over(bound);
+    let breakpoints = cells::breakpoints(bound, noise);
+    let mut solver = Solver::over(bound, &breakpoints);
+    let schema = bound.problem.scene().schema;
     let mut place = Place::first(solver.first(noise), solver.has_sources());
     let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY };
     let begun = |saved: &&state::State| saved.counter("orders").is_ok();
-    match (from.filter(begun), cells::middle(bound)) {
+    match (from.filter(begun), cells::middle(bound, &breakpoints)) {
         (Some(saved), _) => place.restore(saved)?,
         // A part of a long record says how smooth the sources are, and how large the noise is.
-        (None, Some((low, high))) => {
-            let part = bound.between(low, high);
-            let mut solver = Solver::over(&part);
+        (None, Some(middle)) => {
+            let part = bound.between(middle[0], middle[middle.len() - 1]);
+            let mut solver = Solver::over(&part, middle);
             let mut trial = Place::first(solver.first(noise), solver.has_sources());
             // A run that ends here begins anew.
             let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
@@ -142,8 +147,10 @@ pub(crate) fn solve(
         place.state = State { step: place.state.step, ..state };
     }
     let mut spreads = Vec::new();
-    if matches!(status, Status::Converged | Status::Budget) && noise.is_there(bound.problem.scene().schema) {
-        for (order, mut state) in place.likely() {
+    // Only a minimum has error bars.
+    let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
+    if run.has_time_for(likely.len()) {
+        for (order, mut state) in likely {
             solver.order = ORDERS[order];
             solver.doubt_roughness(&mut state);
             match solver.step(&state, Phase::Solve)? {
@@ -151,6 +158,9 @@ pub(crate) fn solve(
                 None => status = Status::NotConverged,
             }
         }
+    } else {
+        let message = "no time was left for error bars; give a larger budget".into();
+        warnings.push(Warning { kind: WarningKind::OutOfTime, message });
     }
     if status == Status::NotConverged {
         let message = "the data and the equations leave some of the unknowns open: give more conditions or data".into();
@@ -158,22 +168,9 @@ pub(crate) fn solve(
     }
     let scalars = solver.scalars(&place.state.learned).to_vec();
     let misfits = solver.misfits(&place.state);
-    let schema = bound.problem.scene().schema;
     let State { theta, learned, step: iterations, .. } = place.state;
-    let judged =
-        bound.problem.scene().double().into_iter().take(schema.groups.len()).enumerate().map(|(at, kernel)| {
-            let group = Group::new(
-                &schema.groups[at],
-                kernel,
-                &solver.heads,
-                &bound.coordinates[at],
-                &bound.filled_columns(at),
-            );
-            group.facts(&solver.heads, &theta)
-        });
-    let facts: Vec<Facts> = judged.collect();
+    let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let answer = Answer { facts, clouds: Vec::new(), scalars };
-    let Solver { heads, .. } = solver;
     Ok(SplineSolution {
         heads,
         theta,
@@ -195,8 +192,10 @@ const ROUGHLY: f64 = 0.02;
 /// How many numbers it takes to describe the richest of the observed quantities to within its noise, or to a fiftieth of its
 /// spread. A wave takes two a period, and more where it is noisy.
 pub(crate) fn richness(bound: &Bound, noise: &Noise) -> f64 {
-    let part = cells::middle(bound).map(|(low, high)| bound.between(low, high));
-    let mut solver = Solver::over(part.as_ref().unwrap_or(bound));
+    let breakpoints = cells::all_breakpoints(bound);
+    let middle = cells::middle(bound, &breakpoints);
+    let part = middle.map(|middle| bound.between(middle[0], middle[middle.len() - 1]));
+    let mut solver = Solver::over(part.as_ref().unwrap_or(bound), middle.unwrap_or(&breakpoints));
     let mut state = solver.first(noise);
     solver.hold_noise(&mut state, noise, ROUGHLY);
     let mut used = 0.0;
@@ -219,6 +218,12 @@ struct Run<'m> {
 }
 
 impl Run<'_> {
+    /// True where so many more steps end with the budget, or nearly so.
+    fn has_time_for(&self, steps: usize) -> bool {
+        let end = self.start.elapsed().as_secs_f64() + steps as f64 * self.longest;
+        steps == 0 || self.limits.budget.is_none_or(|budget| end <= LATE * budget.as_secs_f64())
+    }
+
     /// Takes steps until all orders that are to be tried have been, or steps or time are spent.
     fn go(
         &mut self,

@@ -3,8 +3,11 @@
 use super::cells;
 use super::group::Group;
 use super::heads::Heads;
+use super::rows::{Counted, Rows};
 use super::triangle::{Covariance, Row, Triangle};
 use super::weighed::{Class, Guess, Tally, restore_classes, save_classes};
+use crate::facts::Facts;
+use crate::kernel::GroupKernel;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::TermKind;
@@ -86,15 +89,15 @@ pub(super) struct Found {
 }
 
 impl<'a> Solver<'a> {
-    /// Splines over the interval of all points. The scene must not be refused.
-    pub(super) fn over(bound: &'a Bound) -> Self {
+    /// Splines over the cells between breakpoints. The scene must not be refused.
+    pub(super) fn over(bound: &'a Bound, breakpoints: &[f64]) -> Self {
         let schema = bound.problem.scene().schema;
-        let breakpoints = &cells::breakpoints(bound)[..];
         let heads = Heads::new(bound, &cells::degrees(schema).unwrap_or_default(), breakpoints);
         let kernels = bound.problem.scene().double();
         let group = |(at, kernel)| {
-            let places = cells::places(bound, at, breakpoints);
-            Group::new(&schema.groups[at], kernel, &heads, &places, &bound.filled_columns(at))
+            let moved = cells::places(bound, at, breakpoints);
+            let places = moved.as_deref().unwrap_or(&bound.coordinates[at]);
+            Group::new(&schema.groups[at], kernel, &heads, places, &bound.filled_columns(at))
         };
         let groups: Vec<Group> = kernels.into_iter().take(schema.groups.len()).enumerate().map(group).collect();
         let mut count = 0;
@@ -200,9 +203,10 @@ impl<'a> Solver<'a> {
 
     /// Rows about a state with their classes, in the order of their unknowns, and what [`Solver::loss`] makes of them; what is
     /// not finite is a fault.
-    fn rows(&mut self, state: &State, phase: Phase) -> Result<(Vec<(Row, usize)>, f64), Fault> {
+    fn rows(&mut self, state: &State, phase: Phase) -> Result<(Rows, f64), Fault> {
         let slopes = self.set_learned(&state.learned);
-        let mut rows = Vec::new();
+        let shared = slopes.len();
+        let mut rows = Rows::new(shared);
         let mut cost = 0.0;
         for (at, group) in self.groups.iter().enumerate() {
             let takes_part = |term: &crate::schema::Term| phase == Phase::Solve || term.kind == TermKind::Observation;
@@ -216,36 +220,37 @@ impl<'a> Solver<'a> {
                 let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
                 for row in term.first..term.first + term.rows {
                     let sigma = self.sigma(state, at, number, row);
-                    for p in (0..group.len()).filter(is_there) {
-                        let misfit = found.row(row, p);
-                        if !misfit.is_finite() {
-                            let name = format!("{}.{}", group.schema.name, term.name);
-                            return Err(Fault::residual(name, Some(p)));
+                    for (cell, places) in group.by_cell(|p| is_there(&p)) {
+                        let mut own = group.bundle(&self.heads, cell, shared);
+                        for p in places {
+                            let misfit = found.row(row, p);
+                            if !misfit.is_finite() {
+                                let name = format!("{}.{}", group.schema.name, term.name);
+                                return Err(Fault::residual(name, Some(p)));
+                            }
+                            cost += loss.rho(misfit / sigma);
+                            let factor = loss.weight(misfit / sigma).sqrt() / sigma;
+                            group.add_row(&self.heads, (&found, row, p), &slopes, factor, &mut own);
                         }
-                        cost += loss.rho(misfit / sigma);
-                        let factor = loss.weight(misfit / sigma).sqrt() / sigma;
-                        let row = group.row(&self.heads, (&found, row, p), &slopes, factor);
-                        rows.push((row, self.classes[at][number]));
+                        rows.push_all(&own, self.classes[at][number]);
                     }
                 }
             }
         }
         let known = self.classes.iter().map(Vec::len).sum::<usize>() + self.roughness.len();
-        let priors = self.priors_of(state, phase);
-        cost += priors.iter().map(|(row, _)| 0.5 * row.value.powi(2)).sum::<f64>();
-        rows.extend(priors);
+        let none = vec![0.0; shared];
+        cost += self.add_priors(state, phase, &mut |row, class| rows.push(row, class));
         for head in 0..self.heads.bases.len() {
-            for function in 0..self.heads.bases[head].len() {
-                let number = self.heads.numbers(head, function)[0];
+            for &number in self.heads.numbers(head, 0) {
                 let value = RIDGE * state.theta[number];
-                rows.push((Row { first: number, slopes: vec![RIDGE], shared: vec![0.0; slopes.len()], value }, known));
+                rows.push(Row { first: number, slopes: &[RIDGE], shared: &none, value }, known);
             }
         }
-        rows.sort_by_key(|(row, _)| row.first);
+        rows.sort();
         for (at, parameter) in state.learned.iter().enumerate() {
-            let mut shared = vec![0.0; slopes.len()];
+            let mut shared = none.clone();
             shared[at] = LEARNED.recip();
-            rows.push((Row { first: 0, slopes: Vec::new(), shared, value: parameter / LEARNED }, known));
+            rows.push(Row { first: 0, slopes: &[], shared: &shared, value: parameter / LEARNED }, known);
         }
         Ok((rows, cost))
     }
@@ -255,34 +260,32 @@ impl<'a> Solver<'a> {
         if phase == Phase::Solve { self.order } else { REGRESS_ORDER }
     }
 
-    /// Rows that keep sources smooth, or fields smooth while only data are regressed.
-    fn priors_of(&self, state: &State, phase: Phase) -> Vec<(Row, usize)> {
-        let mut rows = Vec::new();
-        for (head, declared) in self.bound.problem.scene().schema.heads.iter().enumerate() {
-            if declared.source != (phase == Phase::Solve) {
-                continue;
+    /// Gives the rows that keep sources smooth, or fields smooth while only data are regressed, with their classes; returns half
+    /// the sum of their squares.
+    fn add_priors(&self, state: &State, phase: Phase, take: &mut dyn FnMut(Row<'_>, usize)) -> f64 {
+        let none = vec![0.0; state.learned.len()];
+        let order = self.order(phase);
+        let mut slopes = Vec::new();
+        let mut cost = 0.0;
+        let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
+        for (head, _) in heads.filter(|(_, declared)| declared.source == (phase == Phase::Solve)) {
+            let class = self.roughness[head];
+            let size = state.classes[class].size;
+            for (first, factors, width) in self.heads.bases[head].differences(order) {
+                let numbers = &self.heads.numbers(head, first)[..=order];
+                let weight = width.sqrt() / size;
+                let mut value = 0.0;
+                slopes.clear();
+                slopes.resize(numbers[order] + 1 - numbers[0], 0.0);
+                for (&number, factor) in numbers.iter().zip(&factors) {
+                    slopes[number - numbers[0]] = weight * factor;
+                    value += weight * factor * state.theta[number];
+                }
+                cost += 0.5 * value * value;
+                take(Row { first: numbers[0], slopes: &slopes, shared: &none, value }, class);
             }
-            self.add_roughness((state, phase), head, &mut rows);
         }
-        rows.sort_by_key(|(row, _)| row.first);
-        rows
-    }
-
-    fn add_roughness(&self, (state, phase): (&State, Phase), head: usize, rows: &mut Vec<(Row, usize)>) {
-        let (order, class) = (self.order(phase), self.roughness[head]);
-        let size = state.classes[class].size;
-        for (first, factors, width) in self.heads.bases[head].differences(order) {
-            let numbers = self.heads.numbers(head, first);
-            let weight = width.sqrt() / size;
-            let mut row = Row { first: numbers[0], ..Row::default() };
-            row.slopes = vec![0.0; numbers[order] + 1 - numbers[0]];
-            row.shared = vec![0.0; state.learned.len()];
-            for (&number, factor) in numbers.iter().zip(&factors[..=order]) {
-                row.slopes[number - numbers[0]] = weight * factor;
-                row.value += weight * factor * state.theta[number];
-            }
-            rows.push((row, class));
-        }
+        cost
     }
 
     /// Half the sum of squares of all rows, robust ones by what they cost.
@@ -304,7 +307,7 @@ impl<'a> Solver<'a> {
                 }
             }
         }
-        sum + self.priors_of(state, phase).iter().map(|(row, _)| 0.5 * row.value.powi(2)).sum::<f64>()
+        sum + self.add_priors(state, phase, &mut |_, _| {})
     }
 
     /// One step.
@@ -312,19 +315,20 @@ impl<'a> Solver<'a> {
         self.size(state);
         let (rows, before) = self.rows(state, phase)?;
         self.triangle.clear();
-        let mut scratch = Vec::new();
-        rows.iter().for_each(|(row, _)| self.triangle.add(row, &mut scratch));
+        for counted in rows.iter() {
+            self.triangle.add(counted.row);
+        }
         let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
         let covariance = self.triangle.covariance();
         let mut tallies = vec![Tally::default(); state.classes.len() + 1];
         let mut loss = 0.0;
-        for (row, class) in &rows {
-            let tally = &mut tallies[*class];
+        for Counted { row, class, count } in rows.iter() {
+            let tally = &mut tallies[class];
             let along: f64 = row.slopes.iter().zip(&step[row.first..]).map(|(a, x)| a * x).sum();
             let beside: f64 = row.shared.iter().zip(&shared).map(|(a, x)| a * x).sum();
             tally.squares += (row.value + along + beside).powi(2);
-            tally.count += 1.0;
-            tally.used += covariance.of(row.first, &row.slopes, &row.shared).max(0.0);
+            tally.count += count as f64;
+            tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
             loss += 0.5 * row.value.powi(2);
         }
         self.count_priors(&mut tallies, phase);
@@ -403,6 +407,21 @@ impl<'a> Solver<'a> {
             differences.map(|(_, factors, width)| (factors[order].abs() * width.sqrt()).ln()).sum::<f64>()
         })
         .sum()
+    }
+
+    /// The heads, and what they say at the points of all groups.
+    pub(super) fn into_facts(self, breakpoints: &[f64], theta: &[f64]) -> (Heads, Vec<Facts>) {
+        let Self { bound, heads, groups, .. } = self;
+        let schema = bound.problem.scene().schema;
+        let of = |(at, (own, kernel)): (usize, (Group, GroupKernel<f64>))| {
+            if cells::places(bound, at, breakpoints).is_none() {
+                return own.facts(&heads, theta);
+            }
+            let columns = bound.filled_columns(at);
+            Group::new(&schema.groups[at], kernel, &heads, &bound.coordinates[at], &columns).facts(&heads, theta)
+        };
+        let facts = groups.into_iter().zip(bound.problem.scene().double()).enumerate().map(of).collect();
+        (heads, facts)
     }
 
     /// Misfits of all terms at their places, by group, and the noise of observations.

@@ -6,11 +6,11 @@
 //! are linear in the rows.
 
 /// A row: its first unknown, what the unknowns from there on are multiplied by, what the shared ones are, and its value.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Row {
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Row<'a> {
     pub(super) first: usize,
-    pub(super) slopes: Vec<f64>,
-    pub(super) shared: Vec<f64>,
+    pub(super) slopes: &'a [f64],
+    pub(super) shared: &'a [f64],
     pub(super) value: f64,
 }
 
@@ -31,6 +31,8 @@ pub(super) struct Triangle {
     corner_right: Vec<f64>,
     /// The row that is being turned in, from its first unknown on.
     scratch: Vec<f64>,
+    /// What it is by the shared unknowns.
+    beside: Vec<f64>,
 }
 
 /// Covariances of the unknowns: those of neighbours within the band, and those with the shared ones.
@@ -59,6 +61,7 @@ impl Triangle {
             corner: vec![0.0; shared * shared],
             corner_right: vec![0.0; shared],
             scratch: Vec::new(),
+            beside: Vec::new(),
         }
     }
 
@@ -69,46 +72,51 @@ impl Triangle {
         }
     }
 
-    /// Turns a row in. Cheap as long as rows come in the order of their first unknown.
-    pub(super) fn add(&mut self, row: &Row, shared: &mut Vec<f64>) {
-        shared.clone_from(&row.shared);
-        let mut scratch = std::mem::take(&mut self.scratch);
+    /// Turns a row in; returns what is left of its value, which no unknown can change. Cheap as long as rows come in the order
+    /// of their first unknown.
+    pub(super) fn add(&mut self, row: Row<'_>) -> f64 {
+        let (mut scratch, mut shared) = (std::mem::take(&mut self.scratch), std::mem::take(&mut self.beside));
         scratch.clear();
-        scratch.extend_from_slice(&row.slopes);
-        let mut right = -row.value;
+        scratch.extend_from_slice(row.slopes);
+        shared.clear();
+        shared.extend_from_slice(row.shared);
+        let left = self.turn_in(row.first, &mut scratch, &mut shared, -row.value);
+        (self.scratch, self.beside) = (scratch, shared);
+        left
+    }
+
+    fn turn_in(&mut self, first: usize, row: &mut Vec<f64>, shared: &mut [f64], mut right: f64) -> f64 {
         let mut at = 0;
-        while at < scratch.len() {
-            let unknown = row.first + at;
-            if scratch[at] == 0.0 {
+        while at < row.len() {
+            let unknown = first + at;
+            if row[at] == 0.0 {
                 at += 1;
                 continue;
             }
             let own = &mut self.rows[unknown * self.band..][..self.band];
             let border = &mut self.border[unknown * self.shared..][..self.shared];
             if own[0] == 0.0 {
-                let rest = &scratch[at..];
+                let rest = &row[at..];
                 own[..rest.len()].copy_from_slice(rest);
                 border.copy_from_slice(shared);
                 self.right[unknown] = right;
-                self.scratch = scratch;
-                return;
+                return 0.0;
             }
             let end = (at + self.band).min(at + self.len - unknown);
-            if scratch.len() < end {
-                scratch.resize(end, 0.0);
+            if row.len() < end {
+                row.resize(end, 0.0);
             }
-            let (cosine, sine) = rotation(own[0], scratch[at]);
-            turn(cosine, sine, own, &mut scratch[at..end]);
+            let (cosine, sine) = rotation(own[0], row[at]);
+            turn(cosine, sine, own, &mut row[at..end]);
             turn(cosine, sine, border, shared);
             (self.right[unknown], right) = turned(cosine, sine, self.right[unknown], right);
             at += 1;
         }
-        self.scratch = scratch;
-        self.add_shared(shared, right);
+        self.add_shared(shared, right)
     }
 
     /// Turns in a row of the shared unknowns alone.
-    fn add_shared(&mut self, row: &mut [f64], mut right: f64) {
+    fn add_shared(&mut self, row: &mut [f64], mut right: f64) -> f64 {
         for at in 0..self.shared {
             if row[at] == 0.0 {
                 continue;
@@ -117,12 +125,31 @@ impl Triangle {
             if own[at] == 0.0 {
                 own[at..].copy_from_slice(&row[at..]);
                 self.corner_right[at] = right;
-                return;
+                return 0.0;
             }
             let (cosine, sine) = rotation(own[at], row[at]);
             turn(cosine, sine, &mut own[at..], &mut row[at..]);
             (self.corner_right[at], right) = turned(cosine, sine, self.corner_right[at], right);
         }
+        right
+    }
+
+    /// The triangle as rows, those that hold nothing left out.
+    pub(super) fn rows(&self) -> impl Iterator<Item = Row<'_>> {
+        let banded = (0..self.len).map(|first| Row {
+            first,
+            slopes: &self.rows[first * self.band..][..self.band.min(self.len - first)],
+            shared: &self.border[first * self.shared..][..self.shared],
+            value: -self.right[first],
+        });
+        let corner = (0..self.shared).map(|at| Row {
+            first: 0,
+            slopes: &[],
+            shared: &self.corner[at * self.shared..][..self.shared],
+            value: -self.corner_right[at],
+        });
+        let banded = banded.filter(|row| row.slopes[0] != 0.0);
+        banded.chain(corner.enumerate().filter(|(at, row)| row.shared[*at] != 0.0).map(|(_, row)| row))
     }
 
     /// The unknowns that make the rows least, and the shared ones; nothing if the rows leave some open.
@@ -253,16 +280,14 @@ mod tests {
     use nalgebra::{DMatrix, DVector};
 
     /// Rows over ten unknowns, three of them in each, and two shared ones.
-    fn rows() -> Vec<Row> {
+    fn rows() -> Vec<(usize, [f64; 3], [f64; 2], f64)> {
         let number = |at: usize| ((at * 7919 + 13) % 101) as f64 / 101.0 - 0.4;
-        let row = |at: usize| Row {
-            first: at / 3 % 8,
-            slopes: (0..3).map(|k| number(5 * at + k)).collect(),
-            shared: (0..2).map(|k| number(11 * at + k)).collect(),
-            value: number(17 * at),
+        let row = |at: usize| {
+            let (slopes, shared) = ([0, 1, 2].map(|k| number(5 * at + k)), [0, 1].map(|k| number(11 * at + k)));
+            (at / 3 % 8, slopes, shared, number(17 * at))
         };
-        let mut rows: Vec<Row> = (0..40).map(row).collect();
-        rows.sort_by_key(|row| row.first);
+        let mut rows: Vec<_> = (0..40).map(row).collect();
+        rows.sort_by_key(|row| row.0);
         rows
     }
 
@@ -270,8 +295,12 @@ mod tests {
     #[test]
     fn a_triangle_is_the_root_of_the_normal_equations() {
         let rows = rows();
+        let rows: Vec<Row<'_>> =
+            rows.iter().map(|(first, slopes, shared, value)| Row { first: *first, slopes, shared, value: *value }).collect();
         let mut triangle = Triangle::new(10, 3, 2);
-        rows.iter().for_each(|row| triangle.add(row, &mut Vec::new()));
+        rows.iter().for_each(|&row| {
+            triangle.add(row);
+        });
         let dense = DMatrix::from_fn(rows.len(), 12, |i, j| match j {
             10.. => rows[i].shared[j - 10],
             _ => j.checked_sub(rows[i].first).and_then(|k| rows[i].slopes.get(k)).copied().unwrap_or(0.0),
@@ -292,7 +321,7 @@ mod tests {
                 _ => j.checked_sub(row.first).and_then(|k| row.slopes.get(k)).copied().unwrap_or(0.0),
             });
             let exact = dense.dot(&(&inverse * &dense));
-            let found = covariance.of(row.first, &row.slopes, &row.shared);
+            let found = covariance.of(row.first, row.slopes, row.shared);
             assert!((found - exact).abs() < 1e-9 * exact, "{found} {exact}");
         }
     }
@@ -300,7 +329,7 @@ mod tests {
     #[test]
     fn unknowns_that_no_row_sees_are_open() {
         let mut triangle = Triangle::new(3, 2, 0);
-        triangle.add(&Row { first: 0, slopes: vec![1.0, 1.0], ..Row::default() }, &mut Vec::new());
+        triangle.add(Row { first: 0, slopes: &[1.0, 1.0], shared: &[], value: 0.0 });
         assert!(triangle.solve().is_none());
     }
 }

@@ -1,6 +1,6 @@
 //! Whether what is left of a record has a slow course: noise has none, and a fit takes away from what chance makes of it.
 
-use std::f64::consts::PI;
+use crate::fourier::cosine_powers;
 
 /// Modes from here on, as a share of all, are taken for noise.
 const FAST: f64 = 0.5;
@@ -11,7 +11,8 @@ const FEWEST: usize = 4;
 /// of all power that is too much. The level of noise is that of the fast modes; a fit that follows its data leaves the slow ones
 /// below it.
 pub(super) fn excess(misfits: &[f64]) -> (f64, f64) {
-    let powers = powers(misfits);
+    // Of noise, each has the noise's variance for its mean.
+    let powers = cosine_powers(misfits);
     let fast = &powers[(FAST * powers.len() as f64) as usize..];
     let total: f64 = powers.iter().sum();
     let level = fast.iter().sum::<f64>() / fast.len().max(1) as f64;
@@ -24,18 +25,6 @@ pub(super) fn excess(misfits: &[f64]) -> (f64, f64) {
         (deviations(slow / level, count), (slow - level * count as f64) / total)
     });
     excesses.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
-}
-
-/// Squares of the coefficients of cosines with 0, 1, 2, ... half waves (discrete cosine transform, orthonormal): of noise, each
-/// has the noise's variance for its mean.
-fn powers(values: &[f64]) -> Vec<f64> {
-    let count = values.len() as f64;
-    let power = |mode: usize| {
-        let wave = |(at, value): (usize, &f64)| value * (PI * mode as f64 * (at as f64 + 0.5) / count).cos();
-        let sum: f64 = values.iter().enumerate().map(wave).sum();
-        sum * sum * if mode == 0 { 1.0 } else { 2.0 } / count
-    };
-    (0..values.len()).map(power).collect()
 }
 
 /// A chi squared of so many degrees of freedom in standard deviations of a normal number (Wilson and Hilferty 1931).
@@ -53,13 +42,6 @@ mod tests {
     fn noise(seed: u64, count: usize) -> Vec<f64> {
         let mut random = StdRng::seed_from_u64(seed);
         (0..count).map(|_| normal(&mut random)).collect()
-    }
-
-    #[test]
-    fn powers_sum_to_the_square() {
-        let values = noise(1, 50);
-        let square: f64 = values.iter().map(|x| x * x).sum();
-        assert!((powers(&values).iter().sum::<f64>() / square - 1.0).abs() < 1e-12);
     }
 
     /// The largest of five normal numbers stays below four, but for one time in six thousand.
