@@ -9,7 +9,7 @@ use nisp_data::export::triangulate;
 use serde::Deserialize;
 
 use super::given::{Given, Number, Positive, Size};
-use super::observed::{Example, Observed, Sample};
+use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
 use super::{Contact, ContactRival, Rule, Surface, bind_cloud};
 use crate::PrepareError;
 use crate::catalogue::{Entry, Prepared, Request};
@@ -85,7 +85,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let scene = entry.scene(request.scene.as_deref())?;
     let schema = scene.schema;
     let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
-    let observed = Observed::read(entry, request, if pressure.is_some() { &PRESSED } else { &INFLATED })?;
+    let mut observed = Observed::read(entry, request, if pressure.is_some() { &PRESSED } else { &INFLATED })?;
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
@@ -100,6 +100,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let cells = if patches.is_some() { CELLS_FOR_PATCHES } else { LOCAL.cells };
     let local = (!request.network).then_some(Local { cells, patches, ..LOCAL });
     let (counts, sampling) = if local.is_some() { (LOCAL_POINTS, Sampling::Grid) } else { (POINTS, Sampling::Sobol) };
+    observed.cloud.thin(2.0 * a.max(b) / cells as f64, POINTS_OF_A_CELL);
     for group in schema.groups {
         let points = match group.name {
             "rim" => ellipse.boundary(counts.2),

@@ -150,6 +150,9 @@ impl Observed {
 const MARGIN: f64 = 0.25;
 /// Points without which a surface is anyone's guess.
 const FEWEST: usize = 50;
+/// Points of a cloud in each cell of the answer's lattice that it passes through, in the mean, from which on more of them cost
+/// more than they say: three displacements are wanted there.
+pub(super) const POINTS_OF_A_CELL: usize = 4;
 /// Share of a cloud that must be where its body can be; the rest may be outliers.
 const LEAST_INSIDE: f64 = 0.8;
 

@@ -5,7 +5,7 @@ use nisp_data::domain::{Domain, Points, Sampling};
 use serde::Deserialize;
 
 use super::given::{Given, Number, Positive, Size};
-use super::observed::{Example, Observed, Sample};
+use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
 use super::{Contact, ContactRival, Rule, Surface, bind_cloud};
 use crate::PrepareError;
 use crate::catalogue::{Entry, Prepared, Request};
@@ -99,7 +99,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     if schema.groups.iter().flat_map(|group| group.columns).any(|column| column.name == "clearance") {
         return Err(PrepareError::Terrain { scene: schema.name });
     }
-    let observed = Observed::read(entry, request, &EXAMPLE)?;
+    let mut observed = Observed::read(entry, request, &EXAMPLE)?;
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
@@ -108,6 +108,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let side = given.size("side")?;
     let (low, high) = ([-0.5 * side, -0.5 * side, -side], [0.5 * side, 0.5 * side, 0.0]);
     observed.require_of("sponge", low, high)?;
+    observed.cloud.thin(side / LOCAL.cells as f64, POINTS_OF_A_CELL);
 
     let vector = |names: [&'static str; 3]| -> Result<[f64; 3], PrepareError> {
         let [x, y, z] = names.map(|name| given.of(name));

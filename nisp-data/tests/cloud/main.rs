@@ -2,6 +2,7 @@
 
 mod damaged;
 mod samples;
+mod thin;
 
 use std::path::Path;
 

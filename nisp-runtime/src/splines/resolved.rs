@@ -10,10 +10,11 @@ use super::triangle::{Row, Triangle};
 use crate::noise::Noise;
 use crate::problem::Bound;
 
-/// Measurements in each of the cells that come first.
-const WIDE: usize = 64;
-/// Cells that take the place of one that leaves noise: a spline of fifth degree is better by the sixth power of it.
-const FINER: usize = 4;
+/// Cells that come first, at least.
+const FEWEST: usize = 25;
+/// Cells that take the place of one that leaves noise. The answer needs two of them; its error bars need more, because what
+/// the measurements leave open of a source is rougher than what they say of it.
+const FINER: usize = 8;
 /// Degree of the splines: that of the least smooth head.
 const DEGREE: usize = 5;
 /// Cells that are looked at together: a wave below the noise shows in many of its periods.
@@ -38,7 +39,7 @@ struct Column {
 pub(super) fn breakpoints(bound: &Bound, noise: &Noise, all: Vec<f64>) -> Vec<f64> {
     let columns = columns(bound, noise);
     let last = all.len() - 1;
-    let mut chosen: Vec<usize> = (0..last).step_by(WIDE).chain([last]).collect();
+    let mut chosen: Vec<usize> = (0..last).step_by((last / FEWEST).max(1)).chain([last]).collect();
     loop {
         let cells: Vec<f64> = chosen.iter().map(|&at| all[at]).collect();
         let mut coarse = vec![false; cells.len() - 1];

@@ -315,9 +315,7 @@ impl<'a> Solver<'a> {
         self.size(state);
         let (rows, before) = self.rows(state, phase)?;
         self.triangle.clear();
-        for counted in rows.iter() {
-            self.triangle.add(counted.row);
-        }
+        self.triangle.add_all(rows.iter().map(|counted| counted.row));
         let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
         let covariance = self.triangle.covariance();
         let mut tallies = vec![Tally::default(); state.classes.len() + 1];

@@ -5,6 +5,8 @@
 //! coordinate, so that a row sees a few neighbours only; the few unknowns that all rows share form a border. Time and memory
 //! are linear in the rows.
 
+use crate::simd::{self, Isa, Kernel, Simd};
+
 /// A row: its first unknown, what the unknowns from there on are multiplied by, what the shared ones are, and its value.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row<'a> {
@@ -72,8 +74,13 @@ impl Triangle {
         }
     }
 
-    /// Turns a row in; returns what is left of its value, which no unknown can change. Cheap as long as rows come in the order
-    /// of their first unknown.
+    /// Turns rows in. Cheap as long as they come in the order of their first unknown.
+    pub(super) fn add_all<'r>(&mut self, rows: impl Iterator<Item = Row<'r>>) {
+        simd::dispatch::<f64, _>(Isa::detect(), TurnIn { triangle: self, rows });
+    }
+
+    /// Turns a row in; returns what is left of its value, which no unknown can change.
+    #[inline(always)]
     pub(super) fn add(&mut self, row: Row<'_>) -> f64 {
         let (mut scratch, mut shared) = (std::mem::take(&mut self.scratch), std::mem::take(&mut self.beside));
         scratch.clear();
@@ -85,6 +92,7 @@ impl Triangle {
         left
     }
 
+    #[inline(always)]
     fn turn_in(&mut self, first: usize, row: &mut Vec<f64>, shared: &mut [f64], mut right: f64) -> f64 {
         let mut at = 0;
         while at < row.len() {
@@ -184,6 +192,7 @@ impl Triangle {
 
     /// Entries of `(R^T R)^-1` within the band and the border, from the last row to the first (Takahashi, Fagan and Chen
     /// 1973).
+    #[inline(never)]
     pub(super) fn covariance(&self) -> Covariance {
         let (band, shared) = (self.band, self.shared);
         let mut found = Covariance {
@@ -204,8 +213,14 @@ impl Triangle {
                 let outer = border.iter().enumerate().map(|(k, r)| r * found.corner[k * shared + j]).sum::<f64>();
                 *out = -(inner + outer) / row[0];
             }
+            column.fill(0.0);
+            for k in 1..width {
+                let own = &found.rows[(at + k) * band..][..width - k];
+                column[k] += dot(own, &row[k..width]);
+                column[k + 1..width].iter_mut().zip(&own[1..]).for_each(|(out, c)| *out += row[k] * c);
+            }
             for (j, out) in column.iter_mut().enumerate().take(width).skip(1) {
-                let inner = (1..width).map(|k| row[k] * found.between(at + k, at + j)).sum::<f64>();
+                let inner = *out;
                 let others = &found.border[(at + j) * shared..][..shared];
                 let outer = border.iter().zip(others).map(|(r, c)| r * c).sum::<f64>();
                 *out = -(inner + outer) / row[0];
@@ -235,18 +250,43 @@ impl Triangle {
     }
 }
 
-impl Covariance {
-    fn between(&self, i: usize, j: usize) -> f64 {
-        let (low, high) = (i.min(j), i.max(j));
-        self.rows[low * self.band + (high - low)]
-    }
+/// Rows that are turned into a triangle, compiled for every instruction set.
+struct TurnIn<'t, I> {
+    triangle: &'t mut Triangle,
+    rows: I,
+}
 
+impl<'r, I: Iterator<Item = Row<'r>>> Kernel<f64> for TurnIn<'_, I> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<V: Simd<Elem = f64>>(self) {
+        for row in self.rows {
+            self.triangle.add(row);
+        }
+    }
+}
+
+/// A sum of products, four of them side by side.
+#[inline(always)]
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (&a[..a.len().min(b.len())], &b[..a.len().min(b.len())]);
+    let (pairs, rest) = (a.chunks_exact(4).zip(b.chunks_exact(4)), a.len() / 4 * 4);
+    let mut sums = [0.0; 4];
+    for (a, b) in pairs {
+        (0..4).for_each(|lane| sums[lane] += a[lane] * b[lane]);
+    }
+    let tail: f64 = a[rest..].iter().zip(&b[rest..]).map(|(a, b)| a * b).sum();
+    (sums[0] + sums[2]) + (sums[1] + sums[3]) + tail
+}
+
+impl Covariance {
     /// Variance of what a row says of the unknowns.
     pub(super) fn of(&self, first: usize, slopes: &[f64], shared: &[f64]) -> f64 {
         let mut sum = 0.0;
         for (i, a) in slopes.iter().enumerate().filter(|(_, a)| **a != 0.0) {
             let own = &self.rows[(first + i) * self.band..][..self.band];
-            let after: f64 = own[1..].iter().zip(&slopes[i + 1..]).map(|(c, b)| c * b).sum();
+            let after = dot(&own[1..], &slopes[i + 1..]);
             let border = &self.border[(first + i) * self.shared..][..self.shared];
             let beside: f64 = border.iter().zip(shared).map(|(c, b)| c * b).sum();
             sum += a * (a * own[0] + 2.0 * (after + beside));
@@ -257,6 +297,7 @@ impl Covariance {
 }
 
 /// Cosine and sine that turn `(a, b)` into `(r, 0)`.
+#[inline(always)]
 fn rotation(a: f64, b: f64) -> (f64, f64) {
     let square = a * a + b * b;
     // Squares of tiny numbers vanish.
@@ -264,10 +305,12 @@ fn rotation(a: f64, b: f64) -> (f64, f64) {
     (a / r, b / r)
 }
 
+#[inline(always)]
 fn turned(cosine: f64, sine: f64, a: f64, b: f64) -> (f64, f64) {
     (cosine * a + sine * b, cosine * b - sine * a)
 }
 
+#[inline(always)]
 fn turn(cosine: f64, sine: f64, a: &mut [f64], b: &mut [f64]) {
     for (a, b) in a.iter_mut().zip(b) {
         (*a, *b) = turned(cosine, sine, *a, *b);
