@@ -61,8 +61,7 @@ fn halving(values: &mut [Complex<f64>], sign: f64) {
             values.swap(at, mirrored);
         }
     }
-    let waves: Vec<Complex<f64>> =
-        (0..count / 2).map(|k| turn(sign * 2.0 * PI * k as f64 / count as f64)).collect();
+    let waves: Vec<Complex<f64>> = (0..count / 2).map(|k| turn(sign * 2.0 * PI * k as f64 / count as f64)).collect();
     let mut half = 1;
     while half < count {
         let stride = count / (2 * half);
@@ -98,7 +97,8 @@ mod tests {
         for count in [1, 2, 3, 4, 7, 12, 64, 97, 200] {
             let values = record(count);
             for (mode, found) in cosine_powers(&values).into_iter().enumerate() {
-                let wave = |(at, value): (usize, &f64)| value * (PI * mode as f64 * (at as f64 + 0.5) / count as f64).cos();
+                let wave =
+                    |(at, value): (usize, &f64)| value * (PI * mode as f64 * (at as f64 + 0.5) / count as f64).cos();
                 let sum: f64 = values.iter().enumerate().map(wave).sum();
                 let exact = sum * sum * if mode == 0 { 1.0 } else { 2.0 } / count as f64;
                 assert!((found - exact).abs() < 1e-12 * count as f64, "{count}, {mode}: {found} {exact}");

@@ -14,6 +14,7 @@ pub mod kernel;
 pub mod layer;
 pub mod local;
 pub mod loss;
+pub mod memory;
 pub mod network;
 mod noise;
 pub mod peak;

@@ -60,8 +60,9 @@ mod tests {
     /// A grid of 40 by 30 squares, each with 25 dots.
     #[test]
     fn hidden_dots_are_left_out() {
-        let points: Vec<[f64; 2]> =
-            (0..200).flat_map(|i| (0..150).map(move |j| [0.1 + 0.2 * f64::from(i), 0.1 + 0.2 * f64::from(j)])).collect();
+        let points: Vec<[f64; 2]> = (0..200)
+            .flat_map(|i| (0..150).map(move |j| [0.1 + 0.2 * f64::from(i), 0.1 + 0.2 * f64::from(j)]))
+            .collect();
         assert_eq!(dots(&points, 2.0).len(), 40 * 30);
     }
 }

@@ -26,7 +26,9 @@ fn every_cube_keeps_its_share() {
     assert!(counts.values().all(|&count| count == 4));
     assert_eq!(
         cloud.warnings,
-        ["40000 of the cloud's 400000 points are used, one of 10 in each of 10000 cubes of 10.000 mm, which the answer is as fine as"]
+        [
+            "40000 of the cloud's 400000 points are used, one of 10 in each of 10000 cubes of 10.000 mm, which the answer is as fine as"
+        ]
     );
 }
 

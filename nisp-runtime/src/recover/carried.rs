@@ -11,7 +11,11 @@ use crate::solve::posterior::posterior;
 use crate::solve::prior::WeightPrior;
 use crate::splines::SplineSolution;
 
+/// Numbers of a block of error bars' derivatives: some megabytes.
+const TOGETHER: usize = 1 << 22;
+
 /// A head at some points, in the engine's units.
+#[derive(Clone)]
 pub(super) struct Values {
     pub(super) values: Vec<f64>,
     pub(super) deviations: Option<Vec<f64>>,
@@ -64,17 +68,26 @@ impl Carried for Network {
     fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
         let prior = self.prior.as_ref();
         let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
-        let known = curvature.and_then(|curvature| {
-            let (values, derivatives) = bound.sensitivities(self.architecture, &self.theta, points)?;
-            Some((values, self.distrust.bars(&posterior(&curvature, &derivatives))))
-        });
-        let Some((rows, bars)) = known else { return self.values(bound, points) };
-        let count = rows.len() / heads(bound).max(1);
-        let of = |head: usize| {
-            let own = |all: &[f64]| all[head * count..][..count].to_vec();
-            Values { values: own(&rows), deviations: Some(own(&bars.deviations)), by_prior: Some(own(&bars.by_prior)) }
-        };
-        (0..heads(bound)).map(of).collect()
+        let Some(curvature) = curvature else { return self.values(bound, points) };
+        // Derivatives of a point's heads by all parameters are many numbers: so many points at once.
+        let inputs = bound.problem.scene().schema.coordinates.len();
+        let block = inputs * (TOGETHER / (self.theta.len() * heads(bound)).max(1)).max(1);
+        let empty = Values { values: Vec::new(), deviations: Some(Vec::new()), by_prior: Some(Vec::new()) };
+        let mut all = vec![empty; heads(bound)];
+        for some in points.chunks(block) {
+            let Some((rows, derivatives)) = bound.sensitivities(self.architecture, &self.theta, some) else {
+                return self.values(bound, points);
+            };
+            let bars = self.distrust.bars(&posterior(&curvature, &derivatives));
+            let count = some.len() / inputs;
+            for (head, own) in all.iter_mut().enumerate() {
+                let part = head * count..(head + 1) * count;
+                own.values.extend_from_slice(&rows[part.clone()]);
+                own.deviations.iter_mut().for_each(|all| all.extend_from_slice(&bars.deviations[part.clone()]));
+                own.by_prior.iter_mut().for_each(|all| all.extend_from_slice(&bars.by_prior[part.clone()]));
+            }
+        }
+        all
     }
 
     fn learned(&mut self, _: &Bound) -> Vec<(f64, Option<f64>)> {

@@ -60,6 +60,7 @@ pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>)
     let others = match chosen {
         _ if !is_free => Vec::new(),
         Chosen::Local(_) => Vec::new(),
+        Chosen::Splines if most_rows(bound) > MANY => Vec::new(),
         Chosen::Splines => vec![network(seed, "a network instead of splines")],
         Chosen::Network if can_splines => {
             vec![Attempt { chosen: Chosen::Splines, seed, why: after("splines instead of a network") }]
@@ -83,6 +84,12 @@ fn of(bound: &Bound, settings: &Settings) -> (Chosen, String) {
     }
 }
 
+/// Rows of the longest record.
+fn most_rows(bound: &Bound) -> usize {
+    let groups = bound.problem.scene().schema.groups.iter().zip(&bound.coordinates);
+    groups.filter(|(group, _)| !group.columns.is_empty()).map(|(_, points)| points.len()).max().unwrap_or(0)
+}
+
 /// Splines where they can, but for a short record of what a source does over time: a source may set in with the record, in a
 /// layer that a network's stretched time resolves and splines smooth away.
 fn by_data(bound: &Bound) -> (Chosen, String) {
@@ -90,8 +97,7 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
     if let Some(what) = splines::refused(schema) {
         return (Chosen::Network, format!("splines over time do not do {what}"));
     }
-    let measured = schema.groups.iter().zip(&bound.coordinates).filter(|(group, _)| !group.columns.is_empty());
-    let rows = measured.map(|(_, points)| points.len()).max().unwrap_or(0);
+    let rows = most_rows(bound);
     if rows > MANY {
         return (Chosen::Splines, format!("{rows} rows are more than a network is quick with"));
     }

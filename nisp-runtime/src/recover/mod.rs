@@ -33,12 +33,13 @@ use choice::Chosen;
 use course::Course;
 
 use crate::local::{self, Local, LocalError};
+use crate::memory::Exceeded;
 use crate::noise;
 use crate::problem::{BindError, Bound, Problem};
 use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
-use crate::splines;
+use crate::splines::{self, SplineError};
 
 /// What is believed of the precision of weights before any row is seen: a network whose heads change by a few times their
 /// natural size. Worth so few parameters, it matters only where the data say next to nothing.
@@ -84,6 +85,9 @@ pub enum RecoverError {
     /// Splines over one coordinate that cannot do it.
     #[error("splines do not do {0}; choose a network")]
     Splines(&'static str),
+    /// More memory than there is.
+    #[error(transparent)]
+    Memory(#[from] Exceeded),
     /// Threads could not be started.
     #[error("cannot start {threads} threads: {reason}")]
     Threads {
@@ -92,6 +96,15 @@ pub enum RecoverError {
         /// What the system said.
         reason: String,
     },
+}
+
+impl From<SplineError> for RecoverError {
+    fn from(error: SplineError) -> Self {
+        match error {
+            SplineError::Fault(fault) => fault.into(),
+            SplineError::Memory(exceeded) => exceeded.into(),
+        }
+    }
 }
 
 /// What the caller sees while the solver runs.

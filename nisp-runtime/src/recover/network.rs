@@ -11,6 +11,7 @@ use super::undetermined::View;
 use super::{BELIEF, RecoverError, Solution, resolution, weigh};
 use crate::engine::Engine;
 use crate::kernel::Precision;
+use crate::memory;
 use crate::network::initialise;
 use crate::noise::{self, Noise};
 use crate::problem::{BindError, Bound};
@@ -30,7 +31,7 @@ use crate::solve::projection::{Projection, linear_parameters};
 const MOST_FOR_CURVATURE: usize = 4000;
 
 /// Steps that L-BFGS remembers.
-const MEMORY: usize = 20;
+pub(super) const MEMORY: usize = 20;
 
 /// Estimated distance of the loss from its minimum, relative to the loss, at which noisy data count as
 /// fitted: some hundredths of a logarithm of probability, which move the answer by a tenth of an error bar.
@@ -138,6 +139,8 @@ impl<'a> Fit<'a> {
         if !optimizer.fits(parameters, rows) {
             return Err(RecoverError::Size { optimizer: optimizer.name(), parameters, rows });
         }
+        let what = || format!("optimizer {} with {parameters} parameters and {rows} rows", optimizer.name());
+        memory::require(optimizer.bytes(parameters, rows), what, "choose a smaller width, or optimizer adam")?;
         Ok(optimizer)
     }
 

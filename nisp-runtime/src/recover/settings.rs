@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use super::network::MEMORY;
 use crate::local::{Local, Patches};
 use crate::network::{Architecture, Inputs};
 use crate::noise::Noise;
@@ -206,6 +207,21 @@ impl Optimizer {
             Self::GaussNewton => 2,
             _ => 100,
         }
+    }
+
+    /// Bytes that the method's vectors and matrices take, about.
+    pub(super) fn bytes(self, parameters: usize, rows: usize) -> f64 {
+        /// Vectors of a few methods that keep few, and gradients of a step's chunks.
+        const VECTORS: f64 = 32.0;
+        let (parameters, rows) = (parameters as f64, rows as f64);
+        let numbers = match self {
+            Self::Adam | Self::GaussNewton => VECTORS * parameters,
+            Self::Auto | Self::Lbfgs => (VECTORS + 2.0 * MEMORY as f64) * parameters,
+            Self::Broyden => (VECTORS + parameters) * parameters,
+            // The rows' derivatives, the normal matrix and its factor.
+            Self::Marquardt | Self::Projection | Self::Evidence => (VECTORS + rows + 2.0 * parameters) * parameters,
+        };
+        size_of::<f64>() as f64 * numbers
     }
 
     /// Whether the method's matrices can be worked with.

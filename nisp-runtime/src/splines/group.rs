@@ -122,8 +122,8 @@ impl Group {
         }
     }
 
-    /// Values of all rows, and their derivatives if `slopes`.
-    pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
+    /// Values of all rows, and their derivatives by jets and so many learned scalars where they are wanted.
+    pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: Option<usize>) -> Evaluated {
         let facts = self.facts(heads, theta);
         let points = Points {
             count: self.len(),
@@ -136,14 +136,17 @@ impl Group {
         };
         let mut rows = vec![0.0; self.schema.rows * self.stride];
         self.kernel.programs.residual(Isa::detect(), points, &mut rows);
-        let bars = |row: usize| {
+        let bars = |row: usize, learned: usize| {
             let mut seeds = vec![0.0; self.schema.rows * self.stride];
             seeds[row * self.stride..][..self.stride].fill(1.0);
             let mut bars = vec![0.0; (self.schema.jets.len() + scalars.len()) * self.stride];
             self.kernel.programs.adjoint(Isa::detect(), Points { seeds: &seeds, ..points }, &mut bars);
+            bars.truncate((self.schema.jets.len() + learned) * self.stride);
+            bars.shrink_to_fit();
             bars
         };
-        let bars = if slopes { (0..self.schema.rows).map(bars).collect() } else { Vec::new() };
+        let bars =
+            slopes.map(|learned| (0..self.schema.rows).map(|row| bars(row, learned)).collect()).unwrap_or_default();
         Evaluated { stride: self.stride, rows, bars }
     }
 
@@ -165,7 +168,10 @@ impl Group {
     }
 
     /// Places by cell, those that count: each cell with its places.
-    pub(super) fn by_cell<'a>(&'a self, counts: impl Fn(usize) -> bool) -> impl Iterator<Item = (usize, Vec<usize>)> + 'a {
+    pub(super) fn by_cell<'a>(
+        &'a self,
+        counts: impl Fn(usize) -> bool,
+    ) -> impl Iterator<Item = (usize, Vec<usize>)> + 'a {
         let mut order: Vec<usize> = (0..self.len()).filter(|&p| counts(p)).collect();
         order.sort_by_key(|&p| self.cells[p]);
         let mut order = order.into_iter().peekable();

@@ -18,7 +18,10 @@ mod weighed;
 
 use std::time::Instant;
 
+use thiserror::Error;
+
 use crate::facts::Answer;
+use crate::memory::{self, Exceeded};
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
@@ -59,6 +62,17 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
         (cells::degrees(schema).is_none(), "derivatives of such an order"),
     ];
     refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what)
+}
+
+/// Why splines cannot solve a problem.
+#[derive(Debug, Error)]
+pub(crate) enum SplineError {
+    /// Something that cannot be evaluated, or a state that does not fit.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+    /// Too many rows for the memory.
+    #[error(transparent)]
+    Memory(#[from] Exceeded),
 }
 
 /// A problem solved by splines.
@@ -112,9 +126,12 @@ pub(crate) fn solve(
     limits: Limits,
     from: Option<&state::State>,
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
-) -> Result<SplineSolution, Fault> {
+) -> Result<SplineSolution, SplineError> {
     let start = Instant::now();
     let breakpoints = cells::breakpoints(bound, noise);
+    let rows = bound.coordinates.iter().map(Vec::len).max().unwrap_or(0);
+    let what = || format!("splines over {} cells, for {rows} rows,", breakpoints.len() - 1);
+    memory::require(Solver::bytes(bound, &breakpoints), what, "give a part of the record, or fewer rows of it")?;
     let mut solver = Solver::over(bound, &breakpoints);
     let schema = bound.problem.scene().schema;
     let mut place = Place::first(solver.first(noise), solver.has_sources());

@@ -44,7 +44,8 @@ pub(super) fn breakpoints(bound: &Bound, noise: &Noise, all: Vec<f64>) -> Vec<f6
         let cells: Vec<f64> = chosen.iter().map(|&at| all[at]).collect();
         let mut coarse = vec![false; cells.len() - 1];
         columns.iter().for_each(|column| mark(column, &cells, &mut coarse));
-        let near = |cell: usize| coarse[cell.saturating_sub(BESIDE)..(cell + BESIDE + 1).min(coarse.len())].contains(&true);
+        let near =
+            |cell: usize| coarse[cell.saturating_sub(BESIDE)..(cell + BESIDE + 1).min(coarse.len())].contains(&true);
         let before = chosen.len();
         chosen = divided(&chosen, |cell| if near(cell) { 2 } else { 1 });
         if chosen.len() == before {

@@ -1,25 +1,29 @@
 //! The rows of a step in flat memory. Rows that see the same few unknowns are merged before they are kept, so that memory goes
 //! with the cells and not with the measurements.
 
-use super::triangle::{Row, Triangle};
+use super::triangle::{Row, Source, Triangle};
 
 /// Rows with their classes.
 pub(super) struct Rows {
     /// Unknowns that all rows share.
     shared: usize,
     kept: Vec<Kept>,
-    /// Slopes of a row, then those by the shared unknowns, row by row.
+    /// Slopes of a row that are not zero, then those by the shared unknowns, row by row.
     numbers: Vec<f64>,
+    /// Where in its row each of the numbers stands.
+    places: Vec<u16>,
 }
 
 /// Where a row's numbers are.
 struct Kept {
     first: usize,
     start: usize,
-    width: usize,
     value: f64,
-    class: usize,
-    count: usize,
+    count: u32,
+    /// Numbers that are kept, without the shared ones, and slopes that they stand for.
+    packed: u16,
+    width: u16,
+    class: u16,
 }
 
 /// A kept row: the class that it counts in, and for how many of the rows that were given.
@@ -32,7 +36,7 @@ pub(super) struct Counted<'a> {
 impl Rows {
     /// None yet.
     pub(super) fn new(shared: usize) -> Self {
-        Self { shared, kept: Vec::new(), numbers: Vec::new() }
+        Self { shared, kept: Vec::new(), numbers: Vec::new(), places: Vec::new() }
     }
 
     /// Keeps a row.
@@ -42,9 +46,15 @@ impl Rows {
 
     fn keep(&mut self, row: Row<'_>, class: usize, count: usize) {
         let start = self.numbers.len();
-        self.numbers.extend_from_slice(row.slopes);
+        for (at, slope) in row.slopes.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
+            self.numbers.push(*slope);
+            self.places.push(at as u16);
+        }
+        let (packed, width) = ((self.numbers.len() - start) as u16, row.slopes.len() as u16);
         self.numbers.extend_from_slice(row.shared);
-        self.kept.push(Kept { first: row.first, start, width: row.slopes.len(), value: row.value, class, count });
+        self.places.resize(self.numbers.len(), 0);
+        let (count, class) = (count as u32, class as u16);
+        self.kept.push(Kept { first: row.first, start, value: row.value, count, packed, width, class });
     }
 
     /// Keeps rows that all have the same unknowns, from `first` on. Where they are more than the unknowns that they see, they are
@@ -71,13 +81,41 @@ impl Rows {
         self.kept.sort_by_key(|kept| kept.first);
     }
 
-    /// All rows.
-    pub(super) fn iter(&self) -> impl Iterator<Item = Counted<'_>> {
-        self.kept.iter().map(|kept| {
-            let (slopes, shared) = self.numbers[kept.start..][..kept.width + self.shared].split_at(kept.width);
-            let row = Row { first: kept.first, slopes, shared, value: kept.value };
-            Counted { row, class: kept.class, count: kept.count }
-        })
+    /// All rows, one after the other.
+    pub(super) fn walk(&self) -> Walk<'_> {
+        Walk { rows: self, at: 0, slopes: Vec::new() }
+    }
+}
+
+/// A walk through rows, of which one at a time is unpacked.
+pub(super) struct Walk<'a> {
+    rows: &'a Rows,
+    at: usize,
+    slopes: Vec<f64>,
+}
+
+impl Walk<'_> {
+    /// The next row.
+    #[inline(always)]
+    pub(super) fn step(&mut self) -> Option<Counted<'_>> {
+        let kept = self.rows.kept.get(self.at)?;
+        self.at += 1;
+        let packed = kept.start..kept.start + usize::from(kept.packed);
+        self.slopes.clear();
+        self.slopes.resize(kept.width.into(), 0.0);
+        for (slope, &at) in self.rows.numbers[packed.clone()].iter().zip(&self.rows.places[packed.clone()]) {
+            self.slopes[usize::from(at)] = *slope;
+        }
+        let shared = &self.rows.numbers[packed.end..][..self.rows.shared];
+        let row = Row { first: kept.first, slopes: &self.slopes, shared, value: kept.value };
+        Some(Counted { row, class: kept.class.into(), count: kept.count as usize })
+    }
+}
+
+impl Source for Walk<'_> {
+    #[inline(always)]
+    fn next(&mut self) -> Option<Row<'_>> {
+        self.step().map(|counted| counted.row)
     }
 }
 
@@ -117,14 +155,17 @@ impl Bundle {
 mod tests {
     use super::*;
 
-    /// Half of the sum of squares of rows at some unknowns.
-    fn square(rows: &Rows, x: &[f64], shared: &[f64]) -> f64 {
-        let at = |counted: Counted<'_>| {
-            let row = counted.row;
+    /// The sum of squares of rows at some unknowns, how many they are and for how many they count, all in class 3.
+    fn summed(rows: &Rows, x: &[f64], shared: &[f64]) -> (f64, usize, usize) {
+        let (mut square, mut kept, mut given) = (0.0, 0, 0);
+        let mut walk = rows.walk();
+        while let Some(Counted { row, class, count }) = walk.step() {
+            assert_eq!(class, 3);
             let own: f64 = row.slopes.iter().zip(&x[row.first..]).map(|(a, x)| a * x).sum();
-            (own + row.shared.iter().zip(shared).map(|(a, x)| a * x).sum::<f64>() + row.value).powi(2)
-        };
-        rows.iter().map(at).sum()
+            square += (own + row.shared.iter().zip(shared).map(|(a, x)| a * x).sum::<f64>() + row.value).powi(2);
+            (kept, given) = (kept + 1, given + count);
+        }
+        (square, kept, given)
     }
 
     #[test]
@@ -141,13 +182,12 @@ mod tests {
         bundle.iter().for_each(|row| plain.push(row, 3));
         let mut merged = Rows::new(1);
         merged.push_all(&bundle, 3);
-        // Three unknowns, the shared one, and what is left.
-        assert_eq!(merged.iter().count(), 5);
-        assert_eq!(merged.iter().map(|counted| counted.count).sum::<usize>(), 50);
-        assert!(merged.iter().all(|counted| counted.class == 3));
         for (x, shared) in [([0.0; 6], [0.0]), ([0.0, 0.0, 1.5, 2.0, -0.3, 0.9], [-2.0])] {
-            let (found, exact) = (square(&merged, &x, &shared), square(&plain, &x, &shared));
+            let (found, kept, given) = summed(&merged, &x, &shared);
+            let (exact, all, _) = summed(&plain, &x, &shared);
             assert!((found / exact - 1.0).abs() < 1e-12, "{found} {exact}");
+            // Three unknowns, the shared one, and what is left.
+            assert_eq!((kept, all, given), (5, 50, 50));
         }
     }
 }

@@ -114,6 +114,25 @@ impl<'a> Solver<'a> {
         Self { bound, heads, groups, classes, roughness, sizes, order: REGRESS_ORDER, scalars, length, triangle }
     }
 
+    /// Bytes that splines over these cells take, about: the triangle and its inverse, a row for every measurement and equation
+    /// of a cell, and the splines at all places.
+    pub(super) fn bytes(bound: &Bound, breakpoints: &[f64]) -> f64 {
+        let schema = bound.problem.scene().schema;
+        let degrees = cells::degrees(schema).unwrap_or_default();
+        let (cells, shared) = ((breakpoints.len() - 1) as f64, bound.learned.len() as f64);
+        // Of all heads on a cell: as many as rows and the band are wide.
+        let functions = degrees.iter().map(|degree| (degree + 1) as f64).sum::<f64>();
+        let triangles = 3.0 * cells * degrees.len() as f64 * (functions + shared);
+        let groups = schema.groups.iter().zip(&bound.coordinates).map(|(group, points)| {
+            let is_measured = !group.columns.is_empty();
+            let places = if is_measured { points.len() as f64 } else { cells };
+            let own = if is_measured { functions / degrees.len() as f64 } else { functions };
+            let lines = group.jets.iter().map(|jet| (degrees[jet.head] + 1) as f64).sum::<f64>();
+            places * (lines + group.rows as f64 * (1.25 * own + group.jets.len() as f64 + shared + 4.0))
+        });
+        size_of::<f64>() as f64 * (triangles + groups.sum::<f64>())
+    }
+
     /// True if a source is sought.
     pub(super) fn has_sources(&self) -> bool {
         self.bound.problem.scene().schema.heads.iter().any(|head| head.source)
@@ -140,7 +159,7 @@ impl<'a> Solver<'a> {
                 });
             }
         }
-        classes.extend(schema.heads.iter().map(|_| rough()));
+        classes.extend(schema.heads.iter().map(|_| self.rough()));
         State {
             theta: vec![0.0; self.heads.len()],
             learned: vec![0.0; self.bound.learned.len()],
@@ -148,6 +167,14 @@ impl<'a> Solver<'a> {
             tolerance: LOOSE,
             step: 0,
         }
+    }
+
+    /// Rougher than anything that the cells can hold, until the first step says how rough: coefficients that change their sign
+    /// from one to the next.
+    fn rough(&self) -> Class {
+        let cells = self.heads.bases[0].cells() as f64;
+        let size = self.length.sqrt() * (2.0 * cells / self.length).powi(REGRESS_ORDER as i32);
+        Class::open(size.max(1e9), Guess { size: 0.0, count: 0.0, least: 1e-12 })
     }
 
     /// Holds the noise of a state at what differences of the data say, and at a share of their spread at least.
@@ -213,7 +240,7 @@ impl<'a> Solver<'a> {
             if group.len() == 0 || !group.schema.terms.iter().any(takes_part) {
                 continue;
             }
-            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, true);
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, Some(shared));
             for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| takes_part(term)) {
                 let loss = self.bound.losses[at][number];
                 let lacking = self.bound.lacking(at, term);
@@ -293,7 +320,7 @@ impl<'a> Solver<'a> {
         self.set_learned(&state.learned);
         let mut sum = 0.0;
         for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
-            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, None);
             for (number, term) in group.schema.terms.iter().enumerate() {
                 if phase == Phase::Regress && term.kind != TermKind::Observation {
                     continue;
@@ -315,12 +342,13 @@ impl<'a> Solver<'a> {
         self.size(state);
         let (rows, before) = self.rows(state, phase)?;
         self.triangle.clear();
-        self.triangle.add_all(rows.iter().map(|counted| counted.row));
+        self.triangle.add_all(rows.walk());
         let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
         let covariance = self.triangle.covariance();
         let mut tallies = vec![Tally::default(); state.classes.len() + 1];
         let mut loss = 0.0;
-        for Counted { row, class, count } in rows.iter() {
+        let mut walk = rows.walk();
+        while let Some(Counted { row, class, count }) = walk.step() {
             let tally = &mut tallies[class];
             let along: f64 = row.slopes.iter().zip(&step[row.first..]).map(|(a, x)| a * x).sum();
             let beside: f64 = row.shared.iter().zip(&shared).map(|(a, x)| a * x).sum();
@@ -426,7 +454,7 @@ impl<'a> Solver<'a> {
     pub(super) fn misfits(&mut self, state: &State) -> Vec<Vec<(Vec<f64>, Option<f64>)>> {
         self.set_learned(&state.learned);
         let of = |(at, group): (usize, &Group)| {
-            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, None);
             let terms = group.schema.terms.iter().enumerate().map(|(number, term)| {
                 let rows = term.first..term.first + term.rows;
                 let lacking = self.bound.lacking(at, term);
@@ -466,9 +494,4 @@ impl State {
         self.step = saved.counter(&format!("{prefix}step"))?;
         Ok(())
     }
-}
-
-/// Rough beyond measure, until the first step says how rough.
-fn rough() -> Class {
-    Class::open(1e9, Guess { size: 0.0, count: 0.0, least: 1e-12 })
 }

@@ -16,6 +16,12 @@ pub(super) struct Row<'a> {
     pub(super) value: f64,
 }
 
+/// Gives rows one at a time.
+pub(super) trait Source {
+    /// The next row.
+    fn next(&mut self) -> Option<Row<'_>>;
+}
+
 /// The triangle `R` of `min |J x + r|`, and `-Q^T r` beside it.
 #[derive(Clone, Debug)]
 pub(super) struct Triangle {
@@ -75,7 +81,7 @@ impl Triangle {
     }
 
     /// Turns rows in. Cheap as long as they come in the order of their first unknown.
-    pub(super) fn add_all<'r>(&mut self, rows: impl Iterator<Item = Row<'r>>) {
+    pub(super) fn add_all(&mut self, rows: impl Source) {
         simd::dispatch::<f64, _>(Isa::detect(), TurnIn { triangle: self, rows });
     }
 
@@ -251,17 +257,17 @@ impl Triangle {
 }
 
 /// Rows that are turned into a triangle, compiled for every instruction set.
-struct TurnIn<'t, I> {
+struct TurnIn<'t, S> {
     triangle: &'t mut Triangle,
-    rows: I,
+    rows: S,
 }
 
-impl<'r, I: Iterator<Item = Row<'r>>> Kernel<f64> for TurnIn<'_, I> {
+impl<S: Source> Kernel<f64> for TurnIn<'_, S> {
     type Output = ();
 
     #[inline(always)]
-    fn run<V: Simd<Elem = f64>>(self) {
-        for row in self.rows {
+    fn run<V: Simd<Elem = f64>>(mut self) {
+        while let Some(row) = self.rows.next() {
             self.triangle.add(row);
         }
     }
@@ -338,8 +344,10 @@ mod tests {
     #[test]
     fn a_triangle_is_the_root_of_the_normal_equations() {
         let rows = rows();
-        let rows: Vec<Row<'_>> =
-            rows.iter().map(|(first, slopes, shared, value)| Row { first: *first, slopes, shared, value: *value }).collect();
+        let rows: Vec<Row<'_>> = rows
+            .iter()
+            .map(|(first, slopes, shared, value)| Row { first: *first, slopes, shared, value: *value })
+            .collect();
         let mut triangle = Triangle::new(10, 3, 2);
         rows.iter().for_each(|&row| {
             triangle.add(row);
