@@ -1,7 +1,7 @@
 //! What an answer's surface leaves of a cloud: no more than the cloud's own roughness, and without a pattern.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, U3, Vector3};
 use std::num::NonZero;
 
 use super::{Check, root_mean_square};
@@ -18,9 +18,13 @@ const PATTERN: f64 = 5.0;
 const SLIGHT: f64 = 0.02;
 /// Neighbours whose misfits are compared.
 const NEIGHBOURS: NonZero<usize> = NonZero::new(5).unwrap();
-/// Neighbours that a smooth piece of surface is fitted to, and how many such pieces are.
+/// Neighbours that a smooth piece of surface is fitted to, at least, and how many such pieces are.
 const AROUND: NonZero<usize> = NonZero::new(24).unwrap();
 const PLACES: usize = 400;
+/// Where a piece is thicker than this share of its width, its plane is not told from its noise: more neighbours are taken.
+const THICK: f64 = 0.3;
+/// So many times as many.
+const WIDER: NonZero<usize> = NonZero::new(4).unwrap();
 
 /// Checks of one cloud.
 pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
@@ -102,13 +106,12 @@ fn roughness(points: &[[f64; 3]], places: &[[f64; 3]], tree: &ImmutableKdTree<f6
     }
     let step = points.len().div_ceil(PLACES);
     let left = places.iter().step_by(step).filter_map(|centre| {
-        let near = tree.query(centre).nearest_n::<SquaredEuclidean<f64>>(AROUND).execute();
-        let near: Vec<Vector3<f64>> = near.iter().map(|found| Vector3::from(points[found.item as usize])).collect();
-        let middle = near.iter().sum::<Vector3<f64>>() / near.len() as f64;
-        let spread: Matrix3<f64> = near.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
-        let axes = spread.symmetric_eigen();
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
+        let (near, middle, axes, order) = std::iter::successors(Some(AROUND), |around| around.checked_mul(WIDER))
+            .map(|around| piece(points, tree, centre, around))
+            .find(|(near, _, axes, order)| {
+                let width = |i: usize| axes.eigenvalues[order[i]].max(0.0).sqrt();
+                width(2) <= THICK * width(1) || WIDER.get() * near.len() > points.len()
+            })?;
         let axis = |i: usize| axes.eigenvectors.column(order[i]).into_owned();
         let reach = axes.eigenvalues[order[0]].max(f64::MIN_POSITIVE).sqrt();
         let local: Vec<[f64; 3]> = near.iter().map(|p| [0, 1, 2].map(|i| (p - middle).dot(&axis(i)))).collect();
@@ -122,6 +125,23 @@ fn roughness(points: &[[f64; 3]], places: &[[f64; 3]], tree: &ImmutableKdTree<f6
         Some((heights - design * fit).norm_squared() / (near.len() - UNKNOWNS) as f64)
     });
     Some(middle(left.collect()).sqrt())
+}
+
+/// Neighbours of a place, their middle, and the axes of their spread with their order from the longest to the shortest.
+fn piece(
+    points: &[[f64; 3]],
+    tree: &ImmutableKdTree<f64, 3>,
+    centre: &[f64; 3],
+    around: NonZero<usize>,
+) -> (Vec<Vector3<f64>>, Vector3<f64>, SymmetricEigen<f64, U3>, [usize; 3]) {
+    let near = tree.query(centre).nearest_n::<SquaredEuclidean<f64>>(around).execute();
+    let near: Vec<Vector3<f64>> = near.iter().map(|found| Vector3::from(points[found.item as usize])).collect();
+    let middle = near.iter().sum::<Vector3<f64>>() / near.len() as f64;
+    let spread: Matrix3<f64> = near.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
+    let axes = spread.symmetric_eigen();
+    let mut order = [0, 1, 2];
+    order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
+    (near, middle, axes, order)
 }
 
 fn middle(mut values: Vec<f64>) -> f64 {
@@ -158,6 +178,15 @@ mod tests {
             let found = roughness(&points, &places, &tree).unwrap();
             assert!((found - noise).abs() < 0.15 * noise + 1e-4, "{found} for {noise}");
         }
+    }
+
+    /// Twenty-four of three thousand points are no wider than noise of a tenth is thick.
+    #[test]
+    fn roughness_of_a_dense_cloud_is_its_noise_too() {
+        let (points, places, _) = cap(0.1);
+        let tree = ImmutableKdTree::new_from_slice(&places).unwrap();
+        let found = roughness(&points, &places, &tree).unwrap();
+        assert!((found / 0.1 - 1.0).abs() < 0.15, "{found}");
     }
 
     #[test]
