@@ -15,13 +15,13 @@ use crate::error::PrepareError;
 use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::series::Series;
 use crate::truth::Truth;
-use crate::{membrane, pendulum, plate, rlc, sponge, tables};
+use crate::{bubble, membrane, pendulum, plate, rlc, sponge, tables};
 
 /// The equations that are shipped.
 // Inlined, the scenes would have every crate that asks compile all kernels again.
 #[inline(never)]
-pub fn catalogue() -> [Entry; 5] {
-    [pendulum::entry(), rlc::entry(), plate::entry(), membrane::entry(), sponge::entry()]
+pub fn catalogue() -> [Entry; 6] {
+    [pendulum::entry(), rlc::entry(), plate::entry(), membrane::entry(), bubble::entry(), sponge::entry()]
 }
 
 /// An equation and how it is bound to data.

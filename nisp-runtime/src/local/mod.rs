@@ -238,6 +238,16 @@ impl LocalSolution {
         points.chunks_exact(inputs).flat_map(row).collect()
     }
 
+    /// Standard deviation of a weighted sum of a head's values at points in the engine's units, flat.
+    pub(crate) fn deviation_of_sum(&self, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
+        let draws = self.deviations.coefficients.len();
+        let mut sums = vec![0.0; draws];
+        for (row, weight) in self.spread(head, points).chunks_exact(draws.max(1)).zip(weights) {
+            vector::add_scaled(&mut sums, *weight, row);
+        }
+        (draws > 0).then(|| vector::norm(&sums))
+    }
+
     /// The same of the learned scalars' parameters.
     pub(crate) fn spread_of_learned(&self) -> Vec<f64> {
         let draws = &self.deviations.learned;

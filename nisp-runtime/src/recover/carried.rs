@@ -31,6 +31,10 @@ pub(super) trait Carried: Send {
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values>;
     /// Every head at points, with error bars where there are any.
     fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values>;
+    /// Standard deviation of a weighted sum of a head's values at points; none where they are not known jointly.
+    fn deviation_of_sum(&self, _: &Bound, _head: usize, _points: &[f64], _weights: &[f64]) -> Option<f64> {
+        None
+    }
     /// Learned scalars and their standard deviations.
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)>;
     /// How far the rows of a term are off, and what they count as known to.
@@ -121,6 +125,10 @@ impl Carried for LocalSolution {
         let mut all = self.values(bound, points);
         all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.deviations(head, &inward));
         all
+    }
+
+    fn deviation_of_sum(&self, bound: &Bound, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
+        LocalSolution::deviation_of_sum(self, head, &bound.inward(points), weights)
     }
 
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {

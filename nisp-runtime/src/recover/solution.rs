@@ -321,6 +321,16 @@ impl Solution {
         self.estimates(known)
     }
 
+    /// Standard deviation of a weighted sum of a head's values, such as a net force, in the head's declared unit times that of
+    /// the weights: errors of neighbours go together, so that it does not follow from theirs. `points` are in declared units,
+    /// point by point, with a weight each. None where [`Solution::evaluate_with_errors`] gives none, and for carriers other
+    /// than local functions.
+    pub fn deviation_of_sum(&self, head: &str, points: &[f64], weights: &[f64]) -> Option<f64> {
+        let at = self.scene().heads.iter().position(|own| own.name == head).filter(|_| self.has_bars())?;
+        let outward = self.bound.system.outward(&self.scene().heads[at].unit);
+        Some(outward * self.carried.deviation_of_sum(&self.bound, at, points, weights)?)
+    }
+
     fn estimates(&self, known: Vec<Values>) -> Vec<Estimate> {
         let of = |(head, known): (&schema::Head, Values)| {
             let outward = self.bound.system.outward(&head.unit);
