@@ -10,7 +10,7 @@ use nisp::{Problem, SceneRef};
 use nisp_data::cloud::LengthUnit;
 use nisp_data::nearest_name;
 
-use crate::contact::Contact;
+use crate::contact::{Contact, References};
 use crate::error::PrepareError;
 use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::series::Series;
@@ -99,6 +99,7 @@ impl Entry {
             ("sample", request.sample.is_some()),
             ("cloud", request.cloud.is_some()),
             ("unit", request.unit.is_some()),
+            ("calibration", request.calibration.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {
             Some((option, _)) => {
@@ -123,6 +124,8 @@ pub struct Request {
     pub sample: Option<PathBuf>,
     /// Which of the sample's clouds, counted from zero.
     pub cloud: Option<usize>,
+    /// Calibration of the sensor that saw the cloud.
+    pub calibration: Option<PathBuf>,
     /// Unit of the cloud's coordinates; metres if not given.
     pub unit: Option<LengthUnit>,
     /// Truth to score against.
@@ -178,6 +181,8 @@ pub struct Prepared {
     pub local: Option<Local>,
     /// The body whose surface was seen, where the data are a cloud.
     pub contact: Option<Contact>,
+    /// What a calibration is made from, where the scene makes one.
+    pub references: Option<References>,
 }
 
 /// A measured column.

@@ -90,6 +90,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         rival: None,
         local: None,
         contact: None,
+        references: None,
     })
 }
 

@@ -58,9 +58,37 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N", default_value_t = 2, value_parser = size, allow_negative_numbers = true)]
         layers: usize,
     },
+    /// Learn a sensor's pose, size and stiffness from frames that nothing touches, and what the theory leaves.
+    Calibrate(Frames),
     /// Recover a source; without options, from the repository's own noisy example.
     #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
     Solve(Box<Options>),
+}
+
+/// Frames to calibrate from.
+#[derive(Group)]
+pub(crate) struct Frames {
+    /// Equation of the sensor: bubble.
+    #[arg(value_name = "SCENE")]
+    pub(crate) equation: String,
+    /// Point cloud of the sensor with nothing touching it. Repeatable; all at the same pressure.
+    #[arg(long, value_name = "FILE", required = true)]
+    pub(crate) reference: Vec<PathBuf>,
+    /// What is known, in declared units: gauge pressure p, semi-axes a and b in metres, thickness t. Repeatable.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = value)]
+    pub(crate) set: Vec<(String, f64)>,
+    /// Unit of the clouds' coordinates: m, cm, mm, um or in [default: m].
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) unit: Option<LengthUnit>,
+    /// Wall time for each law of the material.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) budget: f64,
+    /// Folder for calibration.toml and a picture of the deviation; made if it is not there.
+    #[arg(long, value_name = "DIR", default_value = "nisp-calibration")]
+    pub(crate) out: PathBuf,
+    /// One JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// How and from what to solve.
@@ -81,6 +109,9 @@ pub(crate) struct Options {
     /// Which of the sample's clouds, counted from 0 [default: 0].
     #[arg(long, value_name = "K", allow_negative_numbers = true, help_heading = DATA)]
     pub(crate) cloud: Option<usize>,
+    /// Of a bubble: calibration.toml of `nisp calibrate`, for the sensor that saw the cloud.
+    #[arg(long, value_name = "FILE", help_heading = DATA)]
+    pub(crate) calibration: Option<PathBuf>,
     /// Of a text file: table of the points at which the answer is wanted [default: where it was measured, or a grid].
     #[arg(long, value_name = "FILE", conflicts_with = "grid", help_heading = DATA)]
     pub(crate) at: Option<PathBuf>,
@@ -177,6 +208,9 @@ Examples:
   nisp solve membrane --scene identify --data bubble.ply --unit mm --set p=5670
       your cloud; nothing touches the membrane, and its modulus is wanted
   nisp solve sponge --data sides.ply --set force_z=2.4 --set force_x=0 ...
+  nisp calibrate bubble --reference free.npy --set p=5256 --set a=0.057 --set b=0.04 --out sensor, then
+  nisp solve bubble --calibration sensor/calibration.toml --data frame.npy --set p=5690
+      a soft bubble seen by a depth camera: first its free shape, then a force
   nisp new cooling, then nisp solve cooling/cooling.pde --data cooling/data.csv
       an equation of your own, in a text file
   nisp solve heat.pde --data probes=probes.csv --data wall=wall.csv --grid 100x50

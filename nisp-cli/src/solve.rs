@@ -26,6 +26,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         data: options.data.clone(),
         sample: options.sample.clone(),
         cloud: options.cloud,
+        calibration: options.calibration.clone(),
         unit: options.unit,
         wanted: wanted(options),
         truth: options.truth.clone(),

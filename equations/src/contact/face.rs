@@ -41,7 +41,7 @@ impl Face {
 
     /// The area vector that every point stands for where the points are at `places`: a third of those of its triangles,
     /// so that a sum over points integrates what is linear between them.
-    fn area_vectors(&self, places: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(super) fn area_vectors(&self, places: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut vectors = vec![[0.0; 3]; places.len()];
         for corners in &self.triangles {
             let [p, q, r] = corners.map(|corner| places[corner]);

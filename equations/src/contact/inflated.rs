@@ -3,11 +3,12 @@
 use nisp::local::{Local, Patches};
 use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
-use serde::Deserialize;
+use serde::{Deserialize, Serialize};
 
 use super::given::{Given, Number, Positive, Size};
+use super::calibration::{CALIBRATES, Calibration};
 use super::observed::{Example, Observed, Sample};
-use super::{Contact, ContactRival, Face, Load, Rule, Surface, bind_cloud};
+use super::{Contact, ContactRival, Face, Load, References, Rule, Surface, bind_cloud};
 use crate::PrepareError;
 use crate::catalogue::{Entry, Prepared, Request};
 use crate::truth::{Headers, Truth};
@@ -34,16 +35,23 @@ struct Tables {
     membrane: Membrane,
 }
 
-#[derive(Deserialize)]
-struct Membrane {
-    a_m: Option<f64>,
-    b_m: Option<f64>,
-    thickness_m: Option<f64>,
+/// Material and size of a membrane, in the keys of samples and calibrations and in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Membrane {
+    /// Semi-axis of the rim along `alpha`.
+    pub a_m: Option<f64>,
+    /// Semi-axis of the rim along `beta`.
+    pub b_m: Option<f64>,
+    /// Thickness.
+    pub thickness_m: Option<f64>,
+    /// Young's modulus.
     #[serde(rename = "young_Pa")]
-    young: Option<f64>,
-    poisson: Option<f64>,
+    pub young: Option<f64>,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+    /// Gauge pressure.
     #[serde(rename = "gauge_pressure_Pa")]
-    pressure: Option<f64>,
+    pub pressure: Option<f64>,
 }
 
 /// Semi-axes of the paper's membrane.
@@ -73,16 +81,33 @@ const ALSO: &[(&str, &str)] = &[("alpha", "x"), ("beta", "y")];
 
 /// Reads what is asked for and binds a scene to it.
 pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
-    let scene = entry.scene(request.scene.as_deref())?;
+    if request.calibration.is_some() && (request.data.is_empty() || request.sample.is_some()) {
+        let instead = "it goes with a frame of the calibrated sensor, and without --sample: --data FRAME";
+        return Err(PrepareError::Option { entry: entry.name, option: "calibration", instead });
+    }
+    let calibration = request.calibration.as_deref().map(Calibration::read).transpose()?;
+    let mut scene = entry.scene(request.scene.as_deref())?;
+    if let Some(calibration) = &calibration {
+        scene = entry.scene(Some(&calibration.scene_for(scene.schema.name)))?;
+    }
     let schema = scene.schema;
+    let calibrates = schema.name.starts_with(CALIBRATES);
     let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
-    let observed = Observed::read(entry, request, if pressure.is_some() { &theory.pressed } else { &theory.inflated })?;
+    let example = if pressure.is_some() { &theory.pressed } else { &theory.inflated };
+    let mut observed = if calibrates { Observed::all(request)? } else { Observed::read(entry, request, example)? };
+    if let Some(calibration) = &calibration {
+        calibration.correct(&mut observed.cloud);
+    }
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
     let mut problem = given.problem(POSITIVE)?;
     let assumed = given.assumed()?;
     let (a, b) = (given.size("a")?, given.size("b")?);
+    let references = calibrates.then(|| References::new(&mut observed.cloud, request, &given)).transpose()?;
+    if calibrates && given.says("E").is_none() {
+        problem.set_parameter("E", stiff(&given)?)?;
+    }
     observed.require_of("membrane", [-a, -b, 0.0], [a, b, b])?;
 
     let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
@@ -105,7 +130,8 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     bind_cloud(&mut problem, &observed.cloud)?;
     if local.is_some() {
         // The camera looks up, and its depth is what is noisy.
-        problem.set_view("surface", "cloud", [0.0, 0.0, 1.0])?;
+        let cloud = if calibrates { "posed" } else { "cloud" };
+        problem.set_view("surface", cloud, [0.0, 0.0, 1.0])?;
     }
 
     let headers = Headers { chosen: &request.columns, rather: theory.rather, also: ALSO };
@@ -136,7 +162,17 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         rival: None,
         local,
         contact: Some(contact),
+        references,
     })
+}
+
+/// A modulus in pascals at which the gas stretches the membrane by a twentieth: steps towards a softer one that bulges as the
+/// cloud does are safe, while one that is too soft may have no equilibrium.
+fn stiff(given: &Given<'_>) -> Result<f64, PrepareError> {
+    const STRETCH: f64 = 0.05;
+    let value = |name| Ok::<_, PrepareError>(given.of(name)?.unwrap_or(f64::NAN));
+    // The tension of a sphere over the shorter axis is half the pressure times its radius.
+    Ok(0.5 * value("p")? * value("b")? / (STRETCH * value("t")?))
 }
 
 fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {

@@ -5,6 +5,9 @@
 //! [`ContactScore`] judge it.
 
 mod bubble;
+mod calibrate;
+mod calibration;
+mod deviation;
 mod face;
 mod given;
 mod inflated;
@@ -12,14 +15,20 @@ mod membrane;
 pub mod metrics;
 mod observed;
 mod patches;
+mod pose;
 mod score;
 mod sponge;
 
 pub(crate) use bubble::prepare as prepare_bubble;
+pub use calibrate::References;
+pub use calibration::{Calibration, Quality};
+pub use deviation::Deviation;
 pub use face::{Face, Load};
+pub use inflated::Membrane;
 pub(crate) use membrane::prepare as prepare_membrane;
 pub use metrics::Rule;
 pub use patches::Patch;
+pub use pose::Pose;
 pub use score::{Against, ContactScore, TrueContact, Values};
 pub(crate) use sponge::prepare as prepare_sponge;
 

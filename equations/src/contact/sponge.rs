@@ -167,6 +167,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         rival: None,
         local,
         contact: Some(contact),
+        references: None,
     })
 }
 

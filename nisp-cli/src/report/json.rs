@@ -181,6 +181,7 @@ fn settings(solution: &Solution, run: &Run<'_>) -> Value {
         "data": files_of(&options.data),
         "sample": options.sample.as_deref().map(text),
         "cloud": options.cloud,
+        "calibration": options.calibration.as_deref().map(text),
         "unit": options.unit.map(LengthUnit::symbol),
         "truth": options.truth.as_deref().map(text),
         "columns": pairs(&options.column),

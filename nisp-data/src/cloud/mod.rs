@@ -7,6 +7,7 @@ mod pcd;
 mod ply;
 mod stl;
 mod text;
+mod thin;
 
 use std::path::Path;
 

@@ -28,8 +28,12 @@ impl LearnedMap {
         }
     }
 
-    /// What a size is multiplied by that goes with a power of the value, and the derivative of its logarithm by the value.
+    /// What a size is multiplied by that goes with a power of the value, and the derivative of its logarithm by the value. One
+    /// that may be zero or change its sign is no measure of sizes.
     pub(crate) fn grown(self, theta: f64, power: f64) -> (f64, f64) {
+        if power == 0.0 || !self.is_positive() {
+            return (1.0, 0.0);
+        }
         let value = self.at(theta).0;
         ((value / self.at(0.0).0).powf(power), power / value)
     }
