@@ -66,7 +66,11 @@ pub(crate) fn calibrate(options: &Frames) -> Result<ExitCode, String> {
         note(&format!("{}: {error}\n", crate::NAME));
         return Ok(ExitCode::from(NOT_WRITTEN));
     }
-    print(&if options.json { object(best, &fits, &warnings, options) } else { table(best, &fits, &warnings, options) })?;
+    print(&if options.json {
+        object(best, &fits, &warnings, options)
+    } else {
+        table(best, &fits, &warnings, options)
+    })?;
     Ok(ExitCode::SUCCESS)
 }
 
@@ -140,7 +144,8 @@ fn table(best: &Fit, fits: &[Fit], warnings: &[String], options: &Frames) -> Str
     let found = best.calibration.found;
     line(format!("{} from {} frames, {} points", best.calibration.equation, found.frames, found.points));
     for fit in fits {
-        let (misfit, mark) = (1e3 * fit.calibration.found.misfit_m, if std::ptr::eq(fit, best) { ", taken" } else { "" });
+        let (misfit, mark) =
+            (1e3 * fit.calibration.found.misfit_m, if std::ptr::eq(fit, best) { ", taken" } else { "" });
         let name = fit.calibration.scene.as_str();
         line(format!("  {name:18} leaves {misfit:.3} mm after {:.1} s{mark}", fit.solution.wall_s));
     }

@@ -84,8 +84,13 @@ impl References {
         let known = |value: Option<f64>, what| value.ok_or_else(|| missing(what));
         let (a, b) = (known(self.given.a_m, "semi-axis a")?, known(self.given.b_m, "semi-axis b")?);
         let pressure = known(self.given.pressure, "gauge pressure")?;
-        let membrane =
-            Membrane { a_m: Some(widen[0] * a), b_m: Some(widen[1] * b), young: Some(of("E")?), pressure: None, ..self.given };
+        let membrane = Membrane {
+            a_m: Some(widen[0] * a),
+            b_m: Some(widen[1] * b),
+            young: Some(of("E")?),
+            pressure: None,
+            ..self.given
+        };
         let offs = self.offs(contact, values, widen, &pose).ok_or_else(|| missing("surface"))??;
         let deviation = Deviation::fit(&offs, [widen[0] * a, widen[1] * b])?;
         let left = offs.iter().map(|off| {
@@ -115,12 +120,16 @@ impl References {
         pose: &Pose,
     ) -> Option<Result<Vec<Off>, DataError>> {
         let face = &contact.face;
-        let [Some(x), Some(y), Some(z)] = contact.displacement.map(|name| values(name, &face.points)) else { return None };
+        let [Some(x), Some(y), Some(z)] = contact.displacement.map(|name| values(name, &face.points)) else {
+            return None;
+        };
         let moved: Vec<[f64; 3]> = contact
             .deformed(&face.points, [&x, &y, &z])
             .into_iter()
             .zip(face.at_rest())
-            .map(|(place, rest)| std::array::from_fn(|axis| place[axis] + widen.get(axis).map_or(0.0, |w| (w - 1.0) * rest[axis])))
+            .map(|(place, rest)| {
+                std::array::from_fn(|axis| place[axis] + widen.get(axis).map_or(0.0, |w| (w - 1.0) * rest[axis]))
+            })
             .collect();
         let normals = face.area_vectors(&moved);
         let tree = match Nearest::new(&moved) {

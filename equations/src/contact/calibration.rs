@@ -70,7 +70,8 @@ impl Calibration {
     /// # Errors
     /// Numbers that have no text.
     pub fn text(&self) -> Result<String, toml::ser::Error> {
-        let about = "# What free frames told of a sensor, for --calibration. Lengths are in metres, angles in radians.\n";
+        let about =
+            "# What free frames told of a sensor, for --calibration. Lengths are in metres, angles in radians.\n";
         Ok(format!("{about}{}", toml::to_string(self)?))
     }
 

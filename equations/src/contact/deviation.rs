@@ -71,9 +71,7 @@ impl Deviation {
         let ((column, s), (row, t)) = (place(x, self.x_m, columns), place(y, self.y_m, rows));
         let corner = |down: usize, right: usize| self.vectors_m[row + down][column + right];
         let [a, b, c, d] = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
-        std::array::from_fn(|i| {
-            (1.0 - t) * ((1.0 - s) * a[i] + s * b[i]) + t * ((1.0 - s) * c[i] + s * d[i])
-        })
+        std::array::from_fn(|i| (1.0 - t) * ((1.0 - s) * a[i] + s * b[i]) + t * ((1.0 - s) * c[i] + s * d[i]))
     }
 
     /// Places of all nodes over the plane of the rim, and the deviation's length at each: above zero where the surface was seen
@@ -86,7 +84,8 @@ impl Deviation {
         let node = |(row, vectors): (usize, &Vec<[f64; 3]>)| -> Vec<([f64; 2], f64)> {
             let y = along(self.y_m, row, rows);
             let own = vectors.iter().enumerate();
-            own.map(|(at, v)| ([along(self.x_m, at, vectors.len()), y], super::face::length(*v).copysign(v[2]))).collect()
+            own.map(|(at, v)| ([along(self.x_m, at, vectors.len()), y], super::face::length(*v).copysign(v[2])))
+                .collect()
         };
         self.vectors_m.iter().enumerate().flat_map(node).unzip()
     }

@@ -5,8 +5,8 @@ use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use serde::{Deserialize, Serialize};
 
-use super::given::{Given, Number, Positive, Size};
 use super::calibration::{CALIBRATES, Calibration};
+use super::given::{Given, Number, Positive, Size};
 use super::observed::{Example, Observed, Sample};
 use super::{Contact, ContactRival, Face, Load, References, Rule, Surface, bind_cloud};
 use crate::PrepareError;
@@ -113,7 +113,8 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
     let level = given.of("p")?.filter(|_| pressure.is_some());
     let patches = level.map(|level| Patches { level, ..PATCHES });
-    let cells = if patches.is_some() { CELLS_FOR_PATCHES } else { LOCAL.cells };
+    // What a calibration leaves must not be the error of a coarser lattice than later frames are solved on.
+    let cells = if patches.is_some() || calibrates { CELLS_FOR_PATCHES } else { LOCAL.cells };
     let local = (!request.network).then_some(Local { cells, patches, ..LOCAL });
     let (counts, sampling) = if local.is_some() { (LOCAL_POINTS, Sampling::Grid) } else { (POINTS, Sampling::Sobol) };
     for group in schema.groups {
@@ -128,10 +129,14 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         problem.set_group(group.name, points, Vec::new())?;
     }
     bind_cloud(&mut problem, &observed.cloud)?;
-    if local.is_some() {
+    match &calibration {
+        // What was taken off a point may be off by as much as it is where the surface is pressed into another shape.
+        Some(calibration) => problem.set_tolerance("surface", "cloud", calibration.found.misfit_m)?,
         // The camera looks up, and its depth is what is noisy.
-        let cloud = if calibrates { "posed" } else { "cloud" };
-        problem.set_view("surface", cloud, [0.0, 0.0, 1.0])?;
+        None if local.is_some() => {
+            problem.set_view("surface", if calibrates { "posed" } else { "cloud" }, [0.0, 0.0, 1.0])?;
+        }
+        None => {}
     }
 
     let headers = Headers { chosen: &request.columns, rather: theory.rather, also: ALSO };

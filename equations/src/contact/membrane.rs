@@ -61,4 +61,3 @@ fn rival(given: &Given<'_>, observed: &Observed, axes: [f64; 2]) -> Result<Conta
     };
     Ok(ContactRival { name: "spline of the cloud", pressure: Box::new(pressure) })
 }
-

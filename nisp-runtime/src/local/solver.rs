@@ -1,5 +1,6 @@
 //! A problem on its lattices: what is set up once, before any step.
 
+use super::course::LEAST_DAMPING;
 use super::group::Group;
 use super::heads::Heads;
 use super::lattice::Lattice;
@@ -27,6 +28,8 @@ pub(super) struct Solver<'a> {
     pub(super) scalars: Vec<f64>,
     /// Size of the base lattice's cells, the largest.
     pub(super) cell: f64,
+    /// Stiffness against the next step.
+    pub(super) damping: f64,
 }
 
 impl<'a> Solver<'a> {
@@ -60,7 +63,8 @@ impl<'a> Solver<'a> {
                     continue;
                 }
                 let view = bound.view(at, term.name);
-                let counting = Counting::of(term, bound.losses[at][index], bound.sizes[at][index]);
+                let counting =
+                    Counting::of(term, bound.losses[at][index], bound.sizes[at][index], bound.tolerance(at, term));
                 surfaces.push(Surface::new(at, term, cloud, view, flat, inputs, (cell, counting)));
             }
             groups.push(group);
@@ -68,7 +72,8 @@ impl<'a> Solver<'a> {
         let together = together(&heads, &base, settings.tests, bound);
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         let scalars = bound.scalars.clone();
-        let mut solver = Self { bound, settings, heads, groups, surfaces, normal, scalars, cell };
+        let mut solver =
+            Self { bound, settings, heads, groups, surfaces, normal, scalars, cell, damping: LEAST_DAMPING };
         solver.set_learned(&vec![0.0; bound.learned.len()]);
         Ok(solver)
     }

@@ -502,6 +502,12 @@ impl Bound {
         self.problem.groups[group].as_ref()?.view(term)
     }
 
+    /// How far a term's cloud may be off over whole regions, if that is known.
+    pub(crate) fn tolerance(&self, group: usize, term: &schema::Term) -> Option<f64> {
+        let declared = self.problem.groups[group].as_ref()?.tolerance(term.name)?;
+        Some(declared * self.system.inward(&term.unit))
+    }
+
     /// Points given in declared units, in the engine's.
     pub(crate) fn inward(&self, points: &[f64]) -> Vec<f64> {
         inward_points(self.problem.scene().schema, &self.system, points)
