@@ -34,8 +34,8 @@ const RESTING: f64 = 1e-3;
 const ROUGHLY: f64 = 0.1;
 const COARSE_STEPS: u64 = 4;
 /// Stiffness against a step of every field's coefficient, in tolerances over natural sizes: the least, at which what rows tell
-/// is not slowed, and the most.
-pub(super) const LEAST_DAMPING: f64 = 1.0;
+/// is hardly slowed, and the most.
+pub(super) const LEAST_DAMPING: f64 = 0.1;
 const MOST_DAMPING: f64 = 1e4;
 /// What damping is multiplied by when a step fails, and divided by when one does not.
 const STRONGER: f64 = 10.0;
@@ -160,7 +160,8 @@ impl Solver<'_> {
             }
             let (steps, small) = if coarse { (COARSE_STEPS, ROUGHLY) } else { (CONVEX_STEPS + 1, CONVERGED) };
             let resting = learned_change(&before, &state) < RESTING;
-            let settled = resting && gain.abs() < SETTLED * rows as f64;
+            let still = if coarse { 0.1 * SETTLED } else { SETTLED };
+            let settled = resting && gain.abs() < still * rows as f64;
             if iteration + skipped > steps && (change < small || settled) {
                 status = Status::Converged;
                 break;
@@ -176,8 +177,8 @@ impl Solver<'_> {
         Ok(End { state, status, iterations: stage.before + iteration, loss, warnings, factor, longest, checkpoint })
     }
 
-    /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it: coefficients that hardly
-    /// any row sees stay where they are, and a step that leads far uphill is taken again with more damping.
+    /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it: coefficients that
+    /// hardly any row sees stay where they are, and a step that leads far uphill is taken again with more damping.
     pub(super) fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, Found), LocalError> {
         let regress = iteration == 0;
         self.find_feet(&state.theta, &state.learned);
@@ -186,8 +187,7 @@ impl Solver<'_> {
         let (loss, rows, probes) = self.assemble(state, noise, phase)?;
         let before = loss + self.penalty(state, noise, phase == Phase::Concave);
         let fields: Vec<usize> = self.fields().flatten().collect();
-        let mut damping = 0.0;
-        let mut wanted = self.damping;
+        let (mut damping, mut wanted) = (0.0, self.damping);
         let (next, after, factor) = loop {
             fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
             damping = wanted;
