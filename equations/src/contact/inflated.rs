@@ -25,9 +25,12 @@ pub(super) struct Theory {
     pub(super) rule: fn(f64) -> Rule,
     /// What the truth's files call things, see [`Headers`].
     pub(super) rather: &'static [(&'static str, &'static str)],
-    /// A classical way to the pressure, for these semi-axes in metres.
-    pub(super) rival: Option<fn(&Given<'_>, &Observed, [f64; 2]) -> Result<ContactRival, PrepareError>>,
+    /// A classical way to the pressure.
+    pub(super) rival: Option<Rival>,
 }
+
+/// A way to a [`ContactRival`], for these semi-axes in metres.
+type Rival = fn(&Given<'_>, &Observed, [f64; 2]) -> Result<ContactRival, PrepareError>;
 
 /// A membrane in a sample, in SI units.
 #[derive(Deserialize)]

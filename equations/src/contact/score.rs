@@ -201,7 +201,7 @@ mod tests {
         let (contact, truth) = body();
         let nothing = |_: &str, at: &[f64]| Some(vec![0.0; at.len() / 2]);
         let score = contact.score(&nothing, Some(&truth)).unwrap();
-        let against = score.against.unwrap();
+        let against = score.against.as_ref().unwrap();
         assert_eq!((score.magnitude(), against.iou, against.patch_chamfer_mm2), (0.0, 0.0, None));
         assert!(score.patches.is_empty());
         assert_eq!(contact.score(&nothing, None).unwrap().against, None);

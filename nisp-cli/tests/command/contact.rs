@@ -195,7 +195,7 @@ fn local_functions_find_the_patch_and_the_modulus() {
         assert_eq!(ran.code, Some(0), "{}", ran.stderr);
         object(&ran.stdout)
     };
-    let contact = answer("membrane --iterations 14");
+    let contact = answer("membrane --iterations 24");
     assert_eq!(contact["optimizer"], "gauss-newton");
     let of = |name: &str| contact["errors"][name].as_f64().unwrap();
     assert!(of("iou") > 0.7, "{}", contact["errors"]);

@@ -187,7 +187,7 @@ impl Solver<'_> {
         let (loss, rows, probes) = self.assemble(state, noise, phase)?;
         let before = loss + self.penalty(state, noise, phase == Phase::Concave);
         let fields: Vec<usize> = self.fields().flatten().collect();
-        let (mut damping, mut wanted) = (0.0, self.damping);
+        let (mut damping, mut wanted) = (0.0, state.damping);
         let (next, after, factor) = loop {
             fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
             damping = wanted;
@@ -197,7 +197,8 @@ impl Solver<'_> {
             // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
             let largest = fields.iter().map(|&at| step[at].abs()).fold(0.0, f64::max);
             let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
-            let mut next = State { noise, used, ..state.clone() };
+            let calmer = (damping / STRONGER).max(LEAST_DAMPING);
+            let mut next = State { noise, used, damping: calmer, ..state.clone() };
             next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
             next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
             let after = self.loss(&next, noise) + self.penalty(&next, noise, phase == Phase::Concave);
@@ -206,7 +207,6 @@ impl Solver<'_> {
             }
             wanted *= STRONGER;
         };
-        self.damping = (damping / STRONGER).max(LEAST_DAMPING);
         Ok((next, Found { loss, gain: before - after, rows, factor }))
     }
 

@@ -28,8 +28,6 @@ pub(super) struct Solver<'a> {
     pub(super) scalars: Vec<f64>,
     /// Size of the base lattice's cells, the largest.
     pub(super) cell: f64,
-    /// Stiffness against the next step.
-    pub(super) damping: f64,
 }
 
 impl<'a> Solver<'a> {
@@ -72,8 +70,7 @@ impl<'a> Solver<'a> {
         let together = together(&heads, &base, settings.tests, bound);
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         let scalars = bound.scalars.clone();
-        let mut solver =
-            Self { bound, settings, heads, groups, surfaces, normal, scalars, cell, damping: LEAST_DAMPING };
+        let mut solver = Self { bound, settings, heads, groups, surfaces, normal, scalars, cell };
         solver.set_learned(&vec![0.0; bound.learned.len()]);
         Ok(solver)
     }
@@ -85,6 +82,7 @@ impl<'a> Solver<'a> {
             learned: vec![0.0; self.bound.learned.len()],
             noise: self.cell,
             used: 0.0,
+            damping: LEAST_DAMPING,
         };
         self.place(&state, 0)
     }
