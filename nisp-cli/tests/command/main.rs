@@ -3,6 +3,7 @@
 mod bad_cloud;
 mod bad_input;
 mod common;
+mod bubble;
 mod contact;
 mod contract;
 mod folders;
