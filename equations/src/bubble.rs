@@ -58,15 +58,20 @@ nisp::pde! {
             widen_a in 0.5 .. 2 = 1,
             /// semi-axis along `beta` over the one that was given
             widen_b in 0.5 .. 2 = 1,
-            /// where the rim's middle is in the cloud's frame
+            /// where the rim's middle is in the cloud's frame, along x
             shift_x [mm] = 0,
+            /// the same along y
             shift_y [mm] = 0,
+            /// the same along z
             shift_z [mm] = 0,
-            /// turns of the rim in the cloud's frame: about x first, then y, then z
+            /// turn of the rim in the cloud's frame, about x first
             turn_x [rad] = 0,
+            /// then about y
             turn_y [rad] = 0,
+            /// then about z
             turn_z [rad] = 0;
 
+        // Slopes of the place on the surface, and the metric: over the rim that was given, widened.
         let x_a = 1 + d(u, alpha) / widen_a;
         let y_a = d(v, alpha) / widen_a;
         let z_a = d(w, alpha) / widen_a;
@@ -76,11 +81,13 @@ nisp::pde! {
         let C_aa = stretch^2 * (x_a^2 + y_a^2 + z_a^2);
         let C_bb = stretch^2 * (x_b^2 + y_b^2 + z_b^2);
         let C_ab = stretch^2 * (x_a * x_b + y_a * y_b + z_a * z_b);
+        // The normal, as long as the deformed area over that at rest.
         let n_x = y_a * z_b - z_a * y_b;
         let n_y = z_a * x_b - x_a * z_b;
         let n_z = x_a * y_b - y_a * x_b;
 
         on interior {
+            // The linear law in Green's strains (St. Venant-Kirchhoff): second Piola-Kirchhoff forces.
             let stiffness = E * t / (1 - nu^2) / 2;
             let S_aa = stiffness * (C_aa - 1 + nu * (C_bb - 1));
             let S_bb = stiffness * (C_bb - 1 + nu * (C_aa - 1));
@@ -91,6 +98,7 @@ nisp::pde! {
                 + (p - f) * n_y == 0;
             balance_z: d(S_aa * z_a + S_ab * z_b, alpha) / widen_a + d(S_ab * z_a + S_bb * z_b, beta) / widen_b
                 + (p - f) * n_z == 0;
+            // Incompressible rubber (neo-Hooke), whose thickness shrinks as its area grows.
             let shear = E * t / 3;
             let det = C_aa * C_bb - C_ab^2;
             let R_aa = shear * (1 - C_bb / det^2);
@@ -105,6 +113,7 @@ nisp::pde! {
         }
         on surface {
             cloud: chamfer [alpha + u, beta + v, w];
+            // The same in the cloud's frame.
             let x = widen_a * alpha + u;
             let y = widen_b * beta + v;
             let y_x = y * cos(turn_x) - w * sin(turn_x);
@@ -120,7 +129,9 @@ nisp::pde! {
         on rim { clamp: u == 0, v == 0, w == 0; no_contact: f == 0; }
 
         /// The contact pressure, from a cloud of the pressed bubble.
-        scene contact { without interior.rubber_x; without interior.rubber_y; without interior.rubber_z; without surface.posed; }
+        scene contact {
+            without interior.rubber_x; without interior.rubber_y; without interior.rubber_z; without surface.posed;
+        }
         /// Young's modulus, from a cloud of the inflated bubble that nothing touches.
         scene identify {
             f = 0;
@@ -142,14 +153,16 @@ nisp::pde! {
         /// Modulus, semi-axes and pose of the rim, from clouds of the inflated bubble that nothing touches.
         scene calibrate {
             f = 0;
-            learn E, widen_a within 0.03, widen_b within 0.03, shift_x within 2, shift_y within 2, shift_z within 2, turn_x within 0.03, turn_y within 0.03, turn_z within 0.03;
+            learn E, widen_a within 0.03, widen_b within 0.03, shift_x within 2, shift_y within 2, shift_z within 2,
+                turn_x within 0.03, turn_y within 0.03, turn_z within 0.03;
             without interior.rubber_x; without interior.rubber_y; without interior.rubber_z; without surface.cloud;
             without rim.no_contact;
         }
-        /// The same of rubber (neo-Hookean, incompressible).
+        /// Modulus, semi-axes and pose of the rim of a bubble of rubber (neo-Hookean, incompressible).
         scene calibrate_rubber {
             f = 0;
-            learn E, widen_a within 0.03, widen_b within 0.03, shift_x within 2, shift_y within 2, shift_z within 2, turn_x within 0.03, turn_y within 0.03, turn_z within 0.03;
+            learn E, widen_a within 0.03, widen_b within 0.03, shift_x within 2, shift_y within 2, shift_z within 2,
+                turn_x within 0.03, turn_y within 0.03, turn_z within 0.03;
             without interior.balance_x; without interior.balance_y; without interior.balance_z; without surface.cloud;
             without rim.no_contact;
         }
