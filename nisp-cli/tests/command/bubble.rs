@@ -79,10 +79,8 @@ fn a_calibrated_sensor_finds_the_force() {
     let place = Place::new();
     seen(&place, "large_inflated_1_cloud_0.ply", "free.csv");
     seen(&place, "large_sphere_d35_cloud_0.ply", "pressed.csv");
-    let sensor = answer(
-        &place,
-        "calibrate bubble --reference free.csv --set p=5400 --set a=0.061 --set b=0.0395 --out sensor",
-    );
+    let sensor =
+        answer(&place, "calibrate bubble --reference free.csv --set p=5400 --set a=0.061 --set b=0.0395 --out sensor");
     assert_eq!(sensor["scene"], "calibrate", "the samples' law is linear: {sensor}");
     for learned in sensor["learned"].as_array().unwrap() {
         let truth = match learned["name"].as_str().unwrap() {

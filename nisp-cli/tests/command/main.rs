@@ -2,8 +2,8 @@
 
 mod bad_cloud;
 mod bad_input;
-mod common;
 mod bubble;
+mod common;
 mod contact;
 mod contract;
 mod folders;
