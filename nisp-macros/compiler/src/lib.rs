@@ -32,8 +32,9 @@ use proc_macro2::TokenStream;
 
 /// Compiles a `pde!` invocation to the module that replaces it, or to every error found in it.
 pub fn compile(tokens: TokenStream) -> TokenStream {
+    let text = tokens.to_string();
     match analyse(tokens) {
-        Ok((model, plan)) => code::emit(&model, &plan),
+        Ok((model, plan)) => code::emit(&model, &plan, &text),
         Err(Failure { errors, model }) => {
             let mut tokens = errors.into_compile_errors();
             tokens.extend(model.as_deref().map(code::skeleton));
