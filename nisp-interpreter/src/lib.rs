@@ -22,6 +22,7 @@
 //! ```
 
 mod affine;
+mod answer;
 mod block;
 mod hidden;
 mod layers;
@@ -40,6 +41,7 @@ use nisp_runtime::kernel::{GroupKernel, Kernels, SceneRef};
 use nisp_runtime::real::Real;
 use thiserror::Error;
 
+pub use answer::{OpenError, ask, open};
 use programs::InterpretedPrograms;
 use rules::InterpretedLayers;
 pub use text::Mistake;
@@ -74,8 +76,11 @@ pub fn read(text: &str, name: &str) -> Result<Equation, Mistakes> {
         Mistakes(errors.faults().iter().map(|fault| Mistake::new(fault, text)).collect())
     })?;
     let kept: &'static str = String::leak(text.into());
-    let scenes =
-        plan.scenes.iter().zip(&model.scenes).map(|(scene, declared)| interpret((&model, kept), &plan, scene, declared));
+    let scenes = plan
+        .scenes
+        .iter()
+        .zip(&model.scenes)
+        .map(|(scene, declared)| interpret((&model, kept), &plan, scene, declared));
     let warnings = model.warnings.iter().map(|(message, span)| {
         let fault = nisp_compiler::error::Fault { place: (*span).into(), message: message.clone() };
         Mistake::new(&fault, text)

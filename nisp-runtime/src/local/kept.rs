@@ -126,7 +126,8 @@ impl KeptLattices {
             let (cells, full) = (state.indices(&name("cells"))?, state.indices(&name("functions"))?);
             let degree = state.counter(&name("degree"))? as usize;
             let wrong = || Fault::state(name("lattice"));
-            let is_sound = cells.len() == inputs && inputs <= MOST_COORDINATES && degree <= super::refuse::HIGHEST_DEGREE;
+            let is_sound =
+                cells.len() == inputs && inputs <= MOST_COORDINATES && degree <= super::refuse::HIGHEST_DEGREE;
             let size = cells.iter().try_fold(1_usize, |size, n| size.checked_mul(n + degree));
             let is_small = size.is_some_and(|size| size <= MOST_FUNCTIONS);
             if !is_sound || !is_small || cells.contains(&0) {

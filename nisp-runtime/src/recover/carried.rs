@@ -69,7 +69,8 @@ impl Carried for Network {
         let prior = self.prior.as_ref();
         let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
         let known = curvature.and_then(|curvature| {
-            let (values, derivatives) = bound.frame().sensitivities(self.architecture, &self.theta, &bound.inward(points))?;
+            let (values, derivatives) =
+                bound.frame().sensitivities(self.architecture, &self.theta, &bound.inward(points))?;
             Some((values, self.distrust.bars(&posterior(&curvature, &derivatives))))
         });
         let Some((rows, bars)) = known else { return self.values(bound, points) };

@@ -57,7 +57,11 @@ impl Extent {
     pub(crate) fn contains(&self, point: &[f64]) -> bool {
         let along = self.ranges.iter().zip(&self.slack).zip(point);
         let is_in_range = along.clone().all(|(([low, high], slack), x)| (low - slack..=high + slack).contains(x));
-        is_in_range && self.hulls.iter().all(|hull| hull.contains(hull.axes.map(|a| point[a]), hull.axes.map(|a| self.slack[a])))
+        is_in_range
+            && self
+                .hulls
+                .iter()
+                .all(|hull| hull.contains(hull.axes.map(|a| point[a]), hull.axes.map(|a| self.slack[a])))
     }
 
     pub(crate) fn save(&self, state: State) -> State {

@@ -87,6 +87,9 @@ pub enum SavedError {
         /// What it reads.
         reads: String,
     },
+    /// A parameter that no condition reads, so that it was never given.
+    #[error("`{0}` has no value: no condition of the scene reads it, and it is declared without one")]
+    NoValue(String),
     /// A derivative that the carrier does not have.
     #[error(
         "`{name}` needs a derivative of order {order} of `{head}`, and splines of degree {degree} carry it: order {} is the highest",

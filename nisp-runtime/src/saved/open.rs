@@ -46,6 +46,11 @@ impl OpenAnswer {
         self.frame.scene.schema
     }
 
+    /// The text of its equation.
+    pub fn text(&self) -> &'static str {
+        self.frame.scene.text
+    }
+
     /// The same answer asked for more: `scene` has the same quantities and further rows among its outputs.
     ///
     /// # Errors
@@ -87,7 +92,11 @@ impl OpenAnswer {
         let schema = self.scene();
         let Outputs { values, deviations } = self.kept.outputs(&self.frame, &self.frame.inward(points));
         let count = points.len() / schema.coordinates.len().max(1);
-        let rows = schema.outputs.terms.iter().flat_map(|term| (term.first..term.first + term.rows).map(move |row| (term, row)));
+        let rows = schema
+            .outputs
+            .terms
+            .iter()
+            .flat_map(|term| (term.first..term.first + term.rows).map(move |row| (term, row)));
         let estimate = |(term, row): (&schema::Term, usize)| {
             let outward = self.frame.system.outward(&term.unit);
             let own = |all: &[f64]| all[row * count..][..count].iter().map(|x| x * outward).collect::<Vec<f64>>();
@@ -160,9 +169,12 @@ fn asked_frame(frame: &Frame, scene: SceneRef) -> Result<Frame, SavedError> {
     let names = |schema: &schema::Scene| schema.heads.iter().map(|head| head.name).collect::<Vec<_>>();
     if let Some(reads) = names(schema).into_iter().find(|name| !names(own).contains(name)) {
         let head = schema.heads.iter().position(|head| head.name == reads);
-        let reader = schema.outputs.terms.iter().rev().find(|term| {
-            term.jets.iter().any(|&jet| Some(schema.outputs.jets[jet].head) == head)
-        });
+        let reader = schema
+            .outputs
+            .terms
+            .iter()
+            .rev()
+            .find(|term| term.jets.iter().any(|&jet| Some(schema.outputs.jets[jet].head) == head));
         return Err(SavedError::Absent { name: reader.map_or(reads, |term| term.name).into(), reads: reads.into() });
     }
     let size = |scalar: &schema::Scalar| frame.system.size(&scalar.unit);
@@ -177,7 +189,7 @@ fn asked_frame(frame: &Frame, scene: SceneRef) -> Result<Frame, SavedError> {
             (None, Origin::SideScale { .. }) => Ok(1.0),
             (None, Origin::HeadScale(head)) => Ok(frame.scaling.scale[head]),
             (None, Origin::Given(None) | Origin::Learned { .. }) => {
-                Err(SavedError::Absent { name: scalar.name.into(), reads: scalar.name.into() })
+                Err(SavedError::NoValue(scalar.name.into()))
             }
         }
     };

@@ -159,7 +159,9 @@ impl Kept for KeptSplines {
             let [rows, border, corner] = spread.covariance.parts();
             let parts = [("rows", rows), ("border", border), ("corner", corner)];
             let own = [("theta", &spread.theta[..]), ("learned", &spread.learned)];
-            own.into_iter().chain(parts).fold(state, |state, (name, part)| state.with(&format!("spread {at} {name}"), part))
+            own.into_iter()
+                .chain(parts)
+                .fold(state, |state, (name, part)| state.with(&format!("spread {at} {name}"), part))
         })
     }
 }

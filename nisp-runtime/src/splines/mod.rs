@@ -146,7 +146,9 @@ pub(crate) fn solve(
             solver.order = ORDERS[order];
             solver.doubt_roughness(&mut state);
             match solver.step(&state, Phase::Solve)? {
-                Some(found) => spreads.push(Spread { theta: state.theta, learned: state.learned, covariance: found.covariance }),
+                Some(found) => {
+                    spreads.push(Spread { theta: state.theta, learned: state.learned, covariance: found.covariance })
+                }
                 None => status = Status::NotConverged,
             }
         }

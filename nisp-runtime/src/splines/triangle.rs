@@ -211,7 +211,12 @@ impl Triangle {
 impl Covariance {
     /// Over the unknowns of so many coefficients, from the numbers of [`Covariance::parts`]; nothing if there are not as many
     /// as there should be.
-    pub(super) fn restored(len: usize, band: usize, shared: usize, [rows, border, corner]: [Vec<f64>; 3]) -> Option<Self> {
+    pub(super) fn restored(
+        len: usize,
+        band: usize,
+        shared: usize,
+        [rows, border, corner]: [Vec<f64>; 3],
+    ) -> Option<Self> {
         let is_whole = (rows.len(), border.len(), corner.len()) == (len * band, len * shared, shared * shared);
         is_whole.then_some(Self { band, shared, rows, border, corner })
     }
