@@ -4,6 +4,7 @@ mod args;
 mod check;
 mod checkpoint;
 mod config;
+mod eval;
 mod explain;
 mod list;
 mod new;
@@ -35,6 +36,7 @@ fn main() -> ExitCode {
         Parsed::Asked(Args { command: Command::Explain { equation, scene, width, layers } }) => {
             explain::explain(&equation, scene.as_deref(), Architecture::modified(width, layers))
         }
+        Parsed::Asked(Args { command: Command::Eval(options) }) => eval::eval(&options),
         Parsed::Asked(Args { command: Command::Solve(options) }) => solve::solve(&options),
     });
     end(NAME, result)

@@ -44,7 +44,7 @@ use thiserror::Error;
 pub use answer::{OpenError, ask, open};
 use programs::InterpretedPrograms;
 use rules::InterpretedLayers;
-pub use text::Mistake;
+pub use text::{Mistake, is_same_equation};
 
 /// An equation that was read.
 #[derive(Clone, Debug)]

@@ -188,9 +188,7 @@ fn asked_frame(frame: &Frame, scene: SceneRef) -> Result<Frame, SavedError> {
             (None, Origin::Literal(value) | Origin::Given(Some(value))) => Ok(value / size(scalar)),
             (None, Origin::SideScale { .. }) => Ok(1.0),
             (None, Origin::HeadScale(head)) => Ok(frame.scaling.scale[head]),
-            (None, Origin::Given(None) | Origin::Learned { .. }) => {
-                Err(SavedError::NoValue(scalar.name.into()))
-            }
+            (None, Origin::Given(None) | Origin::Learned { .. }) => Err(SavedError::NoValue(scalar.name.into())),
         }
     };
     let scalars = schema.scalars.iter().map(same).collect::<Result<Vec<f64>, SavedError>>()?;
