@@ -72,18 +72,13 @@ pub(crate) struct EvalOptions {
     /// The answer: answer.nisp in the folder of its results.
     #[arg(value_name = "ANSWER")]
     pub(crate) answer: PathBuf,
-    /// Table of the points, with a column for each coordinate.
-    #[arg(long, value_name = "FILE", required_unless_present = "grid", conflicts_with = "grid")]
-    pub(crate) at: Option<PathBuf>,
-    /// Points along each coordinate over the domain, for instance 200x100.
-    #[arg(long, value_name = "NxM", value_parser = grid)]
-    pub(crate) grid: Option<Grid>,
-    /// Expressions in the names of the equation, separated by commas, for instance 'w, d(w, x, 2), M_x' [default: all
-    /// fields and sources].
+    #[command(flatten)]
+    pub(crate) place: Place,
+    /// Expressions with commas between them, for instance 'w, d(w, x, 2), M_x' [default: fields and sources].
     #[arg(long, value_name = "EXPRESSIONS")]
     pub(crate) of: Option<String>,
-    /// Header of the column that holds a coordinate, for instance t=when. Repeatable.
-    #[arg(long, value_name = "NAME=HEADER", value_parser = pair)]
+    /// Header of the column of --at that holds a coordinate, for instance t=when. Repeatable.
+    #[arg(long, value_name = "NAME=HEADER", value_parser = pair, requires = "at")]
     pub(crate) column: Vec<(String, String)>,
     /// CSV to write, instead of standard output.
     #[arg(long, value_name = "FILE")]
@@ -234,7 +229,7 @@ Results, in the folder of --out:
   source.csv  the recovered source with its standard deviation, where the method gives one
   state.csv   the fields, likewise
   plot.svg    both, with measurements, truth and a band of two standard deviations
-  answer.nisp the answer itself, for `nisp eval`: values anywhere, derivatives and declared expressions, without the data
+  answer.nisp the answer itself: `nisp eval` reads values, derivatives and declared expressions anywhere, without data
   For contact also surface.svg, surface.vtu and surface.ply: the deformed surface, coloured by pressure.
   All are written together at the end, or none; files of those names are replaced. One run at a time has the folder.
   If it cannot be written any more, they go to a new one beside it or to the system's temporary folder, and the last
@@ -254,6 +249,18 @@ Exit codes:
   3  not converged, or interrupted (status `not_converged`); the best state was written
   4  the results could not be written to the folder of --out, or to standard output";
 
+/// Where an answer is read.
+#[derive(Group)]
+#[group(required = true, multiple = false)]
+pub(crate) struct Place {
+    /// Table of the points, with a column for each coordinate.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) at: Option<PathBuf>,
+    /// Points along each coordinate over the domain, for instance 200x100.
+    #[arg(long, value_name = "NxM", value_parser = grid)]
+    pub(crate) grid: Option<Grid>,
+}
+
 const EVAL_SEE_HELP: &str =
     "Exit codes: 0 read, 2 bad input, 3 the answer is not to be relied on, 4 not written. `--help` has examples.";
 
@@ -264,16 +271,16 @@ Examples:
   nisp eval beam/answer.nisp --at gauges.csv --of 'w, M, d(M, x)' --out moments.csv
       deflection, bending moment (a `let M = ...;` of the equation) and shear force where the gauges are
 
-Answers hold the text of their equation, parameters, scales, and what carries fields and sources with what is known of it;
-no data are needed. Every `let` outside of groups has a name that --of takes, and so have parameters; derivatives are
-written as in equations. Fields, sources and parameters are given in their declared units and everything else in SI units,
+An answer holds the text of its equation, parameters, scales, and what carries fields and sources with what is known of
+it; no data are needed. --of takes the name of every `let` outside of groups and of every parameter; derivatives are
+written as in equations. Fields, sources and parameters come in their declared units and everything else in SI units,
 which stand in the headers.
 
-A column NAME_sd holds the standard deviation, where the answer has any: those of derivatives and expressions follow from
-the same posterior, to first order.
+A column NAME_sd holds the standard deviation, where the answer has any. Those of derivatives and expressions follow
+from the same posterior, to first order.
 
-Points outside of those that the answer was found from (their range along each coordinate, and their convex hull over every
-two) have no value: their cells are NaN (null in --json), and their number goes to standard error.
+The answer holds between the points that it was found from: in their range along each coordinate, and in their convex
+hull over every two. Other points have no value, NaN (null in --json), and their number goes to standard error.
 
 Exit codes:
   0  read

@@ -8,8 +8,11 @@ use crate::args::EvalOptions;
 /// The points of a table, or of a grid as far as the answer holds there; point by point, in declared units.
 pub(super) fn wanted(answer: &OpenAnswer, options: &EvalOptions) -> Result<Vec<f64>, String> {
     let coordinates = answer.scene().coordinates;
-    if let Some(path) = &options.at {
-        let table = Table::read(path).map_err(|error| error.to_string())?;
+    if let Some((name, _)) = options.column.iter().find(|(name, _)| coordinates.iter().all(|c| c.name != name)) {
+        return Err(format!("--column: there is no coordinate `{name}`; there are: {}", names(answer)));
+    }
+    if let Some(path) = &options.place.at {
+        let table = Table::read_places(path).map_err(|error| error.to_string())?;
         let axis = |name: &str, unit: &str| {
             let chosen = options.column.iter().rev().find(|(own, _)| own == name);
             match chosen {
@@ -21,13 +24,17 @@ pub(super) fn wanted(answer: &OpenAnswer, options: &EvalOptions) -> Result<Vec<f
         let axes = axes.map_err(|error| error.to_string())?;
         return Ok((0..table.rows()).flat_map(|row| axes.iter().map(move |axis| axis[row])).collect());
     }
-    let counts = options.grid.as_ref().map_or(&[][..], |grid| &grid.0);
+    let counts = options.place.grid.as_ref().map_or(&[][..], |grid| &grid.0);
     if counts.len() != coordinates.len() {
-        let names: Vec<&str> = coordinates.iter().map(|c| c.name).collect();
-        let (given, names) = (counts.len(), names.join(", "));
+        let (given, names) = (counts.len(), names(answer));
         return Err(format!("--grid has {given} numbers; give one for each of the coordinates {names}"));
     }
     Ok(grid(answer, counts))
+}
+
+/// The names of the coordinates.
+fn names(answer: &OpenAnswer) -> String {
+    answer.scene().coordinates.iter().map(|c| c.name).collect::<Vec<_>>().join(", ")
 }
 
 /// A grid over the ranges of the answer, the first coordinate running fastest; a single point along a coordinate lies in the
@@ -38,9 +45,9 @@ fn grid(answer: &OpenAnswer, counts: &[usize]) -> Vec<f64> {
         let along = counts.iter().zip(answer.ranges()).map(|(count, [low, high])| {
             let at = rest % count;
             rest /= count;
-            let share = if *count > 1 { at as f64 / (count - 1) as f64 } else { 0.5 };
+            let (before, after) = if *count > 1 { (at, count - 1 - at) } else { (1, 1) };
             // Exact at both ends.
-            (1.0 - share) * low + share * high
+            (after as f64 * low + before as f64 * high) / (before + after) as f64
         });
         along.collect()
     };

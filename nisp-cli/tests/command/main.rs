@@ -5,6 +5,7 @@ mod bad_input;
 mod common;
 mod contact;
 mod contract;
+mod eval;
 mod folders;
 mod gaps;
 mod interrupt;
