@@ -63,6 +63,31 @@ pub(crate) enum Command {
     /// Recover a source; without options, from the repository's own noisy example.
     #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
     Solve(Box<Options>),
+    /// Read values, derivatives and declared expressions from a saved answer, without its data.
+    #[command(after_help = EVAL_SEE_HELP, after_long_help = EVAL_TEACH)]
+    Eval(EvalOptions),
+}
+
+/// What to read from an answer, and where.
+#[derive(Group)]
+pub(crate) struct EvalOptions {
+    /// The answer: answer.nisp in the folder of its results.
+    #[arg(value_name = "ANSWER")]
+    pub(crate) answer: PathBuf,
+    #[command(flatten)]
+    pub(crate) place: Place,
+    /// Expressions with commas between them, for instance 'w, d(w, x, 2), M_x' [default: fields and sources].
+    #[arg(long, value_name = "EXPRESSIONS")]
+    pub(crate) of: Option<String>,
+    /// Header of the column of --at that holds a coordinate, for instance t=when. Repeatable.
+    #[arg(long, value_name = "NAME=HEADER", value_parser = pair, requires = "at")]
+    pub(crate) column: Vec<(String, String)>,
+    /// CSV to write, instead of standard output.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// One JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Frames to calibrate from.
@@ -238,6 +263,7 @@ Results, in the folder of --out:
   source.csv  the recovered source with its standard deviation, where the method gives one
   state.csv   the fields, likewise
   plot.svg    both, with measurements, truth and a band of two standard deviations
+  answer.nisp the answer itself: `nisp eval` reads values, derivatives and declared expressions anywhere, without data
   For contact also surface.svg, surface.vtu and surface.ply: the deformed surface, coloured by pressure.
   All are written together at the end, or none; files of those names are replaced. One run at a time has the folder.
   If it cannot be written any more, they go to a new one beside it or to the system's temporary folder, and the last
@@ -256,6 +282,45 @@ Exit codes:
   2  bad input; nothing was written
   3  not converged, or interrupted (status `not_converged`); the best state was written
   4  the results could not be written to the folder of --out, or to standard output";
+
+/// Where an answer is read.
+#[derive(Group)]
+#[group(required = true, multiple = false)]
+pub(crate) struct Place {
+    /// Table of the points, with a column for each coordinate.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) at: Option<PathBuf>,
+    /// Points along each coordinate over the domain, for instance 200x100.
+    #[arg(long, value_name = "NxM", value_parser = grid)]
+    pub(crate) grid: Option<Grid>,
+}
+
+const EVAL_SEE_HELP: &str =
+    "Exit codes: 0 read, 2 bad input, 3 the answer is not to be relied on, 4 not written. `--help` has examples.";
+
+const EVAL_TEACH: &str = "\
+Examples:
+  nisp eval nisp-out/answer.nisp --grid 500
+      every field and source at 500 points over the domain
+  nisp eval beam/answer.nisp --at gauges.csv --of 'w, M, d(M, x)' --out moments.csv
+      deflection, bending moment (a `let M = ...;` of the equation) and shear force where the gauges are
+
+An answer holds the text of its equation, parameters, scales, and what carries fields and sources with what is known of
+it; no data are needed. --of takes the name of every `let` outside of groups and of every parameter; derivatives are
+written as in equations. Fields, sources and parameters come in their declared units and everything else in SI units,
+which stand in the headers.
+
+A column NAME_sd holds the standard deviation, where the answer has any. Those of derivatives and expressions follow
+from the same posterior, to first order.
+
+The answer holds between the points that it was found from: in their range along each coordinate, and in their convex
+hull over every two. Other points have no value, NaN (null in --json), and their number goes to standard error.
+
+Exit codes:
+  0  read
+  2  bad input, or no point inside; nothing was written
+  3  read, but the answer is not to be relied on: it did not converge or failed a check
+  4  could not be written";
 
 /// Points along each coordinate.
 #[derive(Clone, Debug)]

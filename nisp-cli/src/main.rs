@@ -5,6 +5,7 @@ mod calibrate;
 mod check;
 mod checkpoint;
 mod config;
+mod eval;
 mod explain;
 mod list;
 mod new;
@@ -37,6 +38,7 @@ fn main() -> ExitCode {
             explain::explain(&equation, scene.as_deref(), Architecture::modified(width, layers))
         }
         Parsed::Asked(Args { command: Command::Calibrate(frames) }) => calibrate::calibrate(&frames),
+        Parsed::Asked(Args { command: Command::Eval(options) }) => eval::eval(&options),
         Parsed::Asked(Args { command: Command::Solve(options) }) => solve::solve(&options),
     });
     end(NAME, result)

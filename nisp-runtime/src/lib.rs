@@ -3,6 +3,7 @@
 //! Data flows one way: points, channels through the network, residuals, loss, step, report.
 
 pub mod aligned;
+mod bytes;
 pub mod compiled;
 pub mod engine;
 mod facts;
@@ -21,6 +22,7 @@ pub mod real;
 pub mod recover;
 pub mod residual;
 mod rhythm;
+pub mod saved;
 pub mod schema;
 pub mod simd;
 pub mod solve;

@@ -49,12 +49,11 @@ pub(crate) fn json(solution: &Solution, run: &Run<'_>, found: &Found) -> String 
     format!("{object}\n")
 }
 
+/// An interrupted run is one that has not converged.
 fn status(solution: &Solution) -> &'static str {
     match solution.status {
-        Status::Converged => "converged",
-        Status::Budget => "budget",
-        Status::NotConverged | Status::Interrupted => "not_converged",
-        Status::Inconsistent => "inconsistent",
+        Status::Interrupted => Status::NotConverged.name(),
+        status => status.name(),
     }
 }
 

@@ -15,7 +15,8 @@ fn object(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
-const FILES: [&str; 6] = ["plot.svg", "source.csv", "state.csv", "surface.ply", "surface.svg", "surface.vtu"];
+const FILES: [&str; 7] =
+    ["answer.nisp", "plot.svg", "source.csv", "state.csv", "surface.ply", "surface.svg", "surface.vtu"];
 
 #[test]
 fn a_contact_is_scored_beside_a_classical_way_and_its_surface_is_written() {

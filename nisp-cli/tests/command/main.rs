@@ -6,6 +6,7 @@ mod bubble;
 mod common;
 mod contact;
 mod contract;
+mod eval;
 mod folders;
 mod gaps;
 mod interrupt;

@@ -3,6 +3,7 @@
 mod beliefs;
 mod bind;
 mod evaluate;
+mod frame;
 pub(crate) mod powers;
 mod scale;
 mod system;
@@ -10,6 +11,7 @@ mod units;
 
 pub use bind::BindError;
 pub(crate) use bind::Bound;
+pub(crate) use frame::Frame;
 pub use system::UnitSystem;
 
 use crate::kernel::SceneRef;
