@@ -93,6 +93,7 @@ pub(crate) fn model(coordinates: &[(&str, [i128; 3])]) -> Model {
         scenes: Vec::new(),
         units_checked: true,
         warnings: Vec::new(),
+        questions: Vec::new(),
     }
 }
 
