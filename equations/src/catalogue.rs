@@ -3,6 +3,7 @@
 //! A new equation is one new file with its `pde!` and its entry, and one line in [`catalogue`].
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use nisp::local::Local;
 use nisp::{Carrier, Settings};
@@ -83,6 +84,11 @@ impl Entry {
             Binding::Tables => tables::prepare(self, request),
             Binding::Own(prepare) | Binding::Cloud(prepare) => prepare(self, request),
         }
+    }
+
+    /// The time within which its answers are usually there.
+    pub fn usual_budget(&self) -> Duration {
+        Duration::from_secs(if matches!(self.binding, Binding::Cloud(_)) { 30 } else { 10 })
     }
 
     /// How its scenes over time are bound to tables, if that is what they are.

@@ -189,10 +189,9 @@ pub(crate) struct Options {
     /// Threads [default: one per processor]. The answer does not depend on them.
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
     pub(crate) threads: Option<usize>,
-    /// Wall time; the best state so far is the answer.
-    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds, allow_negative_numbers = true,
-          help_heading = METHOD)]
-    pub(crate) budget: f64,
+    /// Wall time; the best state so far is the answer [default: 10; for point clouds 30].
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true, help_heading = METHOD)]
+    pub(crate) budget: Option<f64>,
     /// Steps at most [default: as many as the budget allows].
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
     pub(crate) iterations: Option<usize>,

@@ -191,7 +191,7 @@ fn settings(solution: &Solution, run: &Run<'_>) -> Value {
         "width": options.width,
         "layers": options.layers,
         "resample": options.resample,
-        "budget_s": options.budget,
+        "budget_s": settings.budget.map(|budget| budget.as_secs_f64()),
         "iterations": options.iterations,
         "out": text(&options.out),
         "checkpoint": options.checkpoint,
