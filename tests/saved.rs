@@ -29,7 +29,8 @@ nisp::pde! {
         coordinates: x [m], y [m];
         fields: u [K];
         sources: s [K/m];
-        on inside { balance: d(u, y) == s; }
+        parameters: a = 2;
+        on inside { balance: d(u, y) + a * d(u, x) == s; }
         on probes { observe u; }
         scene drift { }
     }
@@ -278,6 +279,8 @@ fn scales_that_an_equation_leaves_apart_are_not_tied_by_a_question() {
     let scene = scene::<strip::drift::Scene>();
     let points: Vec<f64> = (0..200).flat_map(|i| [20.0 * noise(i), 0.5 * noise(1000 + i)]).collect();
     let values = points.chunks(2).map(|p| (0.3 * p[0]).sin() + p[1]).collect();
+    let groups: Vec<usize> = scene.schema.coordinates.iter().map(|c| c.scale_group).collect();
+    assert_eq!(groups, [0, 1], "the equation ties nothing");
     let mut problem = Problem::new(scene);
     problem.set_group("inside", points.clone().into(), vec![]).unwrap();
     problem.set_group("probes", points.into(), vec![values]).unwrap();
