@@ -94,7 +94,6 @@ pub(crate) fn model(coordinates: &[(&str, [i128; 3])]) -> Model {
         scenes: Vec::new(),
         units_checked: true,
         warnings: Vec::new(),
-        questions: Vec::new(),
     }
 }
 
