@@ -4,7 +4,7 @@ use super::axis::{Panel, Scale, x_axis_height, y_axis_width};
 use super::canvas::{Anchor, Canvas, Frame, Stroke};
 use super::legend::{self, Swatch};
 use super::style::{ESTIMATE, GAP, MARGIN, MEASURED, PALETTE, QUIET, TICK, TRUTH, WIDTH};
-use super::{Picture, Quantity, heading};
+use super::{Picture, Quantity, decimate, heading};
 use crate::DataError;
 
 /// Panels over a common axis.
@@ -162,25 +162,25 @@ fn draw_curves(canvas: &mut Canvas, area: &Panel, panel: &LinePanel, factors: [f
         area.all_at(&scale(&curve.x, factors[0]), &scale(&curve.y, factors[1]))
     };
     if let Some(measured) = &panel.measured {
-        canvas.dots(&place(measured), MEASURED_RADIUS, MEASURED);
+        canvas.dots(&decimate::dots(&place(measured), MEASURED_RADIUS), MEASURED_RADIUS, MEASURED);
     }
     if let (Some(estimate), Some(deviation)) = (&panel.estimate, &panel.deviation) {
         let edge = |sign: f64| {
             let y = estimate.y.iter().zip(deviation).map(|(y, sd)| y + sign * 2.0 * sd).collect();
-            place(&Curve { x: estimate.x.clone(), y })
+            decimate::curve(&place(&Curve { x: estimate.x.clone(), y }))
         };
         let mut band = edge(1.0);
         band.extend(edge(-1.0).into_iter().rev());
         canvas.polygon(&band, ESTIMATE, BAND_OPACITY);
     }
     for (index, (_, other)) in panel.others.iter().enumerate() {
-        canvas.polyline(&place(other), other_stroke(index));
+        canvas.polyline(&decimate::curve(&place(other)), other_stroke(index));
     }
     if let Some(estimate) = &panel.estimate {
-        canvas.polyline(&place(estimate), ESTIMATE_STROKE);
+        canvas.polyline(&decimate::curve(&place(estimate)), ESTIMATE_STROKE);
     }
     if let Some(truth) = &panel.truth {
-        canvas.polyline(&place(truth), TRUTH_STROKE);
+        canvas.polyline(&decimate::curve(&place(truth)), TRUTH_STROKE);
     }
 }
 

@@ -8,6 +8,7 @@ mod axis;
 mod bar;
 mod canvas;
 mod contour;
+mod decimate;
 mod field_map;
 mod grid;
 mod heading;
