@@ -12,6 +12,7 @@ pub use nisp_runtime::recover::{
     Carrier, Checkpoint, CheckpointError, Estimate, LearnedValue, Optimizer, RecoverError, Report, Resampling,
     Settings, Solution, TermReport, Width, recover, resume,
 };
+pub use nisp_runtime::saved::{OpenAnswer, SavedAnswer, SavedError, SavedParameter};
 pub use nisp_runtime::verdict::{Check, Verdict};
 pub use nisp_runtime::{engine, local, network, peak, real, schema, simd, solve};
 

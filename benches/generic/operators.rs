@@ -97,6 +97,7 @@ macro_rules! dense_scene {
         pub(crate) struct $name;
 
         impl Scene for $name {
+            const TEXT: &'static str = "";
             const SCHEMA: &'static schema::Scene = &schema::Scene {
                 module: "dense",
                 name: stringify!($name),

@@ -3,6 +3,7 @@
 //! A new equation is one new file with its `pde!` and its entry, and one line in [`catalogue`].
 
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use nisp::local::Local;
 use nisp::{Carrier, Settings};
@@ -10,18 +11,18 @@ use nisp::{Problem, SceneRef};
 use nisp_data::cloud::LengthUnit;
 use nisp_data::nearest_name;
 
-use crate::contact::Contact;
+use crate::contact::{Contact, References};
 use crate::error::PrepareError;
 use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::series::Series;
 use crate::truth::Truth;
-use crate::{membrane, pendulum, plate, rlc, sponge, tables};
+use crate::{bubble, membrane, pendulum, plate, rlc, sponge, tables};
 
 /// The equations that are shipped.
 // Inlined, the scenes would have every crate that asks compile all kernels again.
 #[inline(never)]
-pub fn catalogue() -> [Entry; 5] {
-    [pendulum::entry(), rlc::entry(), plate::entry(), membrane::entry(), sponge::entry()]
+pub fn catalogue() -> [Entry; 6] {
+    [pendulum::entry(), rlc::entry(), plate::entry(), membrane::entry(), bubble::entry(), sponge::entry()]
 }
 
 /// An equation and how it is bound to data.
@@ -85,6 +86,11 @@ impl Entry {
         }
     }
 
+    /// The time within which its answers are usually there.
+    pub fn usual_budget(&self) -> Duration {
+        Duration::from_secs(if matches!(self.binding, Binding::Cloud(_)) { 30 } else { 10 })
+    }
+
     /// How its scenes over time are bound to tables, if that is what they are.
     pub fn series(&self) -> Option<&Series> {
         match &self.binding {
@@ -99,6 +105,7 @@ impl Entry {
             ("sample", request.sample.is_some()),
             ("cloud", request.cloud.is_some()),
             ("unit", request.unit.is_some()),
+            ("calibration", request.calibration.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {
             Some((option, _)) => {
@@ -123,6 +130,8 @@ pub struct Request {
     pub sample: Option<PathBuf>,
     /// Which of the sample's clouds, counted from zero.
     pub cloud: Option<usize>,
+    /// Calibration of the sensor that saw the cloud.
+    pub calibration: Option<PathBuf>,
     /// Unit of the cloud's coordinates; metres if not given.
     pub unit: Option<LengthUnit>,
     /// Truth to score against.
@@ -178,6 +187,8 @@ pub struct Prepared {
     pub local: Option<Local>,
     /// The body whose surface was seen, where the data are a cloud.
     pub contact: Option<Contact>,
+    /// What a calibration is made from, where the scene makes one.
+    pub references: Option<References>,
 }
 
 /// A measured column.

@@ -1,5 +1,6 @@
 //! The equations that NISP ships, and how each is bound to measurements.
 
+pub mod bubble;
 pub mod catalogue;
 pub mod contact;
 mod copies;

@@ -89,6 +89,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         rival: None,
         local: None,
         contact: None,
+        references: None,
     })
 }
 

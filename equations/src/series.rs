@@ -119,6 +119,7 @@ impl Series {
             rival,
             local: None,
             contact: None,
+            references: None,
         })
     }
 }

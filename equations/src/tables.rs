@@ -90,6 +90,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         rival: None,
         local: None,
         contact: None,
+        references: None,
     })
 }
 
@@ -267,7 +268,7 @@ fn trapezoids(points: &[f64]) -> Vec<f64> {
 fn wanted(schema: &Scene, found: &Found, request: &Request) -> Result<Vec<f64>, PrepareError> {
     let axes = schema.coordinates.len();
     let counts = match &request.wanted {
-        Some(Wanted::At(path)) => return places(schema, &Table::read(path)?, request),
+        Some(Wanted::At(path)) => return places(schema, &Table::read_places(path)?, request),
         Some(Wanted::Grid(counts)) if counts.len() == axes => counts.clone(),
         Some(Wanted::Grid(counts)) => {
             let names: Vec<&str> = schema.coordinates.iter().map(|axis| axis.name).collect();

@@ -21,6 +21,8 @@ pub struct Truth {
 pub struct Headers<'a> {
     /// Names and the headers that the user chose for them; the last word on a name counts.
     pub chosen: &'a [(String, String)],
+    /// Names and what they are called where a column of their own name means something else.
+    pub rather: &'a [(&'a str, &'a str)],
     /// Names and what else they are called.
     pub also: &'a [(&'a str, &'a str)],
 }
@@ -33,6 +35,11 @@ impl Headers<'_> {
     pub fn read(&self, table: &Table, name: &str, unit: &str) -> Result<Vec<f64>, DataError> {
         if let Some((_, header)) = self.chosen.iter().rev().find(|(own, _)| own == name) {
             return table.chosen(name, header, unit);
+        }
+        if let Some((_, rather)) = self.rather.iter().find(|(own, _)| *own == name)
+            && let Ok(values) = table.quantity(rather, unit)
+        {
+            return Ok(values);
         }
         match (table.quantity(name, unit), self.also.iter().find(|(own, _)| *own == name)) {
             (Err(DataError::Column { .. }), Some((_, also))) => table.quantity(also, unit),

@@ -58,9 +58,62 @@ pub(crate) enum Command {
         #[arg(long, value_name = "N", default_value_t = 2, value_parser = size, allow_negative_numbers = true)]
         layers: usize,
     },
+    /// Learn a sensor's pose, size and stiffness from frames that nothing touches, and what the theory leaves.
+    Calibrate(Frames),
     /// Recover a source; without options, from the repository's own noisy example.
     #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
     Solve(Box<Options>),
+    /// Read values, derivatives and declared expressions from a saved answer, without its data.
+    #[command(after_help = EVAL_SEE_HELP, after_long_help = EVAL_TEACH)]
+    Eval(EvalOptions),
+}
+
+/// What to read from an answer, and where.
+#[derive(Group)]
+pub(crate) struct EvalOptions {
+    /// The answer: answer.nisp in the folder of its results.
+    #[arg(value_name = "ANSWER")]
+    pub(crate) answer: PathBuf,
+    #[command(flatten)]
+    pub(crate) place: Place,
+    /// Expressions with commas between them, for instance 'w, d(w, x, 2), M_x' [default: fields and sources].
+    #[arg(long, value_name = "EXPRESSIONS")]
+    pub(crate) of: Option<String>,
+    /// Header of the column of --at that holds a coordinate, for instance t=when. Repeatable.
+    #[arg(long, value_name = "NAME=HEADER", value_parser = pair, requires = "at")]
+    pub(crate) column: Vec<(String, String)>,
+    /// CSV to write, instead of standard output.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) out: Option<PathBuf>,
+    /// One JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Frames to calibrate from.
+#[derive(Group)]
+pub(crate) struct Frames {
+    /// Equation of the sensor: bubble.
+    #[arg(value_name = "SCENE")]
+    pub(crate) equation: String,
+    /// Point cloud of the sensor with nothing touching it. Repeatable; all at the same pressure.
+    #[arg(long, value_name = "FILE", required = true)]
+    pub(crate) reference: Vec<PathBuf>,
+    /// What is known, in declared units: gauge pressure p, semi-axes a and b in metres, thickness t. Repeatable.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = value)]
+    pub(crate) set: Vec<(String, f64)>,
+    /// Unit of the clouds' coordinates: m, cm, mm, um or in [default: m].
+    #[arg(long, value_name = "UNIT")]
+    pub(crate) unit: Option<LengthUnit>,
+    /// Wall time for each law of the material.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
+    pub(crate) budget: f64,
+    /// Folder for calibration.toml and a picture of the deviation; made if it is not there.
+    #[arg(long, value_name = "DIR", default_value = "nisp-calibration")]
+    pub(crate) out: PathBuf,
+    /// One JSON object on standard output, and nothing else there.
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// How and from what to solve.
@@ -81,6 +134,9 @@ pub(crate) struct Options {
     /// Which of the sample's clouds, counted from 0 [default: 0].
     #[arg(long, value_name = "K", allow_negative_numbers = true, help_heading = DATA)]
     pub(crate) cloud: Option<usize>,
+    /// Of a bubble: calibration.toml of `nisp calibrate`, for the sensor that saw the cloud.
+    #[arg(long, value_name = "FILE", help_heading = DATA)]
+    pub(crate) calibration: Option<PathBuf>,
     /// Of a text file: table of the points at which the answer is wanted [default: where it was measured, or a grid].
     #[arg(long, value_name = "FILE", conflicts_with = "grid", help_heading = DATA)]
     pub(crate) at: Option<PathBuf>,
@@ -133,10 +189,9 @@ pub(crate) struct Options {
     /// Threads [default: one per processor]. The answer does not depend on them.
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
     pub(crate) threads: Option<usize>,
-    /// Wall time; the best state so far is the answer.
-    #[arg(long, value_name = "SECONDS", default_value_t = 10.0, value_parser = seconds, allow_negative_numbers = true,
-          help_heading = METHOD)]
-    pub(crate) budget: f64,
+    /// Wall time; the best state so far is the answer [default: 10; for point clouds 30].
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_negative_numbers = true, help_heading = METHOD)]
+    pub(crate) budget: Option<f64>,
     /// Steps at most [default: as many as the budget allows].
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
     pub(crate) iterations: Option<usize>,
@@ -177,6 +232,9 @@ Examples:
   nisp solve membrane --scene identify --data bubble.ply --unit mm --set p=5670
       your cloud; nothing touches the membrane, and its modulus is wanted
   nisp solve sponge --data sides.ply --set force_z=2.4 --set force_x=0 ...
+  nisp calibrate bubble --reference free.npy --set p=5256 --set a=0.057 --set b=0.04 --out sensor, then
+  nisp solve bubble --calibration sensor/calibration.toml --data frame.npy --set p=5690
+      a soft bubble seen by a depth camera: first its free shape, then a force
   nisp new cooling, then nisp solve cooling/cooling.pde --data cooling/data.csv
       an equation of your own, in a text file
   nisp solve heat.pde --data probes=probes.csv --data wall=wall.csv --grid 100x50
@@ -204,6 +262,7 @@ Results, in the folder of --out:
   source.csv  the recovered source with its standard deviation, where the method gives one
   state.csv   the fields, likewise
   plot.svg    both, with measurements, truth and a band of two standard deviations
+  answer.nisp the answer itself: `nisp eval` reads values, derivatives and declared expressions anywhere, without data
   For contact also surface.svg, surface.vtu and surface.ply: the deformed surface, coloured by pressure.
   All are written together at the end, or none; files of those names are replaced. One run at a time has the folder.
   If it cannot be written any more, they go to a new one beside it or to the system's temporary folder, and the last
@@ -222,6 +281,45 @@ Exit codes:
   2  bad input; nothing was written
   3  not converged, or interrupted (status `not_converged`); the best state was written
   4  the results could not be written to the folder of --out, or to standard output";
+
+/// Where an answer is read.
+#[derive(Group)]
+#[group(required = true, multiple = false)]
+pub(crate) struct Place {
+    /// Table of the points, with a column for each coordinate.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) at: Option<PathBuf>,
+    /// Points along each coordinate over the domain, for instance 200x100.
+    #[arg(long, value_name = "NxM", value_parser = grid)]
+    pub(crate) grid: Option<Grid>,
+}
+
+const EVAL_SEE_HELP: &str =
+    "Exit codes: 0 read, 2 bad input, 3 the answer is not to be relied on, 4 not written. `--help` has examples.";
+
+const EVAL_TEACH: &str = "\
+Examples:
+  nisp eval nisp-out/answer.nisp --grid 500
+      every field and source at 500 points over the domain
+  nisp eval beam/answer.nisp --at gauges.csv --of 'w, M, d(M, x)' --out moments.csv
+      deflection, bending moment (a `let M = ...;` of the equation) and shear force where the gauges are
+
+An answer holds the text of its equation, parameters, scales, and what carries fields and sources with what is known of
+it; no data are needed. --of takes the name of every `let` outside of groups and of every parameter; derivatives are
+written as in equations. Fields, sources and parameters come in their declared units and everything else in SI units,
+which stand in the headers.
+
+A column NAME_sd holds the standard deviation, where the answer has any. Those of derivatives and expressions follow
+from the same posterior, to first order.
+
+The answer holds between the points that it was found from: in their range along each coordinate, and in their convex
+hull over every two. Other points have no value, NaN (null in --json), and their number goes to standard error.
+
+Exit codes:
+  0  read
+  2  bad input, or no point inside; nothing was written
+  3  read, but the answer is not to be relied on: it did not converge or failed a check
+  4  could not be written";
 
 /// Points along each coordinate.
 #[derive(Clone, Debug)]

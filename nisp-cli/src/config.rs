@@ -7,7 +7,7 @@ use nisp_data::input::read_text;
 use toml::{Table, Value};
 
 /// Options whose values are paths.
-const PATHS: [&str; 5] = ["data", "sample", "truth", "out", "resume"];
+const PATHS: [&str; 7] = ["data", "sample", "calibration", "at", "truth", "out", "resume"];
 
 /// The flags that a file stands for.
 ///

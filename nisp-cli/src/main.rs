@@ -1,9 +1,11 @@
 //! The `nisp` command: check, explain and solve equations, shipped ones and those in text files.
 
 mod args;
+mod calibrate;
 mod check;
 mod checkpoint;
 mod config;
+mod eval;
 mod explain;
 mod list;
 mod new;
@@ -35,6 +37,8 @@ fn main() -> ExitCode {
         Parsed::Asked(Args { command: Command::Explain { equation, scene, width, layers } }) => {
             explain::explain(&equation, scene.as_deref(), Architecture::modified(width, layers))
         }
+        Parsed::Asked(Args { command: Command::Calibrate(frames) }) => calibrate::calibrate(&frames),
+        Parsed::Asked(Args { command: Command::Eval(options) }) => eval::eval(&options),
         Parsed::Asked(Args { command: Command::Solve(options) }) => solve::solve(&options),
     });
     end(NAME, result)

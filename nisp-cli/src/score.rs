@@ -12,6 +12,8 @@ pub struct Found {
     pub scores: Vec<Score>,
     /// Of a contact, where the scene has one.
     pub contact: Option<ContactScore>,
+    /// Standard deviation of the contact's net force in newtons, where the method gives it.
+    pub force_deviation: Option<f64>,
     /// Of the contact by a classical way.
     pub rival: Option<Rival>,
     /// What the scene learned.
@@ -70,9 +72,14 @@ impl Found {
             let estimate = solution.evaluate(points).into_iter().find(|estimate| estimate.name == name);
             estimate.map(|estimate| estimate.values)
         };
+        let scored = prepared.contact.as_ref().and_then(|contact| Some((contact, contact.score(&values, truth)?)));
+        let force_deviation = scored.as_ref().and_then(|(contact, score)| {
+            solution.deviation_of_sum(contact.pressure?, &contact.face.points, &score.per_pascal)
+        });
         Self {
             scores: truth.map_or_else(Vec::new, |truth| score(solution, truth)),
-            contact: prepared.contact.as_ref().and_then(|contact| contact.score(&values, truth)),
+            contact: scored.map(|(_, score)| score),
+            force_deviation,
             rival: None,
             learned,
             sizes: estimates.iter().filter(|estimate| estimate.source).map(Size::of).collect(),

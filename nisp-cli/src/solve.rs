@@ -20,12 +20,13 @@ use crate::results;
 /// Solves, writes the results, and says how well it went.
 pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     let entry = nisp_cli::entry(&options.equation)?;
-    let settings = settings(options)?;
+    let settings = settings(options, entry.usual_budget())?;
     let request = Request {
         scene: options.scene.clone(),
         data: options.data.clone(),
         sample: options.sample.clone(),
         cloud: options.cloud,
+        calibration: options.calibration.clone(),
         unit: options.unit,
         wanted: wanted(options),
         truth: options.truth.clone(),
@@ -111,7 +112,7 @@ fn unscored(truth: &Truth) -> Option<String> {
         .then(|| format!("{} of {all} rows of the truth are outside the data's times: not scored", truth.outside))
 }
 
-fn settings(options: &Options) -> Result<Settings, String> {
+fn settings(options: &Options, usual: Duration) -> Result<Settings, String> {
     let threads = options.threads.unwrap_or_else(processors);
     if threads > MOST_THREADS {
         return Err(format!("--threads {threads}: at most {MOST_THREADS}; leave it out for one per processor"));
@@ -131,7 +132,7 @@ fn settings(options: &Options) -> Result<Settings, String> {
         architecture: Architecture { width: options.width, layers: options.layers, ..Settings::default().architecture },
         resampling: options.resample.map(|every| Resampling { every: every as u64, ..Resampling::default() }),
         seed: options.seed,
-        budget: Some(Duration::from_secs_f64(options.budget)),
+        budget: Some(options.budget.map_or(usual, Duration::from_secs_f64)),
         iterations: options.iterations.map(|count| count as u64),
         threads,
         ..Settings::default()

@@ -47,6 +47,13 @@ impl<const D: usize> Nearest<D> {
         Neighbour { index, squared_distance }
     }
 
+    /// The `count` nearest points, or all if there are fewer, by their indices.
+    pub fn nearest_many(&self, query: &[f64; D], count: usize) -> impl Iterator<Item = usize> + use<D> {
+        let count = std::num::NonZeroUsize::new(count.min(self.points.len())).unwrap_or(std::num::NonZeroUsize::MIN);
+        let found = self.tree.query(query).nearest_n::<SquaredEuclidean<f64>>(count).execute();
+        found.into_iter().map(|neighbour| neighbour.item as usize)
+    }
+
     /// The nearest point of each query.
     pub fn nearest_all(&self, queries: &[[f64; D]]) -> Vec<Neighbour> {
         queries.iter().map(|query| self.nearest(query)).collect()

@@ -22,6 +22,7 @@
 //! ```
 
 mod affine;
+mod answer;
 mod block;
 mod hidden;
 mod layers;
@@ -40,9 +41,10 @@ use nisp_runtime::kernel::{GroupKernel, Kernels, SceneRef};
 use nisp_runtime::real::Real;
 use thiserror::Error;
 
+pub use answer::{OpenError, ask, open};
 use programs::InterpretedPrograms;
 use rules::InterpretedLayers;
-pub use text::Mistake;
+pub use text::{Mistake, is_same_equation};
 
 /// An equation that was read.
 #[derive(Clone, Debug)]
@@ -73,8 +75,12 @@ pub fn read(text: &str, name: &str) -> Result<Equation, Mistakes> {
     let (model, plan) = analyse(tokens).map_err(|Failure { errors, .. }| {
         Mistakes(errors.faults().iter().map(|fault| Mistake::new(fault, text)).collect())
     })?;
-    let scenes =
-        plan.scenes.iter().zip(&model.scenes).map(|(scene, declared)| interpret(&model, &plan, scene, declared));
+    let kept: &'static str = String::leak(text.into());
+    let scenes = plan
+        .scenes
+        .iter()
+        .zip(&model.scenes)
+        .map(|(scene, declared)| interpret((&model, kept), &plan, scene, declared));
     let warnings = model.warnings.iter().map(|(message, span)| {
         let fault = nisp_compiler::error::Fault { place: (*span).into(), message: message.clone() };
         Mistake::new(&fault, text)
@@ -88,11 +94,16 @@ pub fn read(text: &str, name: &str) -> Result<Equation, Mistakes> {
 }
 
 /// A scene with interpreted kernels.
-fn interpret(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene) -> SceneRef {
+fn interpret(
+    (model, text): (&Model, &'static str),
+    plan: &Plan,
+    scene: &ScenePlan,
+    declared: &model::Scene,
+) -> SceneRef {
     let groups: &'static [Interpreted] =
         Vec::leak(scene.groups.iter().map(|group| Interpreted::new(plan, group)).collect());
     let kernels: &'static Interpretation = Box::leak(Box::new(Interpretation(groups)));
-    SceneRef::new(schema::of(model, plan, scene, declared), kernels)
+    SceneRef::new(schema::of(model, plan, scene, declared), text, kernels)
 }
 
 /// The kernels of a scene.

@@ -123,3 +123,36 @@ fn identifier(name: &str) -> String {
     let begins = plain.chars().next().is_some_and(|c| !c.is_ascii_digit());
     if begins && !plain.trim_matches('_').is_empty() { plain } else { format!("equation_{plain}") }
 }
+
+/// True for two texts of equations that differ in nothing but spaces, comments and documentation.
+pub fn is_same_equation(one: &str, other: &str) -> bool {
+    let plain = |text: &str| text.parse::<TokenStream>().ok().map(|tokens| undocumented(tokens).to_string());
+    plain(one).is_some_and(|one| Some(one) == plain(other))
+}
+
+/// Tokens without documentation, which is `#[doc = "..."]` to a lexer.
+fn undocumented(tokens: TokenStream) -> TokenStream {
+    let mut tokens = tokens.into_iter();
+    let mut kept = Vec::new();
+    while let Some(token) = tokens.next() {
+        match token {
+            TokenTree::Punct(sign) if sign.as_char() == '#' => drop(tokens.next()),
+            TokenTree::Group(group) => kept.push(Group::new(group.delimiter(), undocumented(group.stream())).into()),
+            token => kept.push(token),
+        }
+    }
+    kept.into_iter().collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::is_same_equation;
+
+    #[test]
+    fn spaces_and_documentation_make_no_other_equation() {
+        let one = "/// A rod.\ncoordinates: x [m];\non rod { /// It bends.\n a: d(u, x, 2) == 1; } // so be it";
+        assert!(is_same_equation(one, "coordinates:x[m]; on rod {a:d(u,x,2)==1;}"));
+        assert!(!is_same_equation(one, "coordinates: x [mm]; on rod { a: d(u, x, 2) == 1; }"));
+        assert!(!is_same_equation("(", "("));
+    }
+}

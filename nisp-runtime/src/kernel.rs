@@ -100,6 +100,8 @@ pub struct GroupKernel<E: Real> {
 pub trait Scene: Copy + Send + Sync + 'static {
     /// What the compiler knows of the scene.
     const SCHEMA: &'static schema::Scene;
+    /// The text of the whole equation, as the compiler reads it.
+    const TEXT: &'static str;
     /// One kernel per group of the schema, then that of the outputs.
     fn kernels<E: Real>() -> Vec<GroupKernel<E>>;
 }
@@ -117,6 +119,8 @@ pub trait Kernels: Send + Sync {
 pub struct SceneRef {
     /// What the compiler knows of the scene.
     pub schema: &'static schema::Scene,
+    /// The text of the whole equation, as the compiler reads it.
+    pub text: &'static str,
     kernels: &'static dyn Kernels,
 }
 
@@ -148,18 +152,18 @@ impl<S: Scene> Kernels for Both<S> {
 
 /// A scene without its type, in double precision.
 pub fn scene<S: Scene>() -> SceneRef {
-    SceneRef::new(S::SCHEMA, &Double::<S>(PhantomData))
+    SceneRef::new(S::SCHEMA, S::TEXT, &Double::<S>(PhantomData))
 }
 
 /// A scene without its type, in single precision too: twice the code of [`scene`] to compile.
 pub fn scene_in_both_precisions<S: Scene>() -> SceneRef {
-    SceneRef::new(S::SCHEMA, &Both::<S>(PhantomData))
+    SceneRef::new(S::SCHEMA, S::TEXT, &Both::<S>(PhantomData))
 }
 
 impl SceneRef {
-    /// A scene of a schema and of kernels in the schema's order.
-    pub fn new(schema: &'static schema::Scene, kernels: &'static dyn Kernels) -> Self {
-        Self { schema, kernels }
+    /// A scene of a schema, the equation's text, and kernels in the schema's order.
+    pub fn new(schema: &'static schema::Scene, text: &'static str, kernels: &'static dyn Kernels) -> Self {
+        Self { schema, text, kernels }
     }
 
     /// True if it has kernels in single precision too.

@@ -3,11 +3,11 @@
 //! Data flows one way: points, channels through the network, residuals, loss, step, report.
 
 pub mod aligned;
+mod bytes;
 pub mod compiled;
 pub mod engine;
 mod facts;
 pub mod features;
-mod fourier;
 pub mod functions;
 pub mod gemm;
 pub mod kernel;
@@ -23,6 +23,7 @@ pub mod real;
 pub mod recover;
 pub mod residual;
 mod rhythm;
+pub mod saved;
 pub mod schema;
 pub mod simd;
 pub mod solve;

@@ -111,12 +111,18 @@ impl Given<'_> {
         Err(PrepareError::Range { name, value: size, unit: "m", must })
     }
 
+    /// What the user says, in SI units.
+    pub(super) fn says(&self, name: &str) -> Option<f64> {
+        let (_, factor) = unit(self.scene.schema, name);
+        self.request.parameters.iter().rev().find(|(own, _)| own == name).map(|(_, value)| value * factor)
+    }
+
     /// What the user or the sample says, in SI units; nothing where what is declared will do.
     fn value(&self, name: &'static str) -> Result<Option<f64>, PrepareError> {
         let schema = self.scene.schema;
-        let (unit, factor) = unit(schema, name);
-        if let Some((_, value)) = self.request.parameters.iter().rev().find(|(own, _)| own == name) {
-            return Ok(Some(value * factor));
+        let (unit, _) = unit(schema, name);
+        if let Some(value) = self.says(name) {
+            return Ok(Some(value));
         }
         let scalar = schema.scalars.iter().find(|scalar| scalar.name == name);
         // What is to be learned is not to be read, unless nothing else says where to begin.

@@ -1,66 +1,26 @@
-//! Binds the membrane's scenes to a cloud of its surface.
+//! The membrane of small strains, as the paper has it.
 
 use std::cell::OnceCell;
 
-use nisp::local::{Local, Patches};
-use nisp_data::DataError;
-use nisp_data::domain::{Domain, Sampling};
-use nisp_data::export::triangulate;
-use serde::Deserialize;
+use nisp_data::domain::Domain;
 
-use super::given::{Given, Number, Positive, Size};
-use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
-use super::{Contact, ContactRival, Rule, Surface, bind_cloud};
+use super::given::Given;
+use super::inflated::{POINTS, Theory};
+use super::observed::{Example, Observed};
+use super::{ContactRival, Load, Rule, inflated};
 use crate::PrepareError;
 use crate::catalogue::{Entry, Prepared, Request};
 use crate::rivals::{CloudFit, inflated_tensions, pressure_by_operator};
-use crate::truth::{Headers, Truth};
 
-/// A membrane in a sample, in SI units.
-#[derive(Deserialize)]
-struct Tables {
-    membrane: Membrane,
-}
-
-#[derive(Deserialize)]
-struct Membrane {
-    a_m: Option<f64>,
-    b_m: Option<f64>,
-    thickness_m: Option<f64>,
-    #[serde(rename = "young_Pa")]
-    young: Option<f64>,
-    poisson: Option<f64>,
-    #[serde(rename = "gauge_pressure_Pa")]
-    pressure: Option<f64>,
-}
-
-/// Semi-axes of the paper's membrane.
-const SIZES: [Size; 2] = [Size { name: "a", usual: 0.06 }, Size { name: "b", usual: 0.04 }];
-
-const POSITIVE: &Positive =
-    &[("p", "nothing inflates the membrane without pressure from below: give the gauge pressure with --set p=VALUE")];
-
-/// Points within the membrane for the equations, for the surface that the cloud is compared with, and on the rim.
-const POINTS: (usize, usize, usize) = (1500, 2000, 200);
-/// The same for local functions: some nine points in every cell.
-const LOCAL_POINTS: (usize, usize, usize) = (17_000, 8000, 400);
-/// Local functions: cells of two millimetres on the paper's membrane for a pressure with edges, of four where nothing
-/// touches it.
-const LOCAL: Local =
-    Local { cells: 30, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 2, patches: None };
-const CELLS_FOR_PATCHES: usize = 60;
-/// What touches the membrane presses it out of its bulge, which takes the gauge pressure at least.
-const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.15, area: 0.75 };
-/// Points of the net force's quadrature, and of the surface in pictures.
-const FINE: (usize, usize) = (20_000, 4000);
-/// Points in a metre where the answer is wanted.
-const PER_METRE: f64 = 1000.0;
-
-/// The paper's rule.
-const RULE: Rule = Rule { least: 2500.0, of_mean: 2.0 };
-
-/// What the truth's files call the coordinates.
-const ALSO: &[(&str, &str)] = &[("alpha", "x"), ("beta", "y")];
+const THEORY: Theory = Theory {
+    pressed: PRESSED,
+    inflated: INFLATED,
+    load: Load::Fixed([0.0, 0.0, -1.0]),
+    // The paper's rule.
+    rule: |_| Rule { least: 2500.0, of_mean: 2.0 },
+    rather: &[],
+    rival: Some(rival),
+};
 
 const PRESSED: Example = Example {
     path: "data/membrane/y_shape_1.toml",
@@ -82,70 +42,7 @@ const INFLATED: Example = Example {
 
 /// Reads what is asked for and binds a scene to it.
 pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
-    let scene = entry.scene(request.scene.as_deref())?;
-    let schema = scene.schema;
-    let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
-    let mut observed = Observed::read(entry, request, if pressure.is_some() { &PRESSED } else { &INFLATED })?;
-    let sample =
-        observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
-    let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
-    let mut problem = given.problem(POSITIVE)?;
-    let assumed = given.assumed()?;
-    let (a, b) = (given.size("a")?, given.size("b")?);
-    observed.require_of("membrane", [-a, -b, 0.0], [a, b, b])?;
-
-    let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
-    let level = given.of("p")?.filter(|_| pressure.is_some());
-    let patches = level.map(|level| Patches { level, ..PATCHES });
-    let cells = if patches.is_some() { CELLS_FOR_PATCHES } else { LOCAL.cells };
-    let local = (!request.network).then_some(Local { cells, patches, ..LOCAL });
-    let (counts, sampling) = if local.is_some() { (LOCAL_POINTS, Sampling::Grid) } else { (POINTS, Sampling::Sobol) };
-    observed.cloud.thin(2.0 * a.max(b) / cells as f64, POINTS_OF_A_CELL);
-    for group in schema.groups {
-        let points = match group.name {
-            "rim" => ellipse.boundary(counts.2),
-            "surface" => ellipse.interior(counts.1, sampling, 0),
-            _ => ellipse.interior(counts.0, sampling, 0),
-        };
-        // Equations are tested by weighted means; conditions on the rim and places of the surface are single points.
-        let weights = points.weights.filter(|_| local.is_some() && group.name == "interior").unwrap_or_default();
-        let points = nisp::Points { coordinates: points.coords, weights, ..nisp::Points::default() };
-        problem.set_group(group.name, points, Vec::new())?;
-    }
-    bind_cloud(&mut problem, &observed.cloud)?;
-    if local.is_some() {
-        // The camera looks up, and its depth is what is noisy.
-        problem.set_view("surface", "cloud", [0.0, 0.0, 1.0])?;
-    }
-
-    let headers = Headers { chosen: &request.columns, also: ALSO };
-    let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
-    let mut contact = Contact {
-        displacement: ["u", "v", "w"],
-        unit: 1e-3,
-        pressure,
-        rule: RULE,
-        area: ellipse.interior(FINE.0, Sampling::Grid, 0),
-        surface: surface(&ellipse)?,
-        eye: [-65.0, 40.0],
-        truth: None,
-        rival: pressure.map(|_| rival(&given, &observed, [a, b])).transpose()?,
-    };
-    contact.truth = contact.true_contact(schema, observed.truth.as_ref().zip(truth.as_ref()), headers)?;
-    Ok(Prepared {
-        problem,
-        points: grid(&ellipse),
-        outline: ellipse.outline(200),
-        planes: Vec::new(),
-        measured: Vec::new(),
-        truth,
-        source: observed.source.display().to_string(),
-        warnings: observed.cloud.warnings,
-        assumed,
-        rival: None,
-        local,
-        contact: Some(contact),
-    })
+    inflated::prepare(&THEORY, entry, request)
 }
 
 /// The spline of the cloud with the operator: the rim is known to be at rest.
@@ -163,33 +60,4 @@ fn rival(given: &Given<'_>, observed: &Observed, axes: [f64; 2]) -> Result<Conta
         pressure_by_operator(fit, tensions, pressure, at.as_chunks::<2>().0)
     };
     Ok(ContactRival { name: "spline of the cloud", pressure: Box::new(pressure) })
-}
-
-fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
-    let Membrane { a_m, b_m, thickness_m, young, poisson, pressure } = sample.tables::<Tables>()?.membrane;
-    let number = |name, key, value| Number { name, key, value };
-    Ok(vec![
-        number("a", "[membrane] a_m", a_m),
-        number("b", "[membrane] b_m", b_m),
-        number("t", "[membrane] thickness_m", thickness_m),
-        number("E", "[membrane] young_Pa", young),
-        number("nu", "[membrane] poisson", poisson),
-        number("p", "[membrane] gauge_pressure_Pa", pressure),
-    ])
-}
-
-/// Points on a regular grid around the origin.
-fn grid(domain: &Domain) -> Vec<f64> {
-    let (_, high) = domain.bounds();
-    let half = |axis: usize| (high[axis] * PER_METRE).floor() as i32;
-    let line = |axis: usize| (-half(axis)..=half(axis)).map(|i| f64::from(i) / PER_METRE);
-    let points = line(1).flat_map(|y| line(0).map(move |x| [x, y]));
-    points.filter(|point| domain.contains(point)).flatten().collect()
-}
-
-fn surface(ellipse: &Domain) -> Result<Surface, DataError> {
-    let inner = ellipse.interior(FINE.1, Sampling::Grid, 0).coords;
-    let points = [ellipse.boundary(POINTS.2).coords, inner].concat();
-    let (plane, _) = points.as_chunks::<2>();
-    Ok(Surface { triangles: triangulate(plane, None)?, loaded: vec![true; plane.len()], points })
 }

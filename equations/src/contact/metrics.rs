@@ -1,7 +1,5 @@
-//! Measures of a contact: which points are touched, how far two patches are apart, the net force.
+//! Measures of a contact: which points are touched, how far two patches are apart.
 
-use nisp_data::DataError;
-use nisp_data::export::triangulate;
 use nisp_data::nearest::chamfer;
 
 /// How a touched point is told from one that is not.
@@ -37,30 +35,9 @@ pub fn patch_chamfer_mm2(a: &[[f64; 3]], b: &[[f64; 3]]) -> Option<f64> {
     }
 }
 
-/// The integral of a density over an area, from its values at points and the area that each stands for.
-pub fn integral(density: &[f64], areas: &[f64]) -> f64 {
-    density.iter().zip(areas).map(|(density, area)| density * area).sum()
-}
-
-/// The area that each of plane points stands for: a third of every triangle between it and its neighbours, which
-/// integrates whatever is linear between points.
-///
-/// # Errors
-/// Points that are not finite.
-pub fn areas(points: &[[f64; 2]]) -> Result<Vec<f64>, DataError> {
-    let mut areas = vec![0.0; points.len()];
-    for corners in triangulate(points, None)? {
-        let [p, q, r] = corners.map(|corner| points[corner]);
-        let double = (q[0] - p[0]) * (r[1] - p[1]) - (q[1] - p[1]) * (r[0] - p[0]);
-        corners.into_iter().for_each(|corner| areas[corner] += double.abs() / 6.0);
-    }
-    Ok(areas)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
 
     const PAPER: Rule = Rule { least: 2500.0, of_mean: 2.0 };
 
@@ -87,20 +64,5 @@ mod tests {
         assert_eq!(patch_chamfer_mm2(&patch(0.0), &[]), None);
         assert_eq!(patch_chamfer_mm2(&[], &patch(0.0)), None);
         assert_eq!(patch_chamfer_mm2(&[], &[]), Some(0.0));
-    }
-
-    #[test]
-    fn linear_pressures_integrate_exactly_and_a_dome_nearly() {
-        let points = grid(7);
-        let areas_of = areas(&points).unwrap();
-        let linear: Vec<f64> = points.iter().map(|p| 3.0 + 2.0 * p[0] - p[1]).collect();
-        assert!((integral(&linear, &areas_of) - 3.5).abs() < 1e-12);
-        // The integral of sin(pi x) sin(pi y) is 4 / pi^2; the error is of second order.
-        let error = |n: i32| {
-            let points = grid(n);
-            let dome: Vec<f64> = points.iter().map(|p| (PI * p[0]).sin() * (PI * p[1]).sin()).collect();
-            (integral(&dome, &areas(&points).unwrap()) - 4.0 / (PI * PI)).abs()
-        };
-        assert!(error(41) < 1e-3 && (3.5..4.5).contains(&(error(21) / error(41))), "{} {}", error(21), error(41));
     }
 }

@@ -1,23 +1,39 @@
 //! Contact from point clouds: a body's shape, what it is bound to, and how well its contact was found.
 //!
-//! `membrane` and `sponge` bind the scenes of their equations; `observed` reads samples and clouds, `given` settles
-//! parameters; [`Contact`] says where the pressure acts, [`metrics`] and [`ContactScore`] judge it.
+//! `inflated` binds the scenes of `membrane` and `bubble`, `sponge` those of its own; `observed` reads samples and clouds,
+//! `given` settles parameters; [`Contact`] says where the pressure acts, [`Face`] integrates it, [`metrics`] and
+//! [`ContactScore`] judge it.
 
+mod bubble;
+mod calibrate;
+mod calibration;
+mod deviation;
+mod face;
 mod given;
+mod inflated;
 mod membrane;
 pub mod metrics;
 mod observed;
+mod patches;
+mod pose;
 mod score;
 mod sponge;
 
+pub(crate) use bubble::prepare as prepare_bubble;
+pub use calibrate::References;
+pub use calibration::{Calibration, Quality};
+pub use deviation::Deviation;
+pub use face::{Face, Load};
+pub use inflated::Membrane;
 pub(crate) use membrane::prepare as prepare_membrane;
 pub use metrics::Rule;
+pub use patches::Patch;
+pub use pose::Pose;
 pub use score::{Against, ContactScore, TrueContact, Values};
 pub(crate) use sponge::prepare as prepare_sponge;
 
 use nisp::schema::{Scene, TermKind};
 use nisp::{BindError, Problem};
-use nisp_data::domain::Points;
 use nisp_data::{Cloud, DataError, Table};
 
 use crate::truth::{Headers, Truth};
@@ -35,8 +51,10 @@ pub struct Contact {
     pub pressure: Option<&'static str>,
     /// How a touched point is told.
     pub rule: Rule,
-    /// Where the pressure can act: places at rest with areas in square metres.
-    pub area: Points,
+    /// How the pressure acts.
+    pub load: Load,
+    /// Where it can act.
+    pub face: Face,
     /// The surface, for pictures.
     pub surface: Surface,
     /// From where a picture shows it: degrees from x towards y, and degrees above the plane of both.
@@ -76,7 +94,7 @@ impl Contact {
             let along = |axis: usize| rest.get(axis).copied().unwrap_or(0.0) + self.unit * displacement[axis][at];
             std::array::from_fn(along)
         };
-        points.chunks_exact(self.area.dim.max(1)).enumerate().map(place).collect()
+        points.chunks_exact(self.face.dim.max(1)).enumerate().map(place).collect()
     }
 }
 
@@ -119,7 +137,7 @@ impl Contact {
                 headers.read(table, name, unit)?;
             }
         }
-        TrueContact::read(table, truth, pressure, headers).map(Some)
+        TrueContact::read(table, truth, headers, self, pressure).map(Some)
     }
 }
 

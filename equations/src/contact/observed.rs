@@ -85,14 +85,29 @@ impl Sample {
 }
 
 impl Observed {
+    /// Reads all files of data as one cloud.
+    pub(super) fn all(request: &Request) -> Result<Self, PrepareError> {
+        let mut cloud = Cloud::default();
+        for (_, path) in &request.data {
+            let mut one = Cloud::read(path)?;
+            if let Some(unit) = request.unit {
+                one.convert_from(unit);
+            }
+            cloud.points.append(&mut one.points);
+            cloud.warnings.append(&mut one.warnings);
+        }
+        let source = request.data.first().map(|(_, path)| path.clone()).unwrap_or_default();
+        Ok(Self { sample: None, cloud, source, truth: None })
+    }
+
     /// Reads what is asked for; without data and sample, the example.
     pub(super) fn read(entry: &Entry, request: &Request, example: &Example) -> Result<Self, PrepareError> {
-        let (sample, data) = match (&request.sample, request.file(entry)?) {
+        let (sample, data) = match (request.calibration.as_ref().or(request.sample.as_ref()), request.file(entry)?) {
             (None, Some(data)) => match sample_beside(data) {
                 Some(path) => (Some(path), None),
                 None => (None, Some(data)),
             },
-            (sample, data) => (sample.clone(), data),
+            (sample, data) => (sample.cloned(), data),
         };
         let sample = sample.map(|path| Sample::read(&path)).transpose()?;
         let alone = |what: &str| Err(PrepareError::Cloud { index: request.cloud.unwrap_or(0), instead: what.into() });

@@ -1,10 +1,12 @@
-//! How well a contact was found, against a truth that no solver has seen.
+//! What was found of a contact, and how well, against a truth that no solver has seen.
 
 use nisp_data::nearest::intersection_over_union;
 use nisp_data::{DataError, Table};
 
-use super::Contact;
-use super::metrics::{areas, integral, patch_chamfer_mm2};
+use super::face::{Face, length, minus, weighted_sum};
+use super::metrics::patch_chamfer_mm2;
+use super::patches::{Patch, patches};
+use super::{Contact, Load};
 use crate::truth::{Headers, Truth};
 
 /// The true contact at the truth's points.
@@ -12,23 +14,34 @@ use crate::truth::{Headers, Truth};
 pub struct TrueContact {
     /// Which points are touched.
     pub mask: Vec<bool>,
-    /// The net force, in newtons.
-    pub force: f64,
+    /// The net force on the body, in newtons.
+    pub force: [f64; 3],
 }
 
 /// What was found of a contact.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ContactScore {
-    /// Magnitude of the net force, the pressure's integral over the area at rest, in newtons.
-    pub force: f64,
+    /// The net force on the body, in newtons.
+    pub force: [f64; 3],
+    /// By how many newtons the net force grows with each pascal at each point of the contact's face.
+    pub per_pascal: Vec<f64>,
+    /// The connected parts that are touched, the largest first.
+    pub patches: Vec<Patch>,
     /// How far that is from the truth, where it is known.
     pub against: Option<Against>,
+}
+
+impl ContactScore {
+    /// Magnitude of the net force in newtons.
+    pub fn magnitude(&self) -> f64 {
+        length(self.force)
+    }
 }
 
 /// A contact against its truth.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Against {
-    /// Error of the net force in newtons.
+    /// Error of the net force in newtons: the length of the difference of both vectors.
     pub force_error: f64,
     /// Intersection over union of the touched points.
     pub iou: f64,
@@ -44,37 +57,65 @@ impl TrueContact {
     ///
     /// # Errors
     /// No such column, or points without an area.
-    pub fn read(table: &Table, truth: &Truth, pressure: &str, headers: Headers<'_>) -> Result<Self, DataError> {
+    pub(super) fn read(
+        table: &Table,
+        truth: &Truth,
+        headers: Headers<'_>,
+        contact: &Contact,
+        pressure: &str,
+    ) -> Result<Self, DataError> {
         let mask: Vec<bool> = headers.read(table, "contact", "")?.iter().map(|contact| *contact > 0.5).collect();
-        let dim = truth.points.len() / mask.len().max(1);
-        let plane: Vec<[f64; 2]> = truth.points.chunks_exact(dim.max(2)).map(|point| [point[0], point[1]]).collect();
-        let areas = areas(&plane)?;
-        Ok(Self { mask, force: truth.of(pressure).map_or(0.0, |pressure| integral(pressure, &areas)) })
+        let face = Face::new(contact.face.dim, truth.points.clone())?;
+        let fields = contact.displacement.map(|name| truth.of(name).map(<[f64]>::to_vec));
+        let moved = contact.moved(&truth.points, &fields).unwrap_or_else(|| face.at_rest());
+        let forces = face.forces(contact.load, &moved);
+        Ok(Self { mask, force: truth.of(pressure).map_or([0.0; 3], |pressure| weighted_sum(pressure, &forces)) })
     }
 }
 
 impl Contact {
-    /// Scores a pressure and displacements; nothing where the scene has no pressure. The truth is looked at where it
-    /// is known; without displacements in `values` there is no distance between patches.
-    pub fn score(&self, values: &Values<'_>, truth: Option<&Truth>) -> Option<ContactScore> {
-        let name = self.pressure?;
-        let force = integral(&values(name, &self.area.coords)?, self.area.weights.as_deref()?).abs();
-        let known = truth.zip(self.truth.as_ref());
-        let against = known.and_then(|(truth, contact)| self.against(values, force, truth, contact));
-        Some(ContactScore { force, against })
+    /// Where points have moved to in metres, if all displacements are known.
+    fn moved(&self, points: &[f64], fields: &[Option<Vec<f64>>; 3]) -> Option<Vec<[f64; 3]>> {
+        let [Some(x), Some(y), Some(z)] = fields else { return None };
+        Some(self.deformed(points, [x, y, z]))
     }
 
-    fn against(&self, values: &Values<'_>, force: f64, truth: &Truth, contact: &TrueContact) -> Option<Against> {
+    /// Scores a pressure and displacements; nothing where the scene has no pressure, or where its force asks for
+    /// displacements that `values` does not know. The truth is looked at where it is known; without displacements in
+    /// `values` the patches are those at rest, and there is no distance between them.
+    pub fn score(&self, values: &Values<'_>, truth: Option<&Truth>) -> Option<ContactScore> {
+        let points = &self.face.points;
+        let pressures = values(self.pressure?, points)?;
+        let moved = match self.moved(points, &self.displacement.map(|name| values(name, points))) {
+            Some(moved) => moved,
+            None if self.load == Load::Follower => return None,
+            None => self.face.at_rest(),
+        };
+        let forces = self.face.forces(self.load, &moved);
+        let force = weighted_sum(&pressures, &forces);
+        let size = length(force);
+        let along = |own: &[f64; 3]| (0..3).map(|axis| own[axis] * force[axis]).sum::<f64>() / size;
+        // Without any force there is no direction along which it grows.
+        let per_pascal = if size > 0.0 { forces.iter().map(along).collect() } else { Vec::new() };
+        let known = truth.zip(self.truth.as_ref());
+        Some(ContactScore {
+            force,
+            per_pascal,
+            patches: patches(&self.face, &self.rule.mask(&pressures), &moved, &pressures, &forces),
+            against: known.and_then(|(truth, contact)| self.against(values, force, truth, contact)),
+        })
+    }
+
+    fn against(&self, values: &Values<'_>, force: [f64; 3], truth: &Truth, contact: &TrueContact) -> Option<Against> {
         let mask = self.rule.mask(&values(self.pressure?, &truth.points)?);
         let touched = |fields: [Option<Vec<f64>>; 3], mask: &[bool]| -> Option<Vec<[f64; 3]>> {
-            let [Some(x), Some(y), Some(z)] = fields else { return None };
-            let moved = self.deformed(&truth.points, [&x, &y, &z]).into_iter().zip(mask);
+            let moved = self.moved(&truth.points, &fields)?.into_iter().zip(mask);
             Some(moved.filter(|(_, touched)| **touched).map(|(point, _)| point).collect())
         };
         let found = touched(self.displacement.map(|name| values(name, &truth.points)), &mask);
         let real = touched(self.displacement.map(|name| truth.of(name).map(<[f64]>::to_vec)), &contact.mask);
         Some(Against {
-            force_error: (force - contact.force).abs(),
+            force_error: length(minus(force, contact.force)),
             iou: intersection_over_union(&mask, &contact.mask).ok()?,
             patch_chamfer_mm2: found.zip(real).and_then(|(found, real)| patch_chamfer_mm2(&found, &real)),
         })
@@ -102,17 +143,19 @@ mod tests {
             ("f", column(&|x, y| if disc(x, y, 0.3) { 5e3 } else { 0.0 })),
         ];
         let truth = Truth { points: points.clone(), heads, outside: 0 };
-        let contact = Contact {
+        let mut contact = Contact {
             displacement: ["u", "v", "w"],
             unit: 1e-3,
             pressure: Some("f"),
             rule: Rule { least: 2500.0, of_mean: 2.0 },
-            area: square.interior(40_000, Sampling::Grid, 0),
+            load: Load::Fixed([0.0, 0.0, -1.0]),
+            face: Face::new(2, square.interior(40_000, Sampling::Grid, 0).coords).unwrap(),
             surface: Surface { points: vec![], triangles: vec![], loaded: vec![] },
             eye: [0.0, 90.0],
-            truth: Some(TrueContact::read(&table, &truth, "f", Headers::default()).unwrap()),
+            truth: None,
             rival: None,
         };
+        contact.truth = Some(TrueContact::read(&table, &truth, Headers::default(), &contact, "f").unwrap());
         (contact, truth)
     }
 
@@ -137,7 +180,8 @@ mod tests {
         let (contact, truth) = body();
         let score = contact.score(&found(0.24), Some(&truth)).unwrap();
         let (force, real) = [0.24, 0.3].map(|r: f64| 5e3 * std::f64::consts::PI * r * r).into();
-        assert!((score.force / force - 1.0).abs() < 5e-3, "{score:?}");
+        assert!((score.magnitude() / force - 1.0).abs() < 5e-3, "{score:?}");
+        assert_eq!(score.patches.len(), 1);
         let against = score.against.unwrap();
         assert!((against.force_error / (real - force) - 1.0).abs() < 0.03, "{against:?}");
         assert!((against.iou - 0.64).abs() < 0.01, "{against:?}");
@@ -157,8 +201,9 @@ mod tests {
         let (contact, truth) = body();
         let nothing = |_: &str, at: &[f64]| Some(vec![0.0; at.len() / 2]);
         let score = contact.score(&nothing, Some(&truth)).unwrap();
-        let against = score.against.unwrap();
-        assert_eq!((score.force, against.iou, against.patch_chamfer_mm2), (0.0, 0.0, None));
+        let against = score.against.as_ref().unwrap();
+        assert_eq!((score.magnitude(), against.iou, against.patch_chamfer_mm2), (0.0, 0.0, None));
+        assert!(score.patches.is_empty());
         assert_eq!(contact.score(&nothing, None).unwrap().against, None);
         assert_eq!(Contact { pressure: None, ..contact }.score(&nothing, None), None);
     }

@@ -6,7 +6,7 @@ use serde::Deserialize;
 
 use super::given::{Given, Number, Positive, Size};
 use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
-use super::{Contact, ContactRival, Rule, Surface, bind_cloud};
+use super::{Contact, ContactRival, Face, Load, Rule, Surface, bind_cloud};
 use crate::PrepareError;
 use crate::catalogue::{Entry, Prepared, Request};
 use crate::rivals::LinearPressure;
@@ -74,8 +74,8 @@ const PATCHES: Patches = Patches { level: 500.0, edges: 0.15, area: 0.75 };
 const NODES: usize = 47;
 /// Nodes along an edge of the surface in pictures.
 const DRAWN: usize = 31;
-/// Points of the net force's quadrature.
-const FINE: usize = 10_000;
+/// Nodes along an edge between which the net force is integrated.
+const FINE: usize = 101;
 
 /// The threshold at which the truth counts a point as touched.
 const RULE: Rule = Rule { least: 200.0, of_mean: 0.0 };
@@ -138,7 +138,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     }
     bind_cloud(&mut problem, &observed.cloud)?;
 
-    let headers = Headers { chosen: &request.columns, also: ALSO };
+    let headers = Headers { chosen: &request.columns, rather: &[], also: ALSO };
     let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
     let square = Domain::cuboid(&low[..2], &high[..2])?;
     let mut contact = Contact {
@@ -146,7 +146,8 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         unit: 1e-3,
         pressure: Some("f"),
         rule: RULE,
-        area: on_the_bottom(&square.interior(FINE, Sampling::Grid, 0), side),
+        load: Load::Fixed(presses),
+        face: Face::new(3, on_the_bottom(FINE, side))?,
         surface: surface(side),
         // From below, where the pressure is.
         eye: [-60.0, -35.0],
@@ -154,10 +155,9 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         rival: rival(wrench, side),
     };
     contact.truth = contact.true_contact(schema, observed.truth.as_ref().zip(truth.as_ref()), headers)?;
-    let nodes = face(NODES).into_iter().flat_map(|[x, y]| [side * x, side * y, -side]).collect();
     Ok(Prepared {
         problem,
-        points: nodes,
+        points: on_the_bottom(NODES, side),
         outline: square.outline(4),
         planes: Vec::new(),
         measured: Vec::new(),
@@ -168,6 +168,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         rival: None,
         local,
         contact: Some(contact),
+        references: None,
     })
 }
 
@@ -235,10 +236,9 @@ fn rival([force, torque]: [[f64; 3]; 2], side: f64) -> Option<ContactRival> {
     Some(ContactRival { name: "the wrench alone", pressure: Box::new(pressure) })
 }
 
-/// Plane points on the face that is pressed.
-fn on_the_bottom(plane: &Points, side: f64) -> Points {
-    let coords = plane.iter().flat_map(|point| [point[0], point[1], -side]).collect();
-    Points { dim: 3, coords, normals: None, weights: plane.weights.clone() }
+/// Nodes on the face that is pressed, so many along an edge.
+fn on_the_bottom(nodes: usize, side: f64) -> Vec<f64> {
+    face(nodes).into_iter().flat_map(|[x, y]| [side * x, side * y, -side]).collect()
 }
 
 /// Nodes of a face of a unit cube around its middle, row by row.

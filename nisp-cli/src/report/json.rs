@@ -6,6 +6,7 @@ use nisp::solve::driver::Status;
 use nisp::{Estimate, LearnedValue, Solution, TermReport};
 use nisp_cli::score::Found;
 use nisp_data::cloud::LengthUnit;
+use nisp_equations::contact::Patch;
 use serde_json::{Map, Value, json};
 
 use super::Run;
@@ -15,7 +16,7 @@ pub(crate) fn json(solution: &Solution, run: &Run<'_>, found: &Found) -> String 
     let heads = |source: bool| -> Vec<Value> {
         run.answer.estimates.iter().filter(|estimate| estimate.source == source).map(head).collect()
     };
-    let object = json!({
+    let mut object = json!({
         "scene": run.options.equation,
         "status": status(solution),
         "seed": run.settings.seed,
@@ -40,15 +41,19 @@ pub(crate) fn json(solution: &Solution, run: &Run<'_>, found: &Found) -> String 
         "files": files(run),
         "settings": settings(solution, run),
     });
+    if let Some(contact) = &found.contact {
+        object["force"] = json!(contact.force);
+        object["force_sd"] = json!(found.force_deviation);
+        object["patches"] = contact.patches.iter().map(patch).collect();
+    }
     format!("{object}\n")
 }
 
+/// An interrupted run is one that has not converged.
 fn status(solution: &Solution) -> &'static str {
     match solution.status {
-        Status::Converged => "converged",
-        Status::Budget => "budget",
-        Status::NotConverged | Status::Interrupted => "not_converged",
-        Status::Inconsistent => "inconsistent",
+        Status::Interrupted => Status::NotConverged.name(),
+        status => status.name(),
     }
 }
 
@@ -82,7 +87,7 @@ fn errors(found: &Found) -> Map<String, Value> {
         errors.insert(format!("{}_sd", learned.name), learned.deviation.into());
     }
     if let Some(contact) = &found.contact {
-        errors.insert("force_N".into(), contact.force.into());
+        errors.insert("force_N".into(), contact.magnitude().into());
         if let Some(against) = &contact.against {
             errors.insert("iou".into(), against.iou.into());
             errors.insert("patch_chamfer_mm2".into(), against.patch_chamfer_mm2.into());
@@ -90,6 +95,17 @@ fn errors(found: &Found) -> Map<String, Value> {
         }
     }
     errors
+}
+
+/// A connected touched part, in SI units.
+fn patch(patch: &Patch) -> Value {
+    json!({
+        "centre_at_rest_m": patch.centre_at_rest,
+        "centre_m": patch.centre,
+        "area_at_rest_m2": patch.area_at_rest,
+        "area_m2": patch.area,
+        "force_N": patch.force,
+    })
 }
 
 /// The points of the answer, coordinate by coordinate.
@@ -164,6 +180,7 @@ fn settings(solution: &Solution, run: &Run<'_>) -> Value {
         "data": files_of(&options.data),
         "sample": options.sample.as_deref().map(text),
         "cloud": options.cloud,
+        "calibration": options.calibration.as_deref().map(text),
         "unit": options.unit.map(LengthUnit::symbol),
         "truth": options.truth.as_deref().map(text),
         "columns": pairs(&options.column),
@@ -174,7 +191,7 @@ fn settings(solution: &Solution, run: &Run<'_>) -> Value {
         "width": options.width,
         "layers": options.layers,
         "resample": options.resample,
-        "budget_s": options.budget,
+        "budget_s": settings.budget.map(|budget| budget.as_secs_f64()),
         "iterations": options.iterations,
         "out": text(&options.out),
         "checkpoint": options.checkpoint,

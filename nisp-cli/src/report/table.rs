@@ -74,7 +74,7 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
         }
     }
     if let Some(contact) = &found.contact {
-        contact_rows(contact, found.rival.as_ref()).into_iter().for_each(&mut line);
+        contact_rows(contact, found.force_deviation, found.rival.as_ref()).into_iter().for_each(&mut line);
     }
     for learned in &found.learned {
         let deviation = learned.deviation.map_or_else(String::new, |deviation| format!(" ± {deviation:.2e}"));
@@ -107,7 +107,7 @@ fn found_rows(found: &Found) -> Vec<String> {
 }
 
 /// A contact's net force and how well it was found, beside those of a classical way.
-fn contact_rows(contact: &ContactScore, rival: Option<&Rival>) -> Vec<String> {
+fn contact_rows(contact: &ContactScore, deviation: Option<f64>, rival: Option<&Rival>) -> Vec<String> {
     let mut rows = vec!["contact".into()];
     let mut add = |name: &str, unit: &str, value: &dyn Fn(&ContactScore) -> Option<f64>| {
         let Some(own) = value(contact) else { return };
@@ -115,10 +115,22 @@ fn contact_rows(contact: &ContactScore, rival: Option<&Rival>) -> Vec<String> {
         let other = rival.and_then(|rival| Some((rival.name, value(&rival.contact)?)));
         rows.extend(other.map(|(name, value)| format!("    {name:24} {value:.3} {unit}")));
     };
-    add("net force", "N", &|contact| Some(contact.force));
+    add("net force", "N", &|contact| Some(contact.magnitude()));
     add("error of the net force", "N", &|contact| Some(contact.against.as_ref()?.force_error));
     add("overlap of the patch (IoU)", "", &|contact| Some(contact.against.as_ref()?.iou));
     add("Chamfer distance, patch", "mm^2", &|contact| contact.against.as_ref()?.patch_chamfer_mm2);
+    let vector = |[x, y, z]: [f64; 3]| format!("({x:.3}, {y:.3}, {z:.3})");
+    let bar = deviation.map_or_else(String::new, |deviation| format!(", standard deviation {deviation:.3} N"));
+    rows.push(format!("  {:26} {} N{bar}", "force on the body", vector(contact.force)));
+    for patch in &contact.patches {
+        let (area, centre) = (1e6 * patch.area, patch.centre.map(|x| 1e3 * x));
+        let [x, y, z] = centre;
+        rows.push(format!(
+            "  {:26} {area:.0} mm^2 around ({x:.1}, {y:.1}, {z:.1}) mm, {} N",
+            "patch, deformed",
+            vector(patch.force)
+        ));
+    }
     rows
 }
 

@@ -1,4 +1,4 @@
-//! The files of a solved problem: source and state as CSV, and a plot.
+//! The files of a solved problem: source and state as CSV, a plot, and the answer itself.
 
 mod contact;
 
@@ -18,12 +18,14 @@ const CURVE: usize = 600;
 /// Names of the files that will be written.
 pub(crate) fn names(prepared: &Prepared) -> Vec<&'static str> {
     let surface = prepared.contact.as_ref().map(|_| contact::SURFACE);
-    [SOURCE, STATE, PLOT].into_iter().chain(surface.into_iter().flatten()).collect()
+    [SOURCE, STATE, PLOT, SAVED].into_iter().chain(surface.into_iter().flatten()).collect()
 }
 
 const SOURCE: &str = "source.csv";
 const STATE: &str = "state.csv";
 const PLOT: &str = "plot.svg";
+/// What `nisp eval` reads.
+const SAVED: &str = "answer.nisp";
 
 /// What is said of a solved problem, and the files that say it.
 pub(crate) struct Answer {
@@ -42,6 +44,14 @@ impl Answer {
         Ok(Self { files, estimates, warnings: Vec::new() })
     }
 
+    /// Adds the answer itself: that it cannot be kept is no reason to lose the tables.
+    fn keep(&mut self, solution: &mut Solution) {
+        match solution.saved() {
+            Ok(saved) => self.files.push((SAVED, saved.to_bytes())),
+            Err(error) => self.warnings.push(format!("{SAVED} is not written: {error}")),
+        }
+    }
+
     /// Adds a file that shows what the tables say: that it cannot be made is no reason to lose them.
     fn show(&mut self, name: &'static str, content: Result<Vec<u8>, DataError>) {
         match content {
@@ -51,9 +61,16 @@ impl Answer {
     }
 }
 
-/// The answer at the points of [`Prepared`]. Where the user has asked to stop it has no error bars: they take time, and do not
-/// hold for a state that the method left halfway.
+/// The answer at the points of [`Prepared`], and the answer itself. Where the user has asked to stop it has no error bars: they
+/// take time, and do not hold for a state that the method left halfway.
 pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataError> {
+    let mut answer = shown(prepared, solution)?;
+    answer.keep(solution);
+    Ok(answer)
+}
+
+/// The answer in tables and pictures.
+fn shown(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataError> {
     if let Some(contact) = &prepared.contact {
         return contact::answer(prepared, contact, solution);
     }

@@ -15,7 +15,8 @@ fn object(text: &str) -> Value {
     serde_json::from_str(text).unwrap()
 }
 
-const FILES: [&str; 6] = ["plot.svg", "source.csv", "state.csv", "surface.ply", "surface.svg", "surface.vtu"];
+const FILES: [&str; 7] =
+    ["answer.nisp", "plot.svg", "source.csv", "state.csv", "surface.ply", "surface.svg", "surface.vtu"];
 
 #[test]
 fn a_contact_is_scored_beside_a_classical_way_and_its_surface_is_written() {
@@ -195,7 +196,7 @@ fn local_functions_find_the_patch_and_the_modulus() {
         assert_eq!(ran.code, Some(0), "{}", ran.stderr);
         object(&ran.stdout)
     };
-    let contact = answer("membrane --iterations 14");
+    let contact = answer("membrane --iterations 24");
     assert_eq!(contact["optimizer"], "gauss-newton");
     let of = |name: &str| contact["errors"][name].as_f64().unwrap();
     assert!(of("iou") > 0.7, "{}", contact["errors"]);

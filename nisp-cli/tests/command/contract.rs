@@ -64,7 +64,7 @@ fn json_is_one_object_with_the_promised_fields_and_nothing_else() {
     assert!(object["wall_s"].as_f64().unwrap() > 0.0 && object["loss"].as_f64().unwrap() > 0.0);
     // The mean of 6 exp(-3t) over [0, 2] s is 0.9975; the trapezia's ends add a little.
     assert!((object["errors"]["f_if_zero"].as_f64().unwrap() - 0.9975).abs() < 5e-3);
-    assert_eq!(names(&place.path("nisp-out")), ["plot.svg", "source.csv", "state.csv"]);
+    assert_eq!(names(&place.path("nisp-out")), ["answer.nisp", "plot.svg", "source.csv", "state.csv"]);
 }
 
 #[test]
@@ -143,7 +143,7 @@ fn a_configuration_stands_for_flags_and_flags_win() {
     let object = object(&ran.stdout);
     assert_eq!((&object["seed"], &object["iterations"]), (&4.into(), &7.into()));
     assert_eq!((&object["settings"]["width"], &object["settings"]["parameters"]["f0"]), (&5.into(), &6.5.into()));
-    assert_eq!(names(&place.path("study/out")).len(), 3);
+    assert_eq!(names(&place.path("study/out")).len(), 4);
     let refusal = |content: &str| {
         place.put("bad.toml", content);
         let ran = place.run("solve rlc --config bad.toml");
@@ -165,7 +165,7 @@ fn a_run_that_cannot_converge_says_so_with_code_3() {
     let object = object(&ran.stdout);
     assert_eq!(object["status"], "not_converged");
     assert!(object["warnings"][0].as_str().unwrap().contains("f64"));
-    assert_eq!(names(&place.path("nisp-out")).len(), 3);
+    assert_eq!(names(&place.path("nisp-out")).len(), 4);
 }
 
 #[test]
@@ -204,7 +204,11 @@ fn help_teaches() {
     {
         assert!(help.stdout.contains(part), "{part}");
     }
-    assert!(help.stdout.lines().all(|line| line.chars().count() <= 120));
+    let eval = place.run("eval --help");
+    for part in ["Examples:", "bending moment", "_sd", "NaN", "SI units", "Exit codes:"] {
+        assert!(eval.stdout.contains(part), "{part}");
+    }
+    assert!(help.stdout.lines().chain(eval.stdout.lines()).all(|line| line.chars().count() <= 120));
     assert_eq!(place.run("").code, Some(2));
     assert_eq!(place.run("--version").code, Some(0));
 }

@@ -9,7 +9,8 @@ use std::time::Duration;
 use crate::common::{Place, names};
 use serde_json::Value;
 
-const FILES: [&str; 3] = ["plot.svg", "source.csv", "state.csv"];
+const FILES: [&str; 4] = ["answer.nisp", "plot.svg", "source.csv", "state.csv"];
+const WITH_CHECKPOINT: [&str; 5] = ["answer.nisp", "checkpoint.nisp", "plot.svg", "source.csv", "state.csv"];
 
 /// Starts a run of many steps and waits until it has its folder.
 fn start(place: &Place, line: &str) -> Child {
@@ -47,7 +48,7 @@ fn two_runs_into_one_folder_do_not_mix() {
     assert_eq!(serde_json::from_str::<Value>(&object).unwrap()["scene"], "pendulum");
     // The first is through: the folder is free, and nothing of the lock stays.
     assert_eq!(place.run("solve rlc --iterations 2 --out a/out").code, Some(3));
-    assert_eq!(names(&place.path("a/out")), [["checkpoint.nisp"].as_slice(), &FILES].concat());
+    assert_eq!(names(&place.path("a/out")), WITH_CHECKPOINT);
 }
 
 #[test]
@@ -70,7 +71,7 @@ fn a_folder_that_is_deleted_meanwhile_is_made_again() {
     let object: Value = serde_json::from_str(&object).unwrap();
     assert_eq!(object["files"]["folder"], "a/out");
     assert!(object["files"]["fault"].as_str().unwrap().contains("the folder is gone"), "{object}");
-    assert_eq!(names(&place.path("a/out")), [["checkpoint.nisp"].as_slice(), &FILES].concat());
+    assert_eq!(names(&place.path("a/out")), WITH_CHECKPOINT);
 }
 
 #[test]
@@ -80,9 +81,12 @@ fn a_file_that_cannot_be_replaced_sends_all_of_them_beside() {
     fs::create_dir(place.path("a/out/state.csv")).unwrap();
     let (code, table, words) = stop(child);
     assert_eq!(code, Some(4), "{words}");
-    assert!(table.contains("plot.svg and checkpoint.nisp to a/out-1, because a/out/state.csv: "), "{table}");
+    assert!(
+        table.contains("plot.svg, answer.nisp and checkpoint.nisp to a/out-1, because a/out/state.csv: "),
+        "{table}"
+    );
     assert_eq!(names(&place.path("a/out")), ["state.csv"]);
-    assert_eq!(names(&place.path("a/out-1")), [["checkpoint.nisp"].as_slice(), &FILES].concat());
+    assert_eq!(names(&place.path("a/out-1")), WITH_CHECKPOINT);
     // Known before the start, it is bad input.
     let ran = place.run("solve rlc --iterations 2 --out a/out");
     assert_eq!((ran.code, ran.stdout.as_str()), (Some(2), ""));
@@ -109,7 +113,7 @@ fn without_any_folder_the_tables_are_printed() {
                 let object: Value = serde_json::from_str(&out).unwrap();
                 let folder = object["files"]["folder"].as_str().unwrap();
                 assert!(folder.starts_with(place.path("tmp").to_str().unwrap()), "{folder}");
-                assert_eq!(names(folder.as_ref()), [["checkpoint.nisp"].as_slice(), &FILES].concat());
+                assert_eq!(names(folder.as_ref()), WITH_CHECKPOINT);
             }
             (false, true) => {
                 let object: Value = serde_json::from_str(&out).unwrap();

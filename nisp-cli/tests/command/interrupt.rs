@@ -37,7 +37,10 @@ fn ctrl_c_writes_the_best_state_and_says_so() {
     assert_eq!(object["status"], "not_converged");
     assert!(object["warnings"].to_string().contains("interrupted after"));
     assert!(object["iterations"].as_u64().unwrap() > 0);
-    assert_eq!(names(&place.path("nisp-out")), ["checkpoint.nisp", "plot.svg", "source.csv", "state.csv"]);
+    assert_eq!(
+        names(&place.path("nisp-out")),
+        ["answer.nisp", "checkpoint.nisp", "plot.svg", "source.csv", "state.csv"]
+    );
     let stopped = object["iterations"].as_u64().unwrap();
     let ran = place.run(&format!("solve pendulum --resume nisp-out --iterations {} --json", stopped + 2));
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
@@ -52,7 +55,10 @@ fn sigterm_is_as_ctrl_c() {
     started(&place);
     signal(&child, "-TERM");
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(3));
-    assert_eq!(names(&place.path("nisp-out")), ["checkpoint.nisp", "plot.svg", "source.csv", "state.csv"]);
+    assert_eq!(
+        names(&place.path("nisp-out")),
+        ["answer.nisp", "checkpoint.nisp", "plot.svg", "source.csv", "state.csv"]
+    );
 }
 
 /// A run that has written its files and waits for ever, because nobody reads its standard output.
@@ -78,7 +84,7 @@ fn a_run_that_cannot_go_on_ends_all_the_same() {
     let words = String::from_utf8(output.stderr).unwrap();
     assert_eq!(code, Some(3), "{words}");
     assert!(words.contains("interrupted; the results are in nisp-out"), "{words}");
-    assert_eq!(names(&place.path("nisp-out")), ["plot.svg", "source.csv", "state.csv"]);
+    assert_eq!(names(&place.path("nisp-out")), ["answer.nisp", "plot.svg", "source.csv", "state.csv"]);
 }
 
 #[test]

@@ -60,7 +60,7 @@ fn values_and_bars_are_those_of_the_tables() {
         same(&object["coordinates"][0]["values"], &column(&table, "t [s]"));
     }
     assert_eq!((&object["coordinates"][0]["name"], &object["coordinates"][0]["unit"]), (&"t".into(), &"s".into()));
-    assert_eq!(object["files"]["names"], serde_json::json!(["source.csv", "state.csv", "plot.svg"]));
+    assert_eq!(object["files"]["names"], serde_json::json!(["source.csv", "state.csv", "plot.svg", "answer.nisp"]));
     assert_eq!((&object["files"]["folder"], &object["files"]["fault"]), (&"nisp-out".into(), &Value::Null));
 }
 

@@ -2,9 +2,11 @@
 
 mod bad_cloud;
 mod bad_input;
+mod bubble;
 mod common;
 mod contact;
 mod contract;
+mod eval;
 mod folders;
 mod gaps;
 mod interrupt;

@@ -30,7 +30,7 @@ fn a_full_standard_output_leaves_the_files_and_says_so() {
         let words = String::from_utf8(output.stderr).unwrap();
         assert_eq!(output.status.code(), Some(4), "{words}");
         assert!(words.starts_with("nisp: standard output: ") && !words.contains("panicked"), "{words}");
-        assert_eq!(names(&place.path("out")), ["plot.svg", "source.csv", "state.csv"]);
+        assert_eq!(names(&place.path("out")), ["answer.nisp", "plot.svg", "source.csv", "state.csv"]);
         fs::remove_dir_all(place.path("out")).unwrap();
     }
     let code = place.command("list").stdout(full()).stderr(full()).status().unwrap().code();

@@ -19,8 +19,19 @@ impl Table {
         Table::parse(path, &read_bytes(path, MOST_BYTES)?)
     }
 
+    /// As [`Table::read`], for a table of places, of which one is enough.
+    pub fn read_places(path: impl AsRef<Path>) -> Result<Table, DataError> {
+        let path = path.as_ref();
+        Table::parse_rows(path, &read_bytes(path, MOST_BYTES)?, 1)
+    }
+
     /// Reads CSV from memory; `path` is only used to name the source in errors.
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Table, DataError> {
+        Table::parse_rows(path, bytes, MIN_ROWS)
+    }
+
+    /// Reads CSV with so many rows at least.
+    fn parse_rows(path: &Path, bytes: &[u8], least: usize) -> Result<Table, DataError> {
         let text = decode(path, bytes)?;
         if text.trim().is_empty() {
             return Err(DataError::file(path, "the file is empty; a header line and rows of numbers are needed"));
@@ -51,8 +62,9 @@ impl Table {
             }
             lines.push(line);
         }
-        if lines.len() < MIN_ROWS {
-            let what = format!("{} row(s) of data below the header; at least {MIN_ROWS} are needed", lines.len());
+        if lines.len() < least {
+            let are = if least == 1 { "is" } else { "are" };
+            let what = format!("{} row(s) of data below the header; at least {least} {are} needed", lines.len());
             return Err(DataError::file(path, what));
         }
         Ok(Table { path: path.to_path_buf(), columns, lines })

@@ -51,3 +51,11 @@ fn outliers_are_as_frequent_as_before() {
     let share = far as f64 / cloud.points.len() as f64;
     assert!((share - 0.01).abs() < 1e-3, "{share} of {}", cloud.points.len());
 }
+
+#[test]
+fn every_cube_keeps_the_point_nearest_to_its_middle() {
+    let points = vec![[0.1, 0.1, 0.1], [0.4, 0.5, 0.6], [-0.5, 0.5, 0.5], [1.5, 0.0, 0.0], [0.9, 0.9, 0.9]];
+    let cloud = Cloud { points, warnings: Vec::new() };
+    assert_eq!(cloud.one_of_each_cube(1.0, 1).points, [[0.4, 0.5, 0.6], [-0.5, 0.5, 0.5], [1.5, 0.0, 0.0]]);
+    assert_eq!(cloud.one_of_each_cube(1.0, 3).points, [[0.4, 0.5, 0.6]]);
+}

@@ -32,8 +32,9 @@ use proc_macro2::TokenStream;
 
 /// Compiles a `pde!` invocation to the module that replaces it, or to every error found in it.
 pub fn compile(tokens: TokenStream) -> TokenStream {
+    let text = tokens.to_string();
     match analyse(tokens) {
-        Ok((model, plan)) => code::emit(&model, &plan),
+        Ok((model, plan)) => code::emit(&model, &plan, &text),
         Err(Failure { errors, model }) => {
             let mut tokens = errors.into_compile_errors();
             tokens.extend(model.as_deref().map(code::skeleton));
@@ -56,14 +57,29 @@ pub struct Failure {
 /// # Errors
 /// Everything that is wrong with the equation.
 pub fn analyse(tokens: TokenStream) -> Result<(model::Model, plan::Plan), Failure> {
+    analyse_asking(tokens, None)
+}
+
+/// As [`analyse`], with expressions, separated by commas, that are read out of a scene beside its fields and sources: in the
+/// plan of that scene they are rows of the last group, after those of its heads and in the order of [`model::Model::questions`].
+/// Those that are heads alone have no row of their own.
+///
+/// # Errors
+/// Everything that is wrong with the equation, or with the expressions.
+pub fn analyse_asking(
+    tokens: TokenStream,
+    asked: Option<(&str, TokenStream)>,
+) -> Result<(model::Model, plan::Plan), Failure> {
     let mut errors = error::Errors::new();
     let module = syntax::parse(tokens, &mut errors);
-    let checked = module.and_then(|module| model::check(&module, &mut errors));
+    let (scene, questions) = asked.unzip();
+    let questions = questions.map_or(Some(Vec::new()), |tokens| syntax::parse_expressions(tokens, &mut errors));
+    let checked = module.zip(questions).and_then(|(module, asked)| model::check(&module, &asked, &mut errors));
     let Some(mut model) = checked else { return Err(Failure { errors, model: None }) };
     if !errors.is_empty() {
         return Err(Failure { errors, model: Some(Box::new(model)) });
     }
-    match plan_with_outputs(&mut model) {
+    match plan_with_outputs(&mut model, scene) {
         Ok(plan) => Ok((model, plan)),
         Err(faults) => {
             for fault in faults {
@@ -75,9 +91,9 @@ pub fn analyse(tokens: TokenStream) -> Result<(model::Model, plan::Plan), Failur
 }
 
 /// Plans a model twice, with the groups that users do not write: once to see which fields have a head, once with the group that reads them out.
-fn plan_with_outputs(model: &mut model::Model) -> Result<plan::Plan, Vec<plan::PlanError>> {
+fn plan_with_outputs(model: &mut model::Model, asked: Option<&str>) -> Result<plan::Plan, Vec<plan::PlanError>> {
     beliefs::append(model);
     let first = plan::build(model)?;
-    outputs::append(model, &first);
+    outputs::append(model, &first, asked);
     plan::build(model)
 }

@@ -46,7 +46,7 @@ fn annotated(program: &str) -> String {
     let mut marks: Vec<(usize, String)> = Vec::new();
     let mut errors = Errors::new();
     let module = parse(source.parse().unwrap(), &mut errors);
-    let model = module.and_then(|module| check(&module, &mut errors));
+    let model = module.and_then(|module| check(&module, &[], &mut errors));
     assert_eq!(model.is_some(), errors.is_empty(), "a model comes with no errors, or errors with no model:\n{source}");
     for fault in errors.faults() {
         marks.push(mark(fault.place, "error", &fault.message));

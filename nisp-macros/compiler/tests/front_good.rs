@@ -9,7 +9,7 @@ fn model_of(file: &str) -> Model {
     let text = std::fs::read_to_string(path).unwrap();
     let mut errors = Errors::new();
     let module = parse(text.parse().unwrap(), &mut errors);
-    let model = module.and_then(|module| check(&module, &mut errors));
+    let model = module.and_then(|module| check(&module, &[], &mut errors));
     let messages: Vec<String> = errors
         .faults()
         .iter()

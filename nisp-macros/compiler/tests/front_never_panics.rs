@@ -10,7 +10,7 @@ use proptest::prelude::*;
 fn is_sound(text: &str) -> bool {
     let Ok(tokens) = text.parse::<TokenStream>() else { return false };
     let mut errors = Errors::new();
-    let model = parse(tokens, &mut errors).and_then(|module| check(&module, &mut errors));
+    let model = parse(tokens, &mut errors).and_then(|module| check(&module, &[], &mut errors));
     assert_eq!(model.is_none(), !errors.is_empty(), "{text}");
     let _ = errors.into_compile_errors().to_string();
     model.is_some()

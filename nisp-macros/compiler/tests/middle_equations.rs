@@ -107,7 +107,7 @@ fn model_of(text: &str) -> Result<Model, String> {
     let mut errors = Errors::new();
     let tokens = text.parse().map_err(|error| format!("{error}"))?;
     let module = parse(tokens, &mut errors);
-    let model = module.and_then(|module| check(&module, &mut errors));
+    let model = module.and_then(|module| check(&module, &[], &mut errors));
     let messages: Vec<String> = errors.faults().iter().map(|fault| fault.message.clone()).collect();
     model.filter(|_| messages.is_empty()).ok_or_else(|| messages.join("\n"))
 }

@@ -18,6 +18,20 @@ pub(crate) enum LearnedMap {
     Between(f64, f64, f64),
 }
 
+impl Learned {
+    /// Scalars with the learned ones at the values of their parameters, and the derivatives of these values.
+    pub(crate) fn read_all(learned: &[Self], scalars: &[f64], parameters: &[f64]) -> (Vec<f64>, Vec<f64>) {
+        let mut scalars = scalars.to_vec();
+        let read = |(learned, &parameter): (&Self, &f64)| {
+            let (value, slope) = learned.map.at(parameter);
+            scalars[learned.slot] = value;
+            slope
+        };
+        let slopes = learned.iter().zip(parameters).map(read).collect();
+        (scalars, slopes)
+    }
+}
+
 impl LearnedMap {
     /// True if all values are above zero.
     pub(crate) fn is_positive(self) -> bool {
@@ -28,8 +42,12 @@ impl LearnedMap {
         }
     }
 
-    /// What a size is multiplied by that goes with a power of the value, and the derivative of its logarithm by the value.
+    /// What a size is multiplied by that goes with a power of the value, and the derivative of its logarithm by the value. One
+    /// that may be zero or change its sign is no measure of sizes.
     pub(crate) fn grown(self, theta: f64, power: f64) -> (f64, f64) {
+        if power == 0.0 || !self.is_positive() {
+            return (1.0, 0.0);
+        }
         let value = self.at(theta).0;
         ((value / self.at(0.0).0).powf(power), power / value)
     }

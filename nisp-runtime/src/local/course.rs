@@ -25,14 +25,22 @@ pub(super) const BARS: f64 = 2.0;
 const MOST_OFF: f64 = 5.0;
 /// Relative change of the coefficients at which the answer counts as converged.
 const CONVERGED: f64 = 2e-2;
-/// Change of the logarithm of the probability, by rows, at which the answer counts as converged too if learned scalars rest:
-/// a pressure that the data hardly determine may wander for long.
+/// Change of the logarithm of the probability, by rows, at which a lattice's answer counts as converged too if learned scalars
+/// rest: a pressure that the data hardly determine may wander for long.
 const SETTLED: f64 = 1e-3;
 /// Change of the parameters of learned scalars that rest.
 const RESTING: f64 = 1e-3;
 /// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
 const ROUGHLY: f64 = 0.1;
 const COARSE_STEPS: u64 = 4;
+/// Stiffness against a step of every field's coefficient, in tolerances over natural sizes: the least, at which what rows tell
+/// is hardly slowed, and the most.
+pub(super) const LEAST_DAMPING: f64 = 0.1;
+const MOST_DAMPING: f64 = 1e4;
+/// What damping is multiplied by when a step fails, and divided by when one does not.
+const STRONGER: f64 = 10.0;
+/// How often larger a step may leave the sum of squares: through a narrow valley the way to the minimum leads uphill at first.
+const UPHILL: f64 = 10.0;
 /// Share of a step that is tried where the whole led to numbers that are not finite.
 const RETREAT: f64 = 0.25;
 
@@ -152,7 +160,8 @@ impl Solver<'_> {
             }
             let (steps, small) = if coarse { (COARSE_STEPS, ROUGHLY) } else { (CONVEX_STEPS + 1, CONVERGED) };
             let resting = learned_change(&before, &state) < RESTING;
-            let settled = !coarse && resting && gain.abs() < SETTLED * rows as f64;
+            let still = if coarse { 0.1 * SETTLED } else { SETTLED };
+            let settled = resting && gain.abs() < still * rows as f64;
             if iteration + skipped > steps && (change < small || settled) {
                 status = Status::Converged;
                 break;
@@ -168,25 +177,36 @@ impl Solver<'_> {
         Ok(End { state, status, iterations: stage.before + iteration, loss, warnings, factor, longest, checkpoint })
     }
 
-    /// One step; also what it found on its way.
+    /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it: coefficients that
+    /// hardly any row sees stay where they are, and a step that leads far uphill is taken again with more damping.
     pub(super) fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, Found), LocalError> {
         let regress = iteration == 0;
         self.find_feet(&state.theta, &state.learned);
         let noise = if regress { state.noise } else { self.noise(state.used) };
-        let (loss, rows, probes) = self.assemble(state, noise, Phase::of(iteration, coarse))?;
-        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
-        let used: f64 = probes.iter().map(|probe| factor.inner(probe)).sum::<f64>() / probes.len() as f64;
-        let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
-        // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
-        let fields = self.fields().flat_map(|range| &step[range]);
-        let largest = fields.map(|x| x.abs()).fold(0.0, f64::max);
-        let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
-        let mut next = State { noise, used, ..state.clone() };
-        next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
-        next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
-        let concave = Phase::of(iteration, coarse) == Phase::Concave;
-        let before = loss + self.penalty(state, noise, concave);
-        let after = self.loss(&next, noise) + self.penalty(&next, noise, concave);
+        let phase = Phase::of(iteration, coarse);
+        let (loss, rows, probes) = self.assemble(state, noise, phase)?;
+        let before = loss + self.penalty(state, noise, phase == Phase::Concave);
+        let fields: Vec<usize> = self.fields().flatten().collect();
+        let (mut damping, mut wanted) = (0.0, state.damping);
+        let (next, after, factor) = loop {
+            fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
+            damping = wanted;
+            let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
+            let used: f64 = probes.iter().map(|probe| factor.inner(probe)).sum::<f64>() / probes.len() as f64;
+            let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
+            // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
+            let largest = fields.iter().map(|&at| step[at].abs()).fold(0.0, f64::max);
+            let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
+            let calmer = (damping / STRONGER).max(LEAST_DAMPING);
+            let mut next = State { noise, used, damping: calmer, ..state.clone() };
+            next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
+            next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
+            let after = self.loss(&next, noise) + self.penalty(&next, noise, phase == Phase::Concave);
+            if regress || after <= UPHILL * before || damping >= MOST_DAMPING {
+                break (next, after, factor);
+            }
+            wanted *= STRONGER;
+        };
         Ok((next, Found { loss, gain: before - after, rows, factor }))
     }
 

@@ -22,8 +22,8 @@ pub(super) struct Draws {
     random: StdRng,
 }
 
-/// Deviations of all unknowns, draw by draw.
-#[derive(Default)]
+/// Deviations of all unknowns, draw by draw; no draws where there was no time for any.
+#[derive(Clone, Debug, Default)]
 pub(super) struct Deviations {
     /// Of the coefficients.
     pub(super) coefficients: Vec<Vec<f64>>,

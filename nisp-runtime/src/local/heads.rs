@@ -4,7 +4,8 @@ use super::block::Block;
 use super::lattice::{Exponents, Lattice, NONE, Span};
 use crate::engine::Scaling;
 use crate::functions::{sigmoid, softplus};
-use crate::problem::Bound;
+use crate::problem::{Bound, UnitSystem};
+use crate::schema;
 
 /// Heads as functions of one vector of coefficients, head after head, each `offset + scale * sum(coefficient * spline)`.
 #[derive(Clone, Debug)]
@@ -26,22 +27,24 @@ impl Heads {
     pub(super) fn new(bound: &Bound, lattices: Vec<Lattice>) -> Self {
         let schema = bound.problem.scene().schema;
         let Scaling { offset, .. } = &bound.scaling;
+        let limits = limits(schema, &bound.system);
+        let scale = (0..schema.heads.len()).map(|head| bound.head_scale(head)).collect();
+        let offset = offset.iter().zip(&limits).map(|(&o, limit)| limit.map_or(o, |(_, bound)| bound)).collect();
+        Self::over(lattices, offset, scale, limits)
+    }
+
+    /// Heads on lattices, with these offsets, scales and bounds.
+    pub(super) fn over(
+        lattices: Vec<Lattice>,
+        offset: Vec<f64>,
+        scale: Vec<f64>,
+        bound: Vec<Option<(f64, f64)>>,
+    ) -> Self {
         let mut first = vec![0];
         for lattice in &lattices {
             first.push(first[first.len() - 1] + lattice.len());
         }
-        let limits = schema.heads.iter().map(|head| {
-            let size = bound.system.size(&head.unit);
-            match (head.lower, head.upper) {
-                (Some(lower), None) => Some((1.0, lower / size)),
-                (None, Some(upper)) => Some((-1.0, upper / size)),
-                _ => None,
-            }
-        });
-        let limits: Vec<_> = limits.collect();
-        let scale = (0..schema.heads.len()).map(|head| bound.head_scale(head)).collect();
-        let offset = offset.iter().zip(&limits).map(|(&o, limit)| limit.map_or(o, |(_, bound)| bound)).collect();
-        Self { lattices, first, offset, scale, bound: limits }
+        Self { lattices, first, offset, scale, bound }
     }
 
     /// Number of coefficients.
@@ -68,10 +71,15 @@ impl Heads {
 
     /// The coefficients that a head's value at a point depends on, and its derivatives by them.
     fn parts(&self, head: usize, point: &[f64]) -> Vec<(usize, f64)> {
+        self.parts_of(head, point, &Exponents::default())
+    }
+
+    /// The same of a derivative of a head.
+    pub(super) fn parts_of(&self, head: usize, point: &[f64], exponents: &Exponents) -> Vec<(usize, f64)> {
         let (lattice, scale) = (&self.lattices[head], self.scale[head]);
         let place = lattice.place(point);
         let mut splines = vec![0.0; lattice.per_cell()];
-        lattice.values(&place, &Exponents::default(), &mut splines);
+        lattice.values(&place, exponents, &mut splines);
         let dofs = self.dofs(head, lattice.cell_span(&place)).zip(splines);
         dofs.filter(|(dof, _)| *dof != NONE).map(|(dof, value)| (dof as usize, scale * value)).collect()
     }
@@ -120,4 +128,17 @@ impl Heads {
         debug_assert!((softplus(raw) - inside).abs() <= 1e-9 * inside.max(1.0));
         (raw, sign / (scale * sigmoid(raw)), (distance - inside) * scale * sign)
     }
+}
+
+/// One-sided bounds of the heads in the engine's units.
+pub(super) fn limits(schema: &schema::Scene, system: &UnitSystem) -> Vec<Option<(f64, f64)>> {
+    let limit = |head: &schema::Head| {
+        let size = system.size(&head.unit);
+        match (head.lower, head.upper) {
+            (Some(lower), None) => Some((1.0, lower / size)),
+            (None, Some(upper)) => Some((-1.0, upper / size)),
+            _ => None,
+        }
+    };
+    schema.heads.iter().map(limit).collect()
 }

@@ -45,6 +45,23 @@ impl Lattice {
         Self { degree, low, spacing, cells, kept: (0..all as u32).collect(), full: (0..all).collect() }
     }
 
+    /// A lattice of which the functions of these full numbers are kept, which must rise; nothing if there are no such functions.
+    pub(super) fn keeping(mut self, full: Vec<usize>) -> Option<Self> {
+        let is_sound = full.is_sorted_by(|a, b| a < b) && full.last().is_none_or(|last| *last < self.full_len());
+        if !is_sound {
+            return None;
+        }
+        self.kept = vec![NONE; self.full_len()];
+        full.iter().enumerate().for_each(|(number, &at)| self.kept[at] = number as u32);
+        self.full = full;
+        Some(self)
+    }
+
+    /// Its lower corner, the sizes of its cells, and the full numbers of the functions that are kept.
+    pub(super) fn parts(&self) -> (&[f64], &[f64], &[usize]) {
+        (&self.low, &self.spacing, &self.full)
+    }
+
     /// The same box cut `times` as fine, with functions of another degree.
     pub(super) fn refined(&self, degree: usize, times: usize) -> Self {
         let spacing = self.spacing.iter().map(|h| h / times as f64).collect();

@@ -17,6 +17,7 @@ mod evaluated;
 mod group;
 mod heads;
 mod judged;
+mod kept;
 mod lattice;
 mod meshes;
 mod misfits;
@@ -41,13 +42,12 @@ use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status, Warning};
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
-use crate::solve::vector;
 
+pub(crate) use kept::{CARRIER, KeptLattices};
 pub use prior::Patches;
 
 use course::End;
 use draws::Deviations;
-use heads::Heads;
 use normal::Factor;
 use solver::Solver;
 
@@ -98,9 +98,7 @@ const FINER: f64 = 10.0;
 
 /// A solved problem on its lattices.
 pub(crate) struct LocalSolution {
-    heads: Heads,
-    theta: Vec<f64>,
-    pub(crate) learned: Vec<f64>,
+    pub(crate) kept: KeptLattices,
     pub(crate) status: Status,
     pub(crate) iterations: u64,
     pub(crate) loss: f64,
@@ -110,8 +108,6 @@ pub(crate) struct LocalSolution {
     pub(crate) checkpoint: State,
     /// What the verdict is made from.
     pub(crate) answer: Answer,
-    /// Of all unknowns, drawn from their posterior; none where there was no time for it.
-    deviations: Deviations,
     /// By group and term.
     pub(crate) misfits: Vec<Vec<misfits::Misfits>>,
 }
@@ -175,9 +171,7 @@ pub(crate) fn solve(
     let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     Ok(LocalSolution {
-        heads: solver.heads,
-        theta: state.theta,
-        learned: state.learned,
+        kept: KeptLattices { heads: solver.heads, theta: state.theta, learned: state.learned, draws: deviations },
         status,
         iterations,
         loss,
@@ -185,7 +179,6 @@ pub(crate) fn solve(
         factor,
         checkpoint,
         answer,
-        deviations,
         misfits,
     })
 }
@@ -215,36 +208,6 @@ impl Stage<'_> {
 }
 
 impl LocalSolution {
-    /// Values of a head at points in the engine's units, flat.
-    pub(crate) fn evaluate(&self, head: usize, points: &[f64]) -> Vec<f64> {
-        let inputs = self.heads.lattices[head].dimensions();
-        points.chunks_exact(inputs).map(|point| self.heads.value(head, point, &self.theta)).collect()
-    }
-
-    /// Standard deviations of a head at points in the engine's units, flat: root mean squares of draws from the posterior.
-    pub(crate) fn deviations(&self, head: usize, points: &[f64]) -> Option<Vec<f64>> {
-        let spread = self.spread(head, points);
-        let draws = self.deviations.coefficients.len();
-        (draws > 0).then(|| spread.chunks_exact(draws).map(vector::norm).collect())
-    }
-
-    /// A square root `X` of the covariance `X X^T` of a head's values at points in the engine's units, flat: a row for every
-    /// point, a column for every draw.
-    pub(crate) fn spread(&self, head: usize, points: &[f64]) -> Vec<f64> {
-        let inputs = self.heads.lattices[head].dimensions();
-        let draws = &self.deviations.coefficients;
-        let share = (draws.len() as f64).sqrt().recip();
-        let row = |point| self.heads.values(head, point, draws).map(|x| share * x);
-        points.chunks_exact(inputs).flat_map(row).collect()
-    }
-
-    /// The same of the learned scalars' parameters.
-    pub(crate) fn spread_of_learned(&self) -> Vec<f64> {
-        let draws = &self.deviations.learned;
-        let share = (draws.len() as f64).sqrt().recip();
-        (0..self.learned.len()).flat_map(|at| draws.iter().map(move |draw| share * draw[at])).collect()
-    }
-
     /// Standard deviation of a learned scalar's parameter.
     pub(crate) fn learned_deviation(&self, at: usize) -> Option<f64> {
         self.factor.as_ref()?.learned_variance(at).map(|variance| variance.max(0.0).sqrt())

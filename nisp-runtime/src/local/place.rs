@@ -13,6 +13,8 @@ pub(super) struct State {
     pub(super) noise: f64,
     /// Numbers of the clouds that the answer has used up: the trace of its influence matrix.
     pub(super) used: f64,
+    /// Stiffness against the next step.
+    pub(super) damping: f64,
 }
 
 impl State {
@@ -44,7 +46,7 @@ impl Place {
         let mut saved = state::State::new(METHOD)
             .with("theta", &self.state.theta)
             .with("learned", &self.state.learned)
-            .with("noise", &[self.state.noise, self.state.used])
+            .with("noise", &[self.state.noise, self.state.used, self.state.damping])
             .with_counter("lattice", lattice)
             .with_counter("before", before)
             .with_counter("step", self.step)
@@ -58,10 +60,10 @@ impl Place {
 
     /// Takes over what [`Place::save`] gave, on a lattice of the same size.
     pub(super) fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
-        let State { theta, learned, noise, used } = &mut self.state;
+        let State { theta, learned, noise, used, damping } = &mut self.state;
         *theta = saved.sized("theta", theta.len())?;
         *learned = saved.sized("learned", learned.len())?;
-        [*noise, *used] = saved.scalars("noise")?;
+        [*noise, *used, *damping] = saved.scalars("noise")?;
         self.step = saved.counter("step")?;
         for (at, feet) in self.feet.iter_mut().enumerate() {
             let nearest: Vec<f64> = saved.sized(&format!("nearest {at}"), feet.nearest.len())?;

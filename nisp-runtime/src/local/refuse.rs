@@ -5,7 +5,7 @@ use super::{Local, LocalError};
 use crate::schema::{self, TermKind};
 
 /// Splines of a higher degree than this are a slip.
-const HIGHEST_DEGREE: usize = 8;
+pub(super) const HIGHEST_DEGREE: usize = 8;
 
 /// What only networks do must not be left out quietly.
 pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(), LocalError> {

@@ -1,5 +1,6 @@
 //! A problem on its lattices: what is set up once, before any step.
 
+use super::course::LEAST_DAMPING;
 use super::group::Group;
 use super::heads::Heads;
 use super::lattice::Lattice;
@@ -60,7 +61,8 @@ impl<'a> Solver<'a> {
                     continue;
                 }
                 let view = bound.view(at, term.name);
-                let counting = Counting::of(term, bound.losses[at][index], bound.sizes[at][index]);
+                let counting =
+                    Counting::of(term, bound.losses[at][index], bound.sizes[at][index], bound.tolerance(at, term));
                 surfaces.push(Surface::new(at, term, cloud, view, flat, inputs, (cell, counting)));
             }
             groups.push(group);
@@ -80,6 +82,7 @@ impl<'a> Solver<'a> {
             learned: vec![0.0; self.bound.learned.len()],
             noise: self.cell,
             used: 0.0,
+            damping: LEAST_DAMPING,
         };
         self.place(&state, 0)
     }

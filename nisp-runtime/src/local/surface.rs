@@ -56,13 +56,13 @@ pub(super) struct Counting {
 }
 
 impl Counting {
-    /// As declared; `size` is the standard deviation of a term that says `within`. Clouds have outliers, so that one of which
-    /// nothing is said has Huber's loss.
-    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64) -> Self {
+    /// As declared; `size` is the standard deviation of a term that says `within`, `tolerance` how far the cloud may be off over
+    /// whole regions. Clouds have outliers, so that one of which nothing is said has Huber's loss.
+    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64, tolerance: Option<f64>) -> Self {
         /// Deviations from which on a point counts as an outlier.
         const OUTLIER: f64 = 3.0;
         let loss = if declared.is_robust() { declared } else { Loss::Huber(OUTLIER) };
-        Self { loss, within: term.within.map(|_| size), weight: term.weight }
+        Self { loss, within: tolerance.or(term.within.map(|_| size)), weight: term.weight }
     }
 }
 
@@ -141,9 +141,10 @@ impl Surface {
         self.feet.chunks_exact(self.inputs).map(padded).collect()
     }
 
-    /// Signed misfits of all points; nothing where the foot was lost.
+    /// Signed distances of all points across the surface; nothing where the foot was lost.
     pub(super) fn signed(&self) -> Vec<Option<f64>> {
-        self.misfits.iter().zip(&self.found).map(|(misfit, found)| found.then_some(*misfit)).collect()
+        let across = self.misfits.iter().zip(&self.normals).map(|(misfit, normal)| misfit / normal.norm());
+        across.zip(&self.found).map(|(distance, found)| found.then_some(distance)).collect()
     }
 
     /// Standard deviation of the points: as declared, or as estimated.

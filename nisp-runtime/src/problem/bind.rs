@@ -2,17 +2,16 @@
 
 use thiserror::Error;
 
+use super::frame::inward_points;
 use super::powers::{Powers, powers};
 use super::scale::{Data, Scales, scales};
-use super::{Binding, Problem, UnitSystem};
+use super::{Binding, Frame, Problem, UnitSystem};
 use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling, is_exchangeable};
 use crate::kernel::Precision;
 use crate::loss::Loss;
 use crate::network::{Architecture, Inputs, Layout};
 use crate::schema::{self, Origin};
 use crate::simd::Isa;
-use crate::solve::objective::LeastSquares;
-use crate::solve::vector;
 
 /// Why a problem cannot be solved as it is bound.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -285,11 +284,6 @@ fn finite(group: &'static str, what: impl Fn() -> String, values: &[f64], per_po
     }
 }
 
-fn inward_points(schema: &schema::Scene, system: &UnitSystem, points: &[f64]) -> Vec<f64> {
-    let factors: Vec<f64> = schema.coordinates.iter().map(|c| system.inward(&c.unit)).collect();
-    points.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect()
-}
-
 fn inward_clouds(group: &schema::Group, system: &UnitSystem, binding: &Binding) -> Vec<Vec<f64>> {
     let cloud = |term: &schema::Term| match term.kind {
         schema::TermKind::Chamfer { .. } => binding.cloud(term.name).unwrap_or_default(),
@@ -502,38 +496,25 @@ impl Bound {
         self.problem.groups[group].as_ref()?.view(term)
     }
 
+    /// How far a term's cloud may be off over whole regions, if that is known.
+    pub(crate) fn tolerance(&self, group: usize, term: &schema::Term) -> Option<f64> {
+        let declared = self.problem.groups[group].as_ref()?.tolerance(term.name)?;
+        Some(declared * self.system.inward(&term.unit))
+    }
+
     /// Points given in declared units, in the engine's.
     pub(crate) fn inward(&self, points: &[f64]) -> Vec<f64> {
-        inward_points(self.problem.scene().schema, &self.system, points)
+        inward_points(self.problem.scene.schema, &self.system, points)
     }
 
-    /// The outputs group at points given in declared units, as an engine with no terms that count.
-    pub(crate) fn readout(&self, architecture: Architecture, points: &[f64]) -> Engine<f64> {
-        let scene = self.problem.scene;
-        let coordinates = scene.schema.coordinates;
-        let points = self.inward(points);
-        let isa = Isa::detect();
-        let lanes = isa.lanes::<f64>();
-        let layout = Layout::new(architecture, coordinates.len(), scene.schema.heads.len(), self.learned.len(), lanes);
-        let kernel = scene.double().pop();
-        let groups =
-            kernel.map(|kernel| BoundGroup::new(kernel, &scene.schema.outputs, &self.scaling, &points, &[], &[]));
-        let scalars = self.scalars.clone();
-        Engine::new(isa, layout, groups.into_iter().collect(), scalars, self.learned.clone())
-    }
-
-    /// Values of all heads at points, head by head, and their derivatives by the parameters, row by row; none where they are
-    /// not finite.
-    pub(crate) fn sensitivities(
-        &self,
-        architecture: Architecture,
-        theta: &[f64],
-        points: &[f64],
-    ) -> Option<(Vec<f64>, Vec<f64>)> {
-        let mut readout = self.readout(architecture, points);
-        let rows = readout.row_count();
-        let (mut values, mut derivatives) = (vec![0.0; rows], vec![0.0; rows * theta.len()]);
-        readout.jacobian(theta, &mut values, &mut derivatives).ok()?;
-        vector::all_finite(&derivatives).then_some((values, derivatives))
+    /// The scene with its units, scales and scalars, without points and data.
+    pub(crate) fn frame(&self) -> Frame {
+        Frame {
+            scene: self.problem.scene,
+            system: self.system,
+            scaling: self.scaling.clone(),
+            scalars: self.scalars.clone(),
+            learned: self.learned.clone(),
+        }
     }
 }

@@ -3,6 +3,7 @@
 mod beliefs;
 mod bind;
 mod evaluate;
+mod frame;
 pub(crate) mod powers;
 mod scale;
 mod system;
@@ -10,6 +11,7 @@ mod units;
 
 pub use bind::BindError;
 pub(crate) use bind::Bound;
+pub(crate) use frame::Frame;
 pub use system::UnitSystem;
 
 use crate::kernel::SceneRef;
@@ -59,6 +61,8 @@ struct Binding {
     clouds: Vec<(String, Vec<f64>)>,
     /// Directions along which clouds are off: term, direction.
     views: Vec<(String, [f64; 3])>,
+    /// How far clouds may be off over whole regions: term, value in the term's declared unit.
+    tolerances: Vec<(String, f64)>,
 }
 
 impl Binding {
@@ -70,6 +74,11 @@ impl Binding {
     /// The direction along which a term's cloud is off, as bound last.
     fn view(&self, term: &str) -> Option<[f64; 3]> {
         self.views.iter().rev().find(|(name, _)| name == term).map(|(_, view)| *view)
+    }
+
+    /// How far a term's cloud may be off over whole regions, as bound last.
+    fn tolerance(&self, term: &str) -> Option<f64> {
+        self.tolerances.iter().rev().find(|(name, _)| name == term).map(|(_, tolerance)| *tolerance)
     }
 }
 
@@ -156,11 +165,15 @@ impl Problem {
     /// # Errors
     /// No such group, or nothing bound to it yet.
     pub fn set_cloud(&mut self, group: &str, term: &str, cloud: Vec<f64>) -> Result<(), BindError> {
+        self.binding(group)?.clouds.push((term.into(), cloud));
+        Ok(())
+    }
+
+    /// What is bound to a group.
+    fn binding(&mut self, group: &str) -> Result<&mut Binding, BindError> {
         let groups = self.scene.schema.groups;
         let binding = groups.iter().position(|g| g.name == group).and_then(|at| self.groups[at].as_mut());
-        let binding = binding.ok_or_else(|| BindError::unknown("group", group, groups.iter().map(|g| g.name)))?;
-        binding.clouds.push((term.into(), cloud));
-        Ok(())
+        binding.ok_or_else(|| BindError::unknown("group", group, groups.iter().map(|g| g.name)))
     }
 
     /// Says that a cloud is off along one direction only, as a depth camera's is; local functions measure distances along
@@ -169,10 +182,17 @@ impl Problem {
     /// # Errors
     /// No such group, or nothing bound to it yet.
     pub fn set_view(&mut self, group: &str, term: &str, direction: [f64; 3]) -> Result<(), BindError> {
-        let groups = self.scene.schema.groups;
-        let binding = groups.iter().position(|g| g.name == group).and_then(|at| self.groups[at].as_mut());
-        let binding = binding.ok_or_else(|| BindError::unknown("group", group, groups.iter().map(|g| g.name)))?;
-        binding.views.push((term.into(), direction));
+        self.binding(group)?.views.push((term.into(), direction));
+        Ok(())
+    }
+
+    /// Says how far a cloud may be off over whole regions, in the term's declared unit: what a calibration of its sensor
+    /// leaves. Local functions take it for the standard deviation of every point, and the verdict for no pattern.
+    ///
+    /// # Errors
+    /// No such group, or nothing bound to it yet.
+    pub fn set_tolerance(&mut self, group: &str, term: &str, tolerance: f64) -> Result<(), BindError> {
+        self.binding(group)?.tolerances.push((term.into(), tolerance));
         Ok(())
     }
 

@@ -37,6 +37,16 @@ impl UnitSystem {
         }
     }
 
+    /// The system of these [`UnitSystem::logs`].
+    pub(crate) fn of_logs(logs: [f64; 7]) -> Self {
+        Self { logs }
+    }
+
+    /// Natural logarithms of the base units' sizes in SI.
+    pub(crate) fn logs(&self) -> &[f64; 7] {
+        &self.logs
+    }
+
     /// One of the engine's units of this dimension, in SI units.
     pub fn size(&self, unit: &Unit) -> f64 {
         self.logs.iter().zip(&unit.exponents).map(|(log, exponent)| log * exponent).sum::<f64>().exp()

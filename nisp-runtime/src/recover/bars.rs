@@ -22,6 +22,11 @@ impl Distrust {
         Self(0.5 + 2.75 * noise.share())
     }
 
+    /// What the prior's part of deviations is multiplied by.
+    pub(super) fn factor(self) -> f64 {
+        self.0
+    }
+
     /// The bars of quantities with this posterior.
     pub(super) fn bars(self, posterior: &Posterior) -> Bars {
         let by_prior: Vec<f64> = posterior.by_prior.iter().map(|part| self.0 * part).collect();

@@ -6,9 +6,11 @@ use crate::facts::Answer;
 use crate::local::LocalSolution;
 use crate::network::Architecture;
 use crate::problem::Bound;
+use crate::saved::{Kept, KeptNetwork};
 use crate::solve::curvature::Curvature;
 use crate::solve::posterior::posterior;
 use crate::solve::prior::WeightPrior;
+use crate::solve::root::Root;
 use crate::splines::SplineSolution;
 
 /// Numbers of a block of error bars' derivatives: some megabytes.
@@ -35,12 +37,18 @@ pub(super) trait Carried: Send {
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values>;
     /// Every head at points, with error bars where there are any.
     fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values>;
+    /// Standard deviation of a weighted sum of a head's values at points; none where they are not known jointly.
+    fn deviation_of_sum(&self, _: &Bound, _head: usize, _points: &[f64], _weights: &[f64]) -> Option<f64> {
+        None
+    }
     /// Learned scalars and their standard deviations.
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)>;
     /// How far the rows of a term are off, and what they count as known to.
     fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>);
     /// What the verdict is made from.
     fn answer(&mut self, bound: &Bound) -> Answer;
+    /// What is kept of it in a file, with what deviations follow from if `bars`.
+    fn kept(&mut self, bars: bool) -> Box<dyn Kept>;
 }
 
 /// A trained network.
@@ -59,7 +67,7 @@ fn heads(bound: &Bound) -> usize {
 
 impl Carried for Network {
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let mut readout: Engine<f64> = bound.readout(self.architecture, points);
+        let mut readout: Engine<f64> = bound.frame().readout(self.architecture, &bound.inward(points));
         let rows = readout.raw_rows(0, &self.theta);
         let count = rows.len() / heads(bound).max(1);
         (0..heads(bound)).map(|head| Values::plain(rows[head * count..][..count].to_vec())).collect()
@@ -74,8 +82,8 @@ impl Carried for Network {
         let block = inputs * (TOGETHER / (self.theta.len() * heads(bound)).max(1)).max(1);
         let empty = Values { values: Vec::new(), deviations: Some(Vec::new()), by_prior: Some(Vec::new()) };
         let mut all = vec![empty; heads(bound)];
-        for some in points.chunks(block) {
-            let Some((rows, derivatives)) = bound.sensitivities(self.architecture, &self.theta, some) else {
+        for some in bound.inward(points).chunks(block) {
+            let Some((rows, derivatives)) = bound.frame().sensitivities(self.architecture, &self.theta, some) else {
                 return self.values(bound, points);
             };
             let bars = self.distrust.bars(&posterior(&curvature, &derivatives));
@@ -112,6 +120,13 @@ impl Carried for Network {
     fn answer(&mut self, bound: &Bound) -> Answer {
         self.engine.answer(&self.theta, &bound.clouds)
     }
+
+    fn kept(&mut self, bars: bool) -> Box<dyn Kept> {
+        let prior = self.prior.as_ref().filter(|_| bars);
+        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
+        let root = curvature.map(|curvature| Root::of(&curvature, self.distrust.factor()));
+        Box::new(KeptNetwork { architecture: self.architecture, theta: self.theta.clone(), root })
+    }
 }
 
 /// Values of learned scalars from their parameters, with deviations.
@@ -126,18 +141,22 @@ fn learned(bound: &Bound, parameters: impl Iterator<Item = (f64, Option<f64>)>) 
 impl Carried for LocalSolution {
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
         let points = bound.inward(points);
-        (0..heads(bound)).map(|head| Values::plain(self.evaluate(head, &points))).collect()
+        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, &points))).collect()
     }
 
     fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
         let inward = bound.inward(points);
         let mut all = self.values(bound, points);
-        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.deviations(head, &inward));
+        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, &inward));
         all
     }
 
+    fn deviation_of_sum(&self, bound: &Bound, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
+        self.kept.deviation_of_sum(head, &bound.inward(points), weights)
+    }
+
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {
-        learned(bound, self.learned.iter().enumerate().map(|(at, &x)| (x, self.learned_deviation(at))))
+        learned(bound, self.kept.learned.iter().enumerate().map(|(at, &x)| (x, self.learned_deviation(at))))
     }
 
     fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
@@ -146,24 +165,28 @@ impl Carried for LocalSolution {
 
     fn answer(&mut self, _: &Bound) -> Answer {
         self.answer.clone()
+    }
+
+    fn kept(&mut self, bars: bool) -> Box<dyn Kept> {
+        Box::new(if bars { self.kept.clone() } else { self.kept.without_bars() })
     }
 }
 
 impl Carried for SplineSolution {
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
         let points = bound.inward(points);
-        (0..heads(bound)).map(|head| Values::plain(self.evaluate(head, &points))).collect()
+        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, &points))).collect()
     }
 
     fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
         let inward = bound.inward(points);
         let mut all = self.values(bound, points);
-        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.deviations(head, &inward));
+        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, &inward));
         all
     }
 
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {
-        learned(bound, SplineSolution::learned(self).into_iter())
+        learned(bound, self.kept.learned().into_iter())
     }
 
     fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
@@ -172,5 +195,9 @@ impl Carried for SplineSolution {
 
     fn answer(&mut self, _: &Bound) -> Answer {
         self.answer.clone()
+    }
+
+    fn kept(&mut self, bars: bool) -> Box<dyn Kept> {
+        Box::new(if bars { self.kept.clone() } else { self.kept.without_bars() })
     }
 }

@@ -1,14 +1,13 @@
 //! Where a solver stopped, as bytes that are read back whole or refused.
 //!
-//! Layout, all numbers little-endian: [`MAGIC`]; the fingerprint of the problem; the state, that is the method's name, the
-//! number of vectors and each with its name, length and numbers, the number of counters and each with its name and value;
-//! the checksum of everything before. Texts and lists are preceded by their length; integers take eight bytes.
+//! Layout: [`MAGIC`]; the fingerprint of the problem; the state; the checksum of everything before (`crate::bytes`).
 
 use std::fmt::Write;
 
 use thiserror::Error;
 
 use super::Settings;
+use crate::bytes::{Fnv, Reader, Writer};
 use crate::problem::Problem;
 use crate::solve::state::State;
 
@@ -55,28 +54,10 @@ impl Checkpoint {
 
     /// As bytes, for a file.
     pub fn to_bytes(&self) -> Vec<u8> {
-        let mut bytes = MAGIC.to_vec();
-        let number = |bytes: &mut Vec<u8>, x: u64| bytes.extend(x.to_le_bytes());
-        let text = |bytes: &mut Vec<u8>, text: &str| {
-            number(bytes, text.len() as u64);
-            bytes.extend(text.as_bytes());
-        };
-        number(&mut bytes, self.fingerprint);
-        text(&mut bytes, &self.state.method);
-        number(&mut bytes, self.state.vectors.len() as u64);
-        for (name, vector) in &self.state.vectors {
-            text(&mut bytes, name);
-            number(&mut bytes, vector.len() as u64);
-            vector.iter().for_each(|x| number(&mut bytes, x.to_bits()));
-        }
-        number(&mut bytes, self.state.counters.len() as u64);
-        for (name, count) in &self.state.counters {
-            text(&mut bytes, name);
-            number(&mut bytes, *count);
-        }
-        let sum = checksum(&bytes);
-        number(&mut bytes, sum);
-        bytes
+        let mut writer = Writer::new(MAGIC);
+        writer.number(self.fingerprint);
+        writer.state(&self.state);
+        writer.sealed()
     }
 
     /// From the bytes of [`Checkpoint::to_bytes`].
@@ -87,45 +68,9 @@ impl Checkpoint {
         if !bytes.starts_with(MAGIC) {
             return Err(CheckpointError::Foreign);
         }
-        let (content, sum) = bytes.split_last_chunk::<8>().ok_or(CheckpointError::Damaged)?;
-        if checksum(content) != u64::from_le_bytes(*sum) {
-            return Err(CheckpointError::Damaged);
-        }
-        let mut reader = Reader(&content[MAGIC.len()..]);
-        reader.checkpoint().filter(|_| reader.0.is_empty()).ok_or(CheckpointError::Damaged)
-    }
-}
-
-/// What is left to read; nothing is given where it ends too early.
-struct Reader<'a>(&'a [u8]);
-
-impl Reader<'_> {
-    fn checkpoint(&mut self) -> Option<Checkpoint> {
-        let fingerprint = self.number()?;
-        let mut state = State { method: self.text()?, ..State::default() };
-        for _ in 0..self.number()? {
-            let (name, len) = (self.text()?, self.number()?);
-            // A length that the bytes cannot hold ends the reading before it takes memory.
-            let vector: Option<Vec<f64>> = (0..len).map(|_| Some(f64::from_bits(self.number()?))).collect();
-            state.vectors.push((name, vector?));
-        }
-        for _ in 0..self.number()? {
-            state.counters.push((self.text()?, self.number()?));
-        }
-        Some(Checkpoint { fingerprint, state })
-    }
-
-    fn number(&mut self) -> Option<u64> {
-        let (bytes, rest) = self.0.split_first_chunk::<8>()?;
-        self.0 = rest;
-        Some(u64::from_le_bytes(*bytes))
-    }
-
-    fn text(&mut self) -> Option<String> {
-        let len = usize::try_from(self.number()?).ok()?;
-        let (text, rest) = self.0.split_at_checked(len)?;
-        self.0 = rest;
-        String::from_utf8(text.to_vec()).ok()
+        let mut reader = Reader::of(bytes, MAGIC).ok_or(CheckpointError::Damaged)?;
+        let read = |reader: &mut Reader<'_>| Some(Self { fingerprint: reader.number()?, state: reader.state()? });
+        read(&mut reader).filter(|_| reader.is_at_end()).ok_or(CheckpointError::Damaged)
     }
 }
 
@@ -137,41 +82,13 @@ pub(super) fn fingerprint(problem: &Problem, settings: &Settings) -> u64 {
     // The text of a float has all of its bits. Hashing cannot fail.
     let _ = write!(hash, "{:?}{problem:?}", problem.scene().schema);
     let _ = write!(hash, "{precision:?}{optimizer:?}{architecture:?}{carrier:?}{resampling:?}{data_first:?}{seed}");
-    hash.0
-}
-
-/// Differs for any two contents of the same length that differ in one byte, and else by chance with all but certainty.
-fn checksum(bytes: &[u8]) -> u64 {
-    let mut hash = Fnv::new();
-    hash.add(bytes);
-    hash.0
-}
-
-/// FNV-1a with 64 bits (Fowler, Noll and Vo): the same on every machine and in every version.
-struct Fnv(u64);
-
-impl Fnv {
-    fn new() -> Self {
-        Self(0xcbf2_9ce4_8422_2325)
-    }
-
-    fn add(&mut self, bytes: &[u8]) {
-        for &byte in bytes {
-            self.0 = (self.0 ^ u64::from(byte)).wrapping_mul(0x100_0000_01b3);
-        }
-    }
-}
-
-impl Write for Fnv {
-    fn write_str(&mut self, text: &str) -> std::fmt::Result {
-        self.add(text.as_bytes());
-        Ok(())
-    }
+    hash.value()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::bytes::checksum;
 
     fn checkpoint() -> Checkpoint {
         let state = State::new("lm").with("theta", &[0.1, -0.0, 5e-324]).with_counter("iterations", 7);
@@ -206,12 +123,5 @@ mod tests {
         let sum = checksum(&bytes);
         bytes.extend(sum.to_le_bytes());
         assert_eq!(Checkpoint::from_bytes(&bytes), Err(CheckpointError::Damaged));
-    }
-
-    #[test]
-    fn the_checksum_is_the_published_one() {
-        // From the authors' list of test vectors.
-        assert_eq!(checksum(b""), 0xcbf2_9ce4_8422_2325);
-        assert_eq!(checksum(b"foobar"), 0x8594_4171_f739_67e8);
     }
 }

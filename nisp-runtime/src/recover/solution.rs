@@ -9,7 +9,8 @@ use crate::engine::Engine;
 use crate::local::LocalSolution;
 use crate::noise::{self, Noise};
 use crate::problem::Bound;
-use crate::schema::{self, TermKind};
+use crate::saved::{Extent, SavedAnswer, SavedError, save_frame};
+use crate::schema::{self, Origin, TermKind};
 use crate::simd::Isa;
 use crate::solve::driver::{Outcome, Status, Warning, WarningKind};
 use crate::solve::prior::WeightPrior;
@@ -321,6 +322,16 @@ impl Solution {
         self.estimates(known)
     }
 
+    /// Standard deviation of a weighted sum of a head's values, such as a net force, in the head's declared unit times that of
+    /// the weights: errors of neighbours go together, so that it does not follow from theirs. `points` are in declared units,
+    /// point by point, with a weight each. None where [`Solution::evaluate_with_errors`] gives none, and for carriers other
+    /// than local functions.
+    pub fn deviation_of_sum(&self, head: &str, points: &[f64], weights: &[f64]) -> Option<f64> {
+        let at = self.scene().heads.iter().position(|own| own.name == head).filter(|_| self.has_bars())?;
+        let outward = self.bound.system.outward(&self.scene().heads[at].unit);
+        Some(outward * self.carried.deviation_of_sum(&self.bound, at, points, weights)?)
+    }
+
     fn estimates(&self, known: Vec<Values>) -> Vec<Estimate> {
         let of = |(head, known): (&schema::Head, Values)| {
             let outward = self.bound.system.outward(&head.unit);
@@ -349,6 +360,46 @@ impl Solution {
                 LearnedValue { name: scalar.name, unit: scalar.unit, value: value * outward, deviation }
             })
             .collect()
+    }
+
+    /// The answer for a file: the equation, what was given and learned, what carries the heads with what deviations follow from,
+    /// and what is said of it. Reading it takes no data.
+    ///
+    /// # Errors
+    /// Numbers that are not finite; a scene that does not know the text of its equation.
+    pub fn saved(&mut self) -> Result<SavedAnswer, SavedError> {
+        let scene = self.bound.problem.scene();
+        if scene.text.is_empty() {
+            return Err(SavedError::NoText);
+        }
+        let frame = self.bound.frame();
+        let state = self.carried.kept(self.has_bars()).save();
+        let mut state = Extent::of(&frame, &self.bound.coordinates).save(save_frame(&frame, state));
+        let words = [
+            ("equation", scene.text),
+            ("module", scene.schema.module),
+            ("scene", scene.schema.name),
+            ("status", self.status.name()),
+            ("version", env!("CARGO_PKG_VERSION")),
+        ];
+        let failed = self.verdict.failed().map(|check| ("failed", check.message.as_str()));
+        let warnings = self.warnings.iter().map(|warning| ("warning", warning.message.as_str()));
+        let said = words.into_iter().chain(failed).chain(warnings);
+        let mut texts: Vec<(String, String)> = said.map(|(name, text)| (name.into(), text.into())).collect();
+        for (slot, scalar) in scene.schema.scalars.iter().enumerate() {
+            if matches!(scalar.origin, Origin::Given(_)) {
+                let key = format!("given {}", scalar.name);
+                state = state.with(&key, &[frame.scalars[slot] * frame.system.outward(&scalar.unit)]);
+                texts.push((key, scalar.unit.text.into()));
+            }
+        }
+        for LearnedValue { name, unit, value, deviation } in self.learned() {
+            let numbers: Vec<f64> = [value].into_iter().chain(deviation).collect();
+            let key = format!("learned {name}");
+            state = state.with(&key, &numbers);
+            texts.push((key, unit.text.into()));
+        }
+        SavedAnswer::new(texts, state)
     }
 
     /// How well every term is met.

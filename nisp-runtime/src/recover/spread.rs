@@ -31,7 +31,7 @@ impl Spread {
         theta: &[f64],
     ) -> Option<Self> {
         let points = sample(bound);
-        let (values, derivatives) = bound.sensitivities(architecture, theta, &points)?;
+        let (values, derivatives) = bound.frame().sensitivities(architecture, theta, &bound.inward(&points))?;
         let spread = posterior::spread(curvature, &derivatives);
         let len = theta.len();
         let count = (values.len() / bound.problem.scene().schema.heads.len().max(1)).max(1);
@@ -49,8 +49,8 @@ impl Spread {
         let points = sample(bound);
         let inward = bound.inward(&points);
         let heads = 0..bound.problem.scene().schema.heads.len();
-        let heads = heads.map(|head| (found.evaluate(head, &inward), found.spread(head, &inward))).collect();
-        Self { points, heads, learned: found.spread_of_learned(), scalars: found.learned.len() }
+        let heads = heads.map(|head| (found.kept.evaluate(head, &inward), found.kept.spread(head, &inward))).collect();
+        Self { points, heads, learned: found.kept.spread_of_learned(), scalars: found.kept.learned.len() }
     }
 }
 

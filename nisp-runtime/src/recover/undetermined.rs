@@ -77,7 +77,7 @@ impl View<'_> {
 /// Directions that are open in a solution by local functions.
 pub(super) fn of_local(bound: &Bound, found: &LocalSolution) -> Vec<Warning> {
     let learned =
-        bound.learned.iter().zip(&found.learned).map(|(learned, &parameter)| learned.map.at(parameter)).collect();
+        bound.learned.iter().zip(&found.kept.learned).map(|(learned, &parameter)| learned.map.at(parameter)).collect();
     undetermined(&Words { bound, learned }, &Spread::of_local(bound, found))
 }
 

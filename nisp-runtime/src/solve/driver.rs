@@ -71,6 +71,19 @@ pub enum Status {
     Inconsistent,
 }
 
+impl Status {
+    /// In files and for programs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::Budget => "budget",
+            Self::NotConverged => "not_converged",
+            Self::Interrupted => "interrupted",
+            Self::Inconsistent => "inconsistent",
+        }
+    }
+}
+
 /// The end of a run.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome<E> {

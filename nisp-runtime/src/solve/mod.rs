@@ -25,6 +25,7 @@ pub mod posterior;
 pub mod prior;
 pub mod projection;
 mod record;
+pub(crate) mod root;
 pub mod state;
 mod symmetric;
 pub(crate) mod vector;

@@ -46,6 +46,11 @@ impl State {
         if self.method == method { Ok(()) } else { Err(Fault::state(format!("method {}", self.method))) }
     }
 
+    /// True if there is a vector `name`.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.vectors.iter().any(|(key, _)| key == name)
+    }
+
     /// The vector `name` of any length; every element is finite.
     pub(crate) fn vector(&self, name: &str) -> Result<&[f64], Fault> {
         self.vectors
@@ -65,6 +70,12 @@ impl State {
     /// The vector `name`, which must have `N` elements.
     pub(crate) fn scalars<const N: usize>(&self, name: &str) -> Result<[f64; N], Fault> {
         self.vector(name)?.try_into().map_err(|_| Fault::state(name))
+    }
+
+    /// The vector `name` as whole numbers of at least zero.
+    pub(crate) fn indices(&self, name: &str) -> Result<Vec<usize>, Fault> {
+        let index = |x: &f64| (*x >= 0.0 && x.fract() == 0.0 && *x < f64::from(u32::MAX)).then_some(*x as usize);
+        self.vector(name)?.iter().map(index).collect::<Option<_>>().ok_or_else(|| Fault::state(name))
     }
 
     pub(crate) fn counter(&self, name: &str) -> Result<u64, Fault> {

@@ -36,8 +36,12 @@ impl Basis {
 
     /// The cell of a place; places outside belong to the nearest.
     pub(super) fn cell(&self, at: f64) -> usize {
-        let inner = &self.knots[self.degree..self.knots.len() - self.degree];
-        inner.partition_point(|&knot| knot <= at).clamp(1, self.cells()) - 1
+        self.breakpoints().partition_point(|&knot| knot <= at).clamp(1, self.cells()) - 1
+    }
+
+    /// The ends of the cells.
+    pub(super) fn breakpoints(&self) -> &[f64] {
+        &self.knots[self.degree..self.knots.len() - self.degree]
     }
 
     /// Where a function is centred: the mean of the knots inside its support (Greville).

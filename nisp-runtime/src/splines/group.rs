@@ -184,6 +184,11 @@ impl Group {
         })
     }
 
+    /// The cell of a place.
+    pub(super) fn cell(&self, p: usize) -> usize {
+        self.cells[p]
+    }
+
     /// No rows yet on a cell.
     pub(super) fn bundle(&self, heads: &Heads, cell: usize, shared: usize) -> Bundle {
         let (first, width) = heads.span(&self.read, cell);

@@ -19,6 +19,12 @@ pub(super) struct Heads {
 impl Heads {
     /// The heads of a problem, of these degrees, over the cells between breakpoints.
     pub(super) fn new(bound: &Bound, degrees: &[usize], breakpoints: &[f64]) -> Self {
+        let scale = (0..degrees.len()).map(|head| bound.head_scale(head)).collect();
+        Self::over(breakpoints, degrees, bound.scaling.offset.clone(), scale)
+    }
+
+    /// Heads of these degrees over the cells between breakpoints, with these offsets and scales.
+    pub(super) fn over(breakpoints: &[f64], degrees: &[usize], offset: Vec<f64>, scale: Vec<f64>) -> Self {
         let bases: Vec<Basis> = degrees.iter().map(|&degree| Basis::new(degree, breakpoints)).collect();
         let functions = bases.iter().enumerate();
         let mut order: Vec<(f64, usize, usize)> =
@@ -28,13 +34,7 @@ impl Heads {
         for (number, &(_, function, head)) in order.iter().enumerate() {
             numbers[head][function] = number;
         }
-        let mut heads = Self {
-            bases,
-            numbers,
-            offset: bound.scaling.offset.clone(),
-            scale: (0..degrees.len()).map(|head| bound.head_scale(head)).collect(),
-            band: 0,
-        };
+        let mut heads = Self { bases, numbers, offset, scale, band: 0 };
         let all: Vec<usize> = (0..degrees.len()).collect();
         heads.band = (0..breakpoints.len() - 1).map(|cell| heads.span(&all, cell).1).max().unwrap_or(1);
         heads

@@ -10,6 +10,7 @@ mod basis;
 mod cells;
 mod group;
 mod heads;
+mod kept;
 mod resolved;
 mod rows;
 mod solver;
@@ -29,8 +30,8 @@ use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::state;
 
+use kept::Spread;
 use solver::{Phase, Solver, State, TOLERANCE};
-use triangle::Covariance;
 use weighed::{Class, restore_classes, save_classes};
 
 /// Orders of a source's derivative that may be the one that is kept small, the first tried first.
@@ -49,6 +50,8 @@ const MOST_STEPS: u64 = 60;
 const LATE: f64 = 1.05;
 /// Name of the method in saved states.
 pub(crate) const METHOD: &str = "splines";
+
+pub(crate) use kept::{CARRIER, KeptSplines};
 
 /// What splines over one coordinate cannot do, of a scene; nothing if they can do all of it.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
@@ -77,11 +80,7 @@ pub(crate) enum SplineError {
 
 /// A problem solved by splines.
 pub(crate) struct SplineSolution {
-    heads: heads::Heads,
-    theta: Vec<f64>,
-    learned: Vec<f64>,
-    /// Coefficients, parameters of learned scalars and covariances, by order of smoothness that may be the right one.
-    spreads: Vec<(Vec<f64>, Vec<f64>, Covariance)>,
+    pub(crate) kept: KeptSplines,
     pub(crate) status: Status,
     pub(crate) iterations: u64,
     pub(crate) loss: f64,
@@ -171,7 +170,9 @@ pub(crate) fn solve(
             solver.order = ORDERS[order];
             solver.doubt_roughness(&mut state);
             match solver.step(&state, Phase::Solve)? {
-                Some(found) => spreads.push((state.theta, state.learned, found.covariance)),
+                Some(found) => {
+                    spreads.push(Spread { theta: state.theta, learned: state.learned, covariance: found.covariance })
+                }
                 None => status = Status::NotConverged,
             }
         }
@@ -189,10 +190,7 @@ pub(crate) fn solve(
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let answer = Answer { facts, clouds: Vec::new(), scalars };
     Ok(SplineSolution {
-        heads,
-        theta,
-        learned,
-        spreads,
+        kept: KeptSplines { heads, theta, learned, spreads },
         status,
         iterations,
         loss,
@@ -360,40 +358,5 @@ impl Place {
         (self.order, self.orders) = (order("order")?, order("orders")?);
         self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
         Ok(())
-    }
-}
-
-impl SplineSolution {
-    /// Values of a head at places in the engine's units.
-    pub(crate) fn evaluate(&self, head: usize, places: &[f64]) -> Vec<f64> {
-        places.iter().map(|&at| self.heads.derivative(head, (self.heads.cell(at), at), 0, &self.theta)).collect()
-    }
-
-    /// Standard deviations of a head at places in the engine's units: the longest bars about the answer that an order of
-    /// smoothness which may be the right one asks for.
-    pub(crate) fn deviations(&self, head: usize, places: &[f64]) -> Option<Vec<f64>> {
-        let shared = vec![0.0; self.learned.len()];
-        let deviation = |&at: &f64| {
-            let (first, slopes) = self.heads.value_row(head, at);
-            let square = |(theta, _, covariance): &(Vec<f64>, Vec<f64>, Covariance)| {
-                let pairs = slopes.iter().zip(theta[first..].iter().zip(&self.theta[first..]));
-                let apart: f64 = pairs.map(|(slope, (other, own))| slope * (other - own)).sum();
-                covariance.of(first, &slopes, &shared).max(0.0) + apart * apart
-            };
-            self.spreads.iter().map(square).fold(0.0, f64::max).sqrt()
-        };
-        (!self.spreads.is_empty()).then(|| places.iter().map(deviation).collect())
-    }
-
-    /// Parameters of the learned scalars, and their standard deviations.
-    pub(crate) fn learned(&self) -> Vec<(f64, Option<f64>)> {
-        let count = self.learned.len();
-        let deviation = |at: usize| {
-            let square = |(_, learned, covariance): &(Vec<f64>, Vec<f64>, Covariance)| {
-                covariance.corner[at * (count + 1)].max(0.0) + (learned[at] - self.learned[at]).powi(2)
-            };
-            (!self.spreads.is_empty()).then(|| self.spreads.iter().map(square).fold(0.0, f64::max).sqrt())
-        };
-        self.learned.iter().enumerate().map(|(at, &parameter)| (parameter, deviation(at))).collect()
     }
 }

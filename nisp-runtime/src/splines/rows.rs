@@ -143,7 +143,8 @@ impl Bundle {
         (slopes, shared, &mut value[0])
     }
 
-    fn iter(&self) -> impl ExactSizeIterator<Item = Row<'_>> {
+    /// The rows.
+    pub(super) fn iter(&self) -> impl ExactSizeIterator<Item = Row<'_>> {
         self.numbers.chunks_exact(self.width + self.shared + 1).map(|numbers| {
             let (slopes, rest) = numbers.split_at(self.width);
             Row { first: self.first, slopes, shared: &rest[..self.shared], value: rest[self.shared] }

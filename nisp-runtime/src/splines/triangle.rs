@@ -287,6 +287,23 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
 }
 
 impl Covariance {
+    /// Over the unknowns of so many coefficients, from the numbers of [`Covariance::parts`]; nothing if there are not as many
+    /// as there should be.
+    pub(super) fn restored(
+        len: usize,
+        band: usize,
+        shared: usize,
+        [rows, border, corner]: [Vec<f64>; 3],
+    ) -> Option<Self> {
+        let is_whole = (rows.len(), border.len(), corner.len()) == (len * band, len * shared, shared * shared);
+        is_whole.then_some(Self { band, shared, rows, border, corner })
+    }
+
+    /// Covariances of neighbours, with the shared unknowns, and among these.
+    pub(super) fn parts(&self) -> [&[f64]; 3] {
+        [&self.rows, &self.border, &self.corner]
+    }
+
     /// Variance of what a row says of the unknowns.
     pub(super) fn of(&self, first: usize, slopes: &[f64], shared: &[f64]) -> f64 {
         let mut sum = 0.0;

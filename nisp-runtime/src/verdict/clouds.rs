@@ -50,7 +50,8 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let typical = middle(found.iter().map(|(.., misfit)| misfit.abs()).collect());
     let kept: Vec<f64> = found.iter().map(|(.., m)| if m.abs() > 5.0 * typical { 0.0 } else { *m }).collect();
     let rms = root_mean_square(kept.iter().copied());
-    let within = term.within.map(|within| within / bound.system.size(&term.unit));
+    let tolerance = bound.tolerance(cloud.group, term);
+    let within = tolerance.or(term.within.map(|within| within / bound.system.size(&term.unit)));
     let rough = within.or_else(|| roughness(&points, &places, &tree)).unwrap_or(0.0).max(cloud.resolution);
     let said = format!(
         "the surface misses `{}` by {:.2e} {unit} (rms), while the cloud's own roughness is {:.2e} {unit}: check the pose, the \
@@ -65,7 +66,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     }
     let (correlation, z) = pattern(&places, &kept, &tree);
     let systematic = correlation.max(0.0).sqrt() * rms;
-    let matters = correlation > SLIGHT && systematic > cloud.resolution / 2.0;
+    let matters = correlation > SLIGHT && systematic > tolerance.unwrap_or(cloud.resolution / 2.0);
     let said = format!(
         "what is left of `{}` is no noise: neighbours correlate by {correlation:.2}, so the surface is off by some {:.2e} {unit} \
          over whole regions: wrong equations (large strains?), a wrong parameter or a wrong pose",

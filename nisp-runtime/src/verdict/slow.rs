@@ -1,6 +1,6 @@
 //! Whether what is left of a record has a slow course: noise has none, and a fit takes away from what chance makes of it.
 
-use crate::fourier::cosine_powers;
+use rustdct::DctPlanner;
 
 /// Modes from here on, as a share of all, are taken for noise.
 const FAST: f64 = 0.5;
@@ -11,8 +11,7 @@ const FEWEST: usize = 4;
 /// of all power that is too much. The level of noise is that of the fast modes; a fit that follows its data leaves the slow ones
 /// below it.
 pub(super) fn excess(misfits: &[f64]) -> (f64, f64) {
-    // Of noise, each has the noise's variance for its mean.
-    let powers = cosine_powers(misfits);
+    let powers = powers(misfits);
     let fast = &powers[(FAST * powers.len() as f64) as usize..];
     let total: f64 = powers.iter().sum();
     let level = fast.iter().sum::<f64>() / fast.len().max(1) as f64;
@@ -25,6 +24,18 @@ pub(super) fn excess(misfits: &[f64]) -> (f64, f64) {
         (deviations(slow / level, count), (slow - level * count as f64) / total)
     });
     excesses.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
+}
+
+/// Squares of the coefficients of cosines with 0, 1, 2, ... half waves (discrete cosine transform, orthonormal): of noise, each
+/// has the noise's variance for its mean.
+fn powers(values: &[f64]) -> Vec<f64> {
+    if values.is_empty() {
+        return Vec::new();
+    }
+    let mut waves = values.to_vec();
+    DctPlanner::new().plan_dct2(values.len()).process_dct2(&mut waves);
+    let power = |(mode, wave): (usize, f64)| wave * wave * if mode == 0 { 1.0 } else { 2.0 } / values.len() as f64;
+    waves.into_iter().enumerate().map(power).collect()
 }
 
 /// A chi squared of so many degrees of freedom in standard deviations of a normal number (Wilson and Hilferty 1931).
@@ -42,6 +53,23 @@ mod tests {
     fn noise(seed: u64, count: usize) -> Vec<f64> {
         let mut random = StdRng::seed_from_u64(seed);
         (0..count).map(|_| normal(&mut random)).collect()
+    }
+
+    /// The sums of the definition, for lengths that are powers of two, primes and neither.
+    #[test]
+    fn powers_are_those_of_the_definition() {
+        for count in [1, 2, 3, 4, 7, 12, 64, 97, 200] {
+            let values = noise(1, count);
+            for (mode, found) in powers(&values).into_iter().enumerate() {
+                let wave = |(at, value): (usize, &f64)| {
+                    value * (std::f64::consts::PI * mode as f64 * (at as f64 + 0.5) / count as f64).cos()
+                };
+                let sum: f64 = values.iter().enumerate().map(wave).sum();
+                let exact = sum * sum * if mode == 0 { 1.0 } else { 2.0 } / count as f64;
+                assert!((found - exact).abs() < 1e-11 * count as f64, "{count}, {mode}: {found} {exact}");
+            }
+        }
+        assert!(powers(&[]).is_empty());
     }
 
     /// The largest of five normal numbers stays below four, but for one time in six thousand.

@@ -30,8 +30,8 @@ use crate::model::{Model, Name, Scene};
 use crate::plan::{GroupPlan, Plan};
 use crate::unit::Unit;
 
-/// Emits the module of a model.
-pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
+/// Emits the module of a model that was read from this text.
+pub fn emit(model: &Model, plan: &Plan, text: &str) -> TokenStream {
     let name = ident(&model.name);
     let visibility = &model.visibility;
     let documentation = docs(&model.docs);
@@ -52,6 +52,8 @@ pub fn emit(model: &Model, plan: &Plan) -> TokenStream {
         #[allow(non_snake_case, reason = "users name moduli and temperatures by capitals")]
         #visibility mod #name {
             #(#warnings)*
+            /// The text of the equation, as the compiler reads it.
+            pub const TEXT: &str = #text;
             #[doc(hidden)]
             #[allow(non_camel_case_types, unused_variables, unused_imports, clippy::all, clippy::pedantic)]
             mod kernels {

@@ -33,6 +33,7 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
 
             impl ::nisp::Scene for Scene {
                 const SCHEMA: &'static schema::Scene = &#schema;
+                const TEXT: &'static str = super::TEXT;
                 fn kernels<E: Real>() -> Vec<GroupKernel<E>> {
                     vec![#(#kernels),*]
                 }

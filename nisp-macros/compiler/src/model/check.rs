@@ -6,12 +6,13 @@ use super::check_group::{self, GroupNames};
 use super::elaborate::Elaborator;
 use super::scope::Meaning;
 use super::value::Reads;
-use super::{Definition, Group, Hard, Model, Name, check_domain, check_scene, declare, lint};
+use super::{Definition, Group, Hard, Model, Name, check_domain, check_scene, declare, lint, question};
 use crate::error::{Checked, Errors, catalogue};
 use crate::syntax::{self, Item, Module, print_text};
 
-/// Checks a module. None if anything was wrong, in this stage or before; everything wrong is reported.
-pub fn check(module: &Module, errors: &mut Errors) -> Option<Model> {
+/// Checks a module and what is asked of its answer. None if anything was wrong, in this stage or before; everything wrong is
+/// reported.
+pub fn check(module: &Module, questions: &[syntax::Expr], errors: &mut Errors) -> Option<Model> {
     let mut model = Model {
         name: module.name.clone(),
         visibility: module.visibility.clone(),
@@ -22,6 +23,7 @@ pub fn check(module: &Module, errors: &mut Errors) -> Option<Model> {
         constants: Vec::new(),
         definitions: Vec::new(),
         groups: Vec::new(),
+        questions: Vec::new(),
         scenes: Vec::new(),
         units_checked: !module.units_off,
         warnings: Vec::new(),
@@ -39,6 +41,7 @@ pub fn check(module: &Module, errors: &mut Errors) -> Option<Model> {
     let names = groups(module, &mut elaborator, &mut model);
     scenes(module, &mut elaborator, &mut model, &names);
     lint::check(&mut elaborator, &mut model);
+    model.questions = question::check(questions, &mut elaborator, &model);
     let sound = !elaborator.errors.found_any();
     model.warnings.append(&mut elaborator.warnings);
     sound.then_some(model)

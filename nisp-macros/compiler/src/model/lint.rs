@@ -49,8 +49,8 @@ pub(super) fn check(elaborator: &mut Elaborator<'_>, model: &mut Model) {
 fn unused(elaborator: &mut Elaborator<'_>) {
     let unused = elaborator.scope.module_symbols().filter(|(_, symbol)| !symbol.used && symbol.parent.is_none());
     let unused: Vec<_> = unused
-        // A source that nothing reads is an error of its own.
-        .filter(|(_, symbol)| symbol.meaning != Meaning::Source)
+        // A source that nothing reads is an error of its own, and a definition may be there to be asked of the answer.
+        .filter(|(_, symbol)| !matches!(symbol.meaning, Meaning::Source | Meaning::Definition))
         .map(|(name, symbol)| (catalogue::unused(symbol.meaning.noun(), name), symbol.span))
         .collect();
     elaborator.warnings.extend(unused);

@@ -31,6 +31,7 @@ mod elaborate;
 mod lint;
 mod lint_scene;
 mod orders;
+mod question;
 mod resolve_name;
 mod scaling;
 mod scope;
@@ -60,6 +61,8 @@ pub struct Model {
     pub definitions: Vec<Definition>,
     /// Point groups, in order of appearance.
     pub groups: Vec<Group>,
+    /// What is asked of the answer beside its fields and sources; nothing where an equation is only to be solved.
+    pub questions: Vec<Question>,
     /// Scenes; a module that declares none gets one named `all` with every term.
     pub scenes: Vec<Scene>,
     /// False after `units: off;`.
@@ -169,6 +172,19 @@ pub struct Definition {
     pub shape: String,
     /// Doc comment.
     pub docs: Vec<String>,
+}
+
+/// A quantity that is asked of an answer; vectors are split into components.
+#[derive(Clone, Debug)]
+pub struct Question {
+    /// The expression as plain text, with its component.
+    pub name: String,
+    /// The unit of its values.
+    pub unit: Unit,
+    /// What it reads.
+    pub expr: Expr,
+    /// Where it was asked.
+    pub span: Span,
 }
 
 /// Where an entry stands in what was declared.

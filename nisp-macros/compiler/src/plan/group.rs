@@ -76,7 +76,12 @@ pub(super) fn draft(
     }
     let mut graph = lowering.graph;
     let name = &model.groups[group].name;
-    let collapsed = collapse::collapse(&mut graph, &all, &collapse::dimension_classes(model));
+    // What is read out of an answer must not tie the scales of coordinates that its equations have left apart.
+    let classes = match model.groups[group].is_internal() {
+        true => (0..model.coordinates.len()).collect(),
+        false => collapse::dimension_classes(model),
+    };
+    let collapsed = collapse::collapse(&mut graph, &all, &classes);
     let read = operators(&graph, &collapsed);
     let coordinates = model.coordinates.len();
     // Literals too long for exact elimination: carry the operators' parts one by one.

@@ -71,3 +71,11 @@ pub fn parse(tokens: TokenStream, errors: &mut Errors) -> Option<Module> {
     let mut context = stream::Context::new(errors);
     parse_module::parse(&mut stream::Stream::new(buffer.begin()), &mut context).ok()
 }
+
+/// Reads expressions separated by commas, to the end of the tokens. None if one of them could not be read.
+pub fn parse_expressions(tokens: TokenStream, errors: &mut Errors) -> Option<Vec<Expr>> {
+    limit_depth::check(&tokens, errors).ok()?;
+    let buffer = TokenBuffer::new2(tokens);
+    let mut context = stream::Context::new(errors);
+    parse_expression::list(&mut stream::Stream::new(buffer.begin()), &mut context).ok()
+}

@@ -107,7 +107,7 @@ fn named(stream: &mut Stream<'_>, context: &mut Context<'_>, name: Name) -> Chec
 }
 
 /// Expressions separated by commas, to the end of their group.
-fn list(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Vec<Expr>> {
+pub(super) fn list(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Vec<Expr>> {
     let mut entries = Vec::new();
     while !stream.at_end() {
         entries.push(parse(stream, context)?);

@@ -90,6 +90,7 @@ pub(crate) fn model(coordinates: &[(&str, [i128; 3])]) -> Model {
         constants: Vec::new(),
         definitions: Vec::new(),
         groups: Vec::new(),
+        questions: Vec::new(),
         scenes: Vec::new(),
         units_checked: true,
         warnings: Vec::new(),

@@ -1,0 +1,41 @@
+//! The bubble: an inflated membrane of large strains.
+
+use super::inflated::Theory;
+use super::observed::Example;
+use super::{Load, Rule, inflated};
+use crate::PrepareError;
+use crate::catalogue::{Entry, Prepared, Request};
+
+const THEORY: Theory = Theory {
+    pressed: PRESSED,
+    inflated: INFLATED,
+    load: Load::Follower,
+    // A convex tool that lies on the bubble presses back at least as much as the gas does.
+    rule: |gauge| Rule { least: 0.5 * gauge, of_mean: 0.0 },
+    // Their `f` is per area at rest, and vertical.
+    rather: &[("f", "p_contact")],
+    rival: None,
+};
+
+const PRESSED: Example = Example {
+    path: "data/membrane_large/large_sphere_d35.toml",
+    sample: include_str!("../../../data/membrane_large/large_sphere_d35.toml"),
+    cloud_path: "data/membrane_large/large_sphere_d35_cloud_2.ply",
+    cloud: include_bytes!("../../../data/membrane_large/large_sphere_d35_cloud_2.ply"),
+    truth_path: "data/membrane_large/large_sphere_d35_truth.csv",
+    truth: include_bytes!("../../../data/membrane_large/large_sphere_d35_truth.csv"),
+};
+
+const INFLATED: Example = Example {
+    path: "data/membrane_large/large_inflated_1.toml",
+    sample: include_str!("../../../data/membrane_large/large_inflated_1.toml"),
+    cloud_path: "data/membrane_large/large_inflated_1_cloud_2.ply",
+    cloud: include_bytes!("../../../data/membrane_large/large_inflated_1_cloud_2.ply"),
+    truth_path: "data/membrane_large/large_inflated_1_truth.csv",
+    truth: include_bytes!("../../../data/membrane_large/large_inflated_1_truth.csv"),
+};
+
+/// Reads what is asked for and binds a scene to it.
+pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
+    inflated::prepare(&THEORY, entry, request)
+}

@@ -1,0 +1,159 @@
+//! Calibration of a bubble from frames in which nothing touches it.
+
+use nisp_data::nearest::Nearest;
+use nisp_data::{Cloud, DataError};
+
+use super::calibration::{CALIBRATES, Calibration, Quality};
+use super::deviation::{Deviation, Off};
+use super::face::{length, minus};
+use super::given::Given;
+use super::inflated::Membrane;
+use super::{Contact, Pose, Values};
+use crate::PrepareError;
+use crate::catalogue::{Entry, Request};
+
+/// Regions along the longer axis over which a theory's error is about the same.
+const REGIONS: f64 = 12.0;
+/// Regions with fewer than this share of the points that an even spread gives them hold strays.
+const STRAYS: f64 = 0.1;
+/// A median of sizes over this is the standard deviation of normal numbers.
+const MEDIAN: f64 = 0.6745;
+
+impl Entry {
+    /// The scenes that calibrate, one for each law of the material.
+    pub fn calibrates(&self) -> Vec<&'static str> {
+        let names = self.scenes.iter().map(|scene| scene.schema.name);
+        names.filter(|name| name.starts_with(CALIBRATES)).collect()
+    }
+}
+
+/// Frames of a sensor that nothing touches, and what they were bound with.
+#[derive(Clone, Debug)]
+pub struct References {
+    /// How many frames.
+    pub frames: usize,
+    /// All their points, in metres.
+    pub cloud: Cloud,
+    /// What was known before.
+    pub given: Membrane,
+}
+
+impl References {
+    /// Keeps all points that were seen and what was known before, and thins what is solved: a theory is off by about the same
+    /// over whole regions, so that points nearer to each other say nothing new of it.
+    pub(super) fn new(cloud: &mut Cloud, request: &Request, given: &Given<'_>) -> Result<Self, PrepareError> {
+        let (a, b) = (given.size("a")?, given.size("b")?);
+        let known = Membrane {
+            a_m: Some(a),
+            b_m: Some(b),
+            thickness_m: given.of("t")?,
+            young: None,
+            poisson: given.of("nu")?,
+            pressure: given.of("p")?,
+        };
+        let regions = std::f64::consts::PI * a * b / (2.0 * a.max(b) / REGIONS).powi(2);
+        let least = (STRAYS * cloud.points.len() as f64 / regions) as usize;
+        let thinned = cloud.one_of_each_cube(2.0 * a.max(b) / REGIONS, least);
+        let cloud = std::mem::replace(cloud, thinned);
+        Ok(Self { frames: request.data.len(), cloud, given: known })
+    }
+
+    /// What a solution says of the sensor: `values` are those of its heads, `learned` its learned scalars in declared units.
+    ///
+    /// # Errors
+    /// A scene that does not move its surface, or that learned no pose.
+    pub fn calibration(
+        &self,
+        entry: &Entry,
+        scene: &str,
+        contact: &Contact,
+        values: &Values<'_>,
+        learned: &dyn Fn(&str) -> Option<f64>,
+    ) -> Result<Calibration, PrepareError> {
+        let missing = |what: &str| PrepareError::Data(DataError::Invalid(format!("the scene `{scene}` has no {what}")));
+        let of = |name: &str| learned(name).ok_or_else(|| missing(&format!("learned `{name}`")));
+        let all = |names: [&str; 3]| -> Result<[f64; 3], PrepareError> {
+            let [x, y, z] = names.map(of);
+            Ok([x?, y?, z?])
+        };
+        let widen = [of("widen_a")?, of("widen_b")?];
+        let pose = Pose {
+            turn_rad: all(["turn_x", "turn_y", "turn_z"])?,
+            shift_m: all(["shift_x", "shift_y", "shift_z"])?.map(|shift| contact.unit * shift),
+        };
+        let known = |value: Option<f64>, what| value.ok_or_else(|| missing(what));
+        let (a, b) = (known(self.given.a_m, "semi-axis a")?, known(self.given.b_m, "semi-axis b")?);
+        let pressure = known(self.given.pressure, "gauge pressure")?;
+        let membrane = Membrane {
+            a_m: Some(widen[0] * a),
+            b_m: Some(widen[1] * b),
+            young: Some(of("E")?),
+            pressure: None,
+            ..self.given
+        };
+        let offs = self.offs(contact, values, widen, &pose).ok_or_else(|| missing("surface"))??;
+        let deviation = Deviation::fit(&offs, [widen[0] * a, widen[1] * b])?;
+        let left = offs.iter().map(|off| {
+            let taken = deviation.at(off.place);
+            off.distance - taken.iter().zip(off.normal).map(|(x, n)| x * n).sum::<f64>()
+        });
+        let found = Quality {
+            frames: self.frames,
+            points: self.cloud.points.len(),
+            pressure,
+            misfit_m: spread(offs.iter().map(|off| off.distance)),
+            noise_m: spread(left),
+        };
+        let held = format!(
+            "free frames tell E * t over the pressure, not both: the gauge pressure was held at {pressure} Pa and the thickness \
+             at the given one; a pressure that is off by one per cent makes E, and every force found with it, off by one per cent"
+        );
+        Ok(Calibration { equation: entry.name.into(), scene: scene.into(), held, found, membrane, pose, deviation })
+    }
+
+    /// How far all points are from the surface of a solution; nothing where it has no displacements.
+    fn offs(
+        &self,
+        contact: &Contact,
+        values: &Values<'_>,
+        widen: [f64; 2],
+        pose: &Pose,
+    ) -> Option<Result<Vec<Off>, DataError>> {
+        let face = &contact.face;
+        let [Some(x), Some(y), Some(z)] = contact.displacement.map(|name| values(name, &face.points)) else {
+            return None;
+        };
+        let moved: Vec<[f64; 3]> = contact
+            .deformed(&face.points, [&x, &y, &z])
+            .into_iter()
+            .zip(face.at_rest())
+            .map(|(place, rest)| {
+                std::array::from_fn(|axis| place[axis] + widen.get(axis).map_or(0.0, |w| (w - 1.0) * rest[axis]))
+            })
+            .collect();
+        let normals = face.area_vectors(&moved);
+        let tree = match Nearest::new(&moved) {
+            Ok(tree) => tree,
+            Err(error) => return Some(Err(error)),
+        };
+        let off = |point: &[f64; 3]| {
+            let inside = pose.inward(*point);
+            let at = tree.nearest(&inside).index;
+            let size = length(normals[at]);
+            let normal = normals[at].map(|x| x / size);
+            let distance = minus(inside, moved[at]).iter().zip(normal).map(|(x, n)| x * n).sum();
+            Off { place: [inside[0], inside[1]], distance, normal }
+        };
+        Some(Ok(self.cloud.points.iter().map(off).collect()))
+    }
+}
+
+/// The standard deviation about zero that the median of sizes speaks for; zero of nothing.
+fn spread(values: impl Iterator<Item = f64>) -> f64 {
+    let mut sizes: Vec<f64> = values.map(f64::abs).collect();
+    if sizes.is_empty() {
+        return 0.0;
+    }
+    let middle = sizes.len() / 2;
+    *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 / MEDIAN
+}

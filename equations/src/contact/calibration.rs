@@ -1,0 +1,92 @@
+//! What free frames told of a sensor: a file that is written once and read with every frame.
+
+use std::path::Path;
+
+use nisp_data::Cloud;
+use nisp_data::input::read_text;
+use serde::{Deserialize, Serialize};
+
+use super::Pose;
+use super::deviation::Deviation;
+use super::inflated::Membrane;
+use crate::PrepareError;
+
+/// What the scenes that calibrate are called; the rest of their names is that of the law that they take.
+pub(super) const CALIBRATES: &str = "calibrate";
+
+/// A sensor as its free frames show it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Calibration {
+    /// Name of the equation.
+    pub equation: String,
+    /// The scene that found it.
+    pub scene: String,
+    /// What is as likely with other values of what was held, in words.
+    pub held: String,
+    /// How many points in how many frames it rests on, and what they are off.
+    pub found: Quality,
+    /// Material and size, in the keys of a sample.
+    pub membrane: Membrane,
+    /// Where the rim is in the cloud's frame.
+    pub pose: Pose,
+    /// What the theory does not explain.
+    pub deviation: Deviation,
+}
+
+/// What a calibration rests on. Lengths are in metres.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quality {
+    /// Frames.
+    pub frames: usize,
+    /// Points in all of them.
+    pub points: usize,
+    /// The gauge pressure at which they were taken, in pascals.
+    #[serde(rename = "gauge_pressure_Pa")]
+    pub pressure: f64,
+    /// What the points are off the theory's surface: the median of sizes over 0.6745, a standard deviation without outliers.
+    pub misfit_m: f64,
+    /// The same after the smooth deviation is taken off.
+    pub noise_m: f64,
+}
+
+impl Calibration {
+    /// Reads a file of [`Calibration::text`].
+    ///
+    /// # Errors
+    /// No such file, or one that is no calibration.
+    pub fn read(path: &Path) -> Result<Self, PrepareError> {
+        let text = read_text(path)?;
+        let fault = |reason: String| PrepareError::File { path: path.into(), reason };
+        let calibration: Self = toml::from_str(&text)
+            .map_err(|error| fault(format!("no calibration: {}; make one with `nisp calibrate`", error.message())))?;
+        if !calibration.deviation.is_whole() || !calibration.scene.starts_with(CALIBRATES) {
+            return Err(fault("no calibration; make one with `nisp calibrate`".into()));
+        }
+        Ok(calibration)
+    }
+
+    /// The file's text.
+    ///
+    /// # Errors
+    /// Numbers that have no text.
+    pub fn text(&self) -> Result<String, toml::ser::Error> {
+        let about =
+            "# What free frames told of a sensor, for --calibration. Lengths are in metres, angles in radians.\n";
+        Ok(format!("{about}{}", toml::to_string(self)?))
+    }
+
+    /// The scene of the same law that does what this one does.
+    pub(super) fn scene_for(&self, scene: &str) -> String {
+        let law = self.scene.strip_prefix(CALIBRATES).unwrap_or_default();
+        if scene.ends_with(law) { scene.into() } else { format!("{scene}{law}") }
+    }
+
+    /// Takes a cloud into the frame of the rim, and the deviation off.
+    pub(super) fn correct(&self, cloud: &mut Cloud) {
+        for point in &mut cloud.points {
+            let inside = self.pose.inward(*point);
+            let off = self.deviation.at([inside[0], inside[1]]);
+            *point = std::array::from_fn(|axis| inside[axis] - off[axis]);
+        }
+    }
+}

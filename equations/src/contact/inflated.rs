@@ -1,0 +1,218 @@
+//! Binds the scenes of an inflated membrane over an elliptic rim to a cloud of its surface.
+
+use nisp::local::{Local, Patches};
+use nisp_data::DataError;
+use nisp_data::domain::{Domain, Sampling};
+use serde::{Deserialize, Serialize};
+
+use super::calibration::{CALIBRATES, Calibration};
+use super::given::{Given, Number, Positive, Size};
+use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
+use super::{Contact, ContactRival, Face, Load, References, Rule, Surface, bind_cloud};
+use crate::PrepareError;
+use crate::catalogue::{Entry, Prepared, Request};
+use crate::truth::{Headers, Truth};
+
+/// What one theory of the membrane has of its own.
+pub(super) struct Theory {
+    /// The example of a scene that has a pressure.
+    pub(super) pressed: Example,
+    /// The example of a scene that nothing touches.
+    pub(super) inflated: Example,
+    /// How the contact pressure acts.
+    pub(super) load: Load,
+    /// How a touched point is told, given the gauge pressure in pascals.
+    pub(super) rule: fn(f64) -> Rule,
+    /// What the truth's files call things, see [`Headers`].
+    pub(super) rather: &'static [(&'static str, &'static str)],
+    /// A classical way to the pressure.
+    pub(super) rival: Option<Rival>,
+}
+
+/// A way to a [`ContactRival`], for these semi-axes in metres.
+type Rival = fn(&Given<'_>, &Observed, [f64; 2]) -> Result<ContactRival, PrepareError>;
+
+/// A membrane in a sample, in SI units.
+#[derive(Deserialize)]
+struct Tables {
+    membrane: Membrane,
+}
+
+/// Material and size of a membrane, in the keys of samples and calibrations and in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Membrane {
+    /// Semi-axis of the rim along `alpha`.
+    pub a_m: Option<f64>,
+    /// Semi-axis of the rim along `beta`.
+    pub b_m: Option<f64>,
+    /// Thickness.
+    pub thickness_m: Option<f64>,
+    /// Young's modulus.
+    #[serde(rename = "young_Pa")]
+    pub young: Option<f64>,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+    /// Gauge pressure.
+    #[serde(rename = "gauge_pressure_Pa")]
+    pub pressure: Option<f64>,
+}
+
+/// Semi-axes of the paper's membrane.
+const SIZES: [Size; 2] = [Size { name: "a", usual: 0.06 }, Size { name: "b", usual: 0.04 }];
+
+const POSITIVE: &Positive =
+    &[("p", "nothing inflates the membrane without pressure from below: give the gauge pressure with --set p=VALUE")];
+
+/// Points within the membrane for the equations, for the surface that the cloud is compared with, and on the rim.
+pub(super) const POINTS: (usize, usize, usize) = (1500, 2000, 200);
+/// The same for local functions: some nine points in every cell.
+const LOCAL_POINTS: (usize, usize, usize) = (17_000, 8000, 400);
+/// Local functions: cells of two millimetres on the paper's membrane for a pressure with edges, of four where nothing
+/// touches it.
+const LOCAL: Local =
+    Local { cells: 30, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 2, patches: None };
+const CELLS_FOR_PATCHES: usize = 60;
+/// What touches the membrane presses it out of its bulge, which takes the gauge pressure at least.
+const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.15, area: 0.75 };
+/// Points between which the net force is integrated, and those of the surface in pictures.
+const FINE: (usize, usize) = (20_000, 4000);
+/// Points in a metre where the answer is wanted.
+const PER_METRE: f64 = 1000.0;
+
+/// What the truth's files call the coordinates.
+const ALSO: &[(&str, &str)] = &[("alpha", "x"), ("beta", "y")];
+
+/// Reads what is asked for and binds a scene to it.
+pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
+    if request.calibration.is_some() && (request.data.is_empty() || request.sample.is_some()) {
+        let instead = "it goes with a frame of the calibrated sensor, and without --sample: --data FRAME";
+        return Err(PrepareError::Option { entry: entry.name, option: "calibration", instead });
+    }
+    let calibration = request.calibration.as_deref().map(Calibration::read).transpose()?;
+    let mut scene = entry.scene(request.scene.as_deref())?;
+    if let Some(calibration) = &calibration {
+        scene = entry.scene(Some(&calibration.scene_for(scene.schema.name)))?;
+    }
+    let schema = scene.schema;
+    let calibrates = schema.name.starts_with(CALIBRATES);
+    let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
+    let example = if pressure.is_some() { &theory.pressed } else { &theory.inflated };
+    let mut observed = if calibrates { Observed::all(request)? } else { Observed::read(entry, request, example)? };
+    if let Some(calibration) = &calibration {
+        calibration.correct(&mut observed.cloud);
+    }
+    let sample =
+        observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
+    let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
+    let mut problem = given.problem(POSITIVE)?;
+    let assumed = given.assumed()?;
+    let (a, b) = (given.size("a")?, given.size("b")?);
+    let references = calibrates.then(|| References::new(&mut observed.cloud, request, &given)).transpose()?;
+    if calibrates && given.says("E").is_none() {
+        problem.set_parameter("E", stiff(&given)?)?;
+    }
+    observed.require_of("membrane", [-a, -b, 0.0], [a, b, b])?;
+
+    let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
+    let level = given.of("p")?.filter(|_| pressure.is_some());
+    let patches = level.map(|level| Patches { level, ..PATCHES });
+    // What a calibration leaves must not be the error of a coarser lattice than later frames are solved on.
+    let cells = if patches.is_some() || calibrates { CELLS_FOR_PATCHES } else { LOCAL.cells };
+    let local = (!request.network).then_some(Local { cells, patches, ..LOCAL });
+    let (counts, sampling) = if local.is_some() { (LOCAL_POINTS, Sampling::Grid) } else { (POINTS, Sampling::Sobol) };
+    for group in schema.groups {
+        let points = match group.name {
+            "rim" => ellipse.boundary(counts.2),
+            "surface" => ellipse.interior(counts.1, sampling, 0),
+            _ => ellipse.interior(counts.0, sampling, 0),
+        };
+        // Equations are tested by weighted means; conditions on the rim and places of the surface are single points.
+        let weights = points.weights.filter(|_| local.is_some() && group.name == "interior").unwrap_or_default();
+        let points = nisp::Points { coordinates: points.coords, weights, ..nisp::Points::default() };
+        problem.set_group(group.name, points, Vec::new())?;
+    }
+    observed.cloud.thin(2.0 * a.max(b) / cells as f64, POINTS_OF_A_CELL);
+    bind_cloud(&mut problem, &observed.cloud)?;
+    match &calibration {
+        // What was taken off a point may be off by as much as it is where the surface is pressed into another shape.
+        Some(calibration) => problem.set_tolerance("surface", "cloud", calibration.found.misfit_m)?,
+        // The camera looks up, and its depth is what is noisy.
+        None if local.is_some() => {
+            problem.set_view("surface", if calibrates { "posed" } else { "cloud" }, [0.0, 0.0, 1.0])?;
+        }
+        None => {}
+    }
+
+    let headers = Headers { chosen: &request.columns, rather: theory.rather, also: ALSO };
+    let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
+    let mut contact = Contact {
+        displacement: ["u", "v", "w"],
+        unit: 1e-3,
+        pressure,
+        rule: (theory.rule)(given.of("p")?.unwrap_or(0.0)),
+        load: theory.load,
+        face: face(&ellipse, FINE.0)?,
+        surface: surface(&ellipse)?,
+        eye: [-65.0, 40.0],
+        truth: None,
+        rival: pressure.and(theory.rival).map(|rival| rival(&given, &observed, [a, b])).transpose()?,
+    };
+    contact.truth = contact.true_contact(schema, observed.truth.as_ref().zip(truth.as_ref()), headers)?;
+    Ok(Prepared {
+        problem,
+        points: grid(&ellipse),
+        outline: ellipse.outline(200),
+        planes: Vec::new(),
+        measured: Vec::new(),
+        truth,
+        source: observed.source.display().to_string(),
+        warnings: observed.cloud.warnings,
+        assumed,
+        rival: None,
+        local,
+        contact: Some(contact),
+        references,
+    })
+}
+
+/// A modulus in pascals at which the gas stretches the membrane by a twentieth: steps towards a softer one that bulges as the
+/// cloud does are safe, while one that is too soft may have no equilibrium.
+fn stiff(given: &Given<'_>) -> Result<f64, PrepareError> {
+    const STRETCH: f64 = 0.05;
+    let value = |name| Ok::<_, PrepareError>(given.of(name)?.unwrap_or(f64::NAN));
+    // The tension of a sphere over the shorter axis is half the pressure times its radius.
+    Ok(0.5 * value("p")? * value("b")? / (STRETCH * value("t")?))
+}
+
+fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
+    let Membrane { a_m, b_m, thickness_m, young, poisson, pressure } = sample.tables::<Tables>()?.membrane;
+    let number = |name, key, value| Number { name, key, value };
+    Ok(vec![
+        number("a", "[membrane] a_m", a_m),
+        number("b", "[membrane] b_m", b_m),
+        number("t", "[membrane] thickness_m", thickness_m),
+        number("E", "[membrane] young_Pa", young),
+        number("nu", "[membrane] poisson", poisson),
+        number("p", "[membrane] gauge_pressure_Pa", pressure),
+    ])
+}
+
+/// Points on a regular grid around the origin.
+fn grid(domain: &Domain) -> Vec<f64> {
+    let (_, high) = domain.bounds();
+    let half = |axis: usize| (high[axis] * PER_METRE).floor() as i32;
+    let line = |axis: usize| (-half(axis)..=half(axis)).map(|i| f64::from(i) / PER_METRE);
+    let points = line(1).flat_map(|y| line(0).map(move |x| [x, y]));
+    points.filter(|point| domain.contains(point)).flatten().collect()
+}
+
+/// The membrane in triangles between so many points and those of its rim.
+fn face(ellipse: &Domain, count: usize) -> Result<Face, DataError> {
+    let inner = ellipse.interior(count, Sampling::Grid, 0).coords;
+    Face::new(2, [ellipse.boundary(POINTS.2).coords, inner].concat())
+}
+
+fn surface(ellipse: &Domain) -> Result<Surface, DataError> {
+    let Face { points, triangles, .. } = face(ellipse, FINE.1)?;
+    Ok(Surface { loaded: vec![true; points.len() / 2], points, triangles })
+}

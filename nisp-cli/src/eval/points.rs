@@ -1,0 +1,69 @@
+//! Where a saved answer is wanted.
+
+use nisp::OpenAnswer;
+use nisp_data::Table;
+
+use crate::args::EvalOptions;
+
+/// The points of a table, or of a grid as far as the answer holds there; point by point, in declared units.
+pub(super) fn wanted(answer: &OpenAnswer, options: &EvalOptions) -> Result<Vec<f64>, String> {
+    let coordinates = answer.scene().coordinates;
+    if let Some((name, _)) = options.column.iter().find(|(name, _)| coordinates.iter().all(|c| c.name != name)) {
+        return Err(format!("--column: there is no coordinate `{name}`; there are: {}", names(answer)));
+    }
+    if let Some(path) = &options.place.at {
+        let table = Table::read_places(path).map_err(|error| error.to_string())?;
+        let axis = |name: &str, unit: &str| {
+            let chosen = options.column.iter().rev().find(|(own, _)| own == name);
+            match chosen {
+                Some((_, header)) => table.chosen(name, header, unit),
+                None => table.quantity(name, unit),
+            }
+        };
+        let axes = coordinates.iter().map(|c| axis(c.name, c.unit.text)).collect::<Result<Vec<_>, _>>();
+        let axes = axes.map_err(|error| error.to_string())?;
+        return Ok((0..table.rows()).flat_map(|row| axes.iter().map(move |axis| axis[row])).collect());
+    }
+    let counts = options.place.grid.as_ref().map_or(&[][..], |grid| &grid.0);
+    if counts.len() != coordinates.len() {
+        let (given, names) = (counts.len(), names(answer));
+        return Err(format!("--grid has {given} numbers; give one for each of the coordinates {names}"));
+    }
+    Ok(grid(answer, counts))
+}
+
+/// The names of the coordinates.
+fn names(answer: &OpenAnswer) -> String {
+    answer.scene().coordinates.iter().map(|c| c.name).collect::<Vec<_>>().join(", ")
+}
+
+/// A grid over the ranges of the answer, the first coordinate running fastest; a single point along a coordinate lies in the
+/// middle of its range.
+fn grid(answer: &OpenAnswer, counts: &[usize]) -> Vec<f64> {
+    let point = |index: usize| -> Vec<f64> {
+        let mut rest = index;
+        let along = counts.iter().zip(answer.ranges()).map(|(count, [low, high])| {
+            let at = rest % count;
+            rest /= count;
+            let (before, after) = if *count > 1 { (at, count - 1 - at) } else { (1, 1) };
+            // Exact at both ends.
+            (after as f64 * low + before as f64 * high) / (before + after) as f64
+        });
+        along.collect()
+    };
+    (0..counts.iter().product()).map(point).filter(|point| answer.contains(point)).flatten().collect()
+}
+
+/// The ranges in which an answer holds, in words.
+pub(super) fn ranges(answer: &OpenAnswer) -> String {
+    let coordinates = answer.scene().coordinates.iter().zip(answer.ranges());
+    let range = |(c, [low, high]): (&nisp::schema::Coordinate, &[f64; 2])| {
+        format!("{} = {} to {} {}", c.name, short(*low), short(*high), c.unit.text).trim_end().to_string()
+    };
+    coordinates.map(range).collect::<Vec<_>>().join(", ")
+}
+
+/// Six digits at most.
+fn short(value: f64) -> f64 {
+    format!("{value:.5e}").parse().unwrap_or(value)
+}
