@@ -1,7 +1,7 @@
 //! What an answer's surface leaves of a cloud: no more than the cloud's own roughness, and without a pattern.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::{DMatrix, DVector, Matrix3, SymmetricEigen, U3, Vector3};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::num::NonZero;
 
 use super::{Check, root_mean_square};
@@ -107,42 +107,44 @@ fn roughness(points: &[[f64; 3]], places: &[[f64; 3]], tree: &ImmutableKdTree<f6
     }
     let step = points.len().div_ceil(PLACES);
     let left = places.iter().step_by(step).filter_map(|centre| {
-        let (near, middle, axes, order) = std::iter::successors(Some(AROUND), |around| around.checked_mul(WIDER))
-            .map(|around| piece(points, tree, centre, around))
-            .find(|(near, _, axes, order)| {
-                let width = |i: usize| axes.eigenvalues[order[i]].max(0.0).sqrt();
-                width(2) <= THICK * width(1) || WIDER.get() * near.len() > points.len()
+        let Piece { local, widths } = std::iter::successors(Some(AROUND), |around| around.checked_mul(WIDER))
+            .map(|around| Piece::around(centre, around, points, tree))
+            .find(|piece| {
+                piece.widths[2] <= THICK * piece.widths[1] || WIDER.get() * piece.local.len() > points.len()
             })?;
-        let axis = |i: usize| axes.eigenvectors.column(order[i]).into_owned();
-        let reach = axes.eigenvalues[order[0]].max(f64::MIN_POSITIVE).sqrt();
-        let local: Vec<[f64; 3]> = near.iter().map(|p| [0, 1, 2].map(|i| (p - middle).dot(&axis(i)))).collect();
+        let reach = widths[0].max(f64::MIN_POSITIVE);
         let rows = local.iter().flat_map(|&[x, y, _]| {
             let (x, y) = (x / reach, y / reach);
             [1.0, x, y, x * x, x * y, y * y]
         });
-        let design = DMatrix::from_row_iterator(near.len(), UNKNOWNS, rows);
-        let heights = DVector::from_iterator(near.len(), local.iter().map(|p| p[2]));
+        let design = DMatrix::from_row_iterator(local.len(), UNKNOWNS, rows);
+        let heights = DVector::from_iterator(local.len(), local.iter().map(|p| p[2]));
         let fit = design.clone().svd(true, true).solve(&heights, 1e-10).ok()?;
-        Some((heights - design * fit).norm_squared() / (near.len() - UNKNOWNS) as f64)
+        Some((heights - design * fit).norm_squared() / (local.len() - UNKNOWNS) as f64)
     });
     Some(middle(left.collect()).sqrt())
 }
 
-/// Neighbours of a place, their middle, and the axes of their spread with their order from the longest to the shortest.
-fn piece(
-    points: &[[f64; 3]],
-    tree: &ImmutableKdTree<f64, 3>,
-    centre: &[f64; 3],
-    around: NonZero<usize>,
-) -> (Vec<Vector3<f64>>, Vector3<f64>, SymmetricEigen<f64, U3>, [usize; 3]) {
-    let near = tree.query(centre).nearest_n::<SquaredEuclidean<f64>>(around).execute();
-    let near: Vec<Vector3<f64>> = near.iter().map(|found| Vector3::from(points[found.item as usize])).collect();
-    let middle = near.iter().sum::<Vector3<f64>>() / near.len() as f64;
-    let spread: Matrix3<f64> = near.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
-    let axes = spread.symmetric_eigen();
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
-    (near, middle, axes, order)
+/// The neighbours of a place along the axes of their spread, from the longest axis to the shortest.
+struct Piece {
+    /// From the middle of the piece.
+    local: Vec<[f64; 3]>,
+    /// Roots of the sums of squares along the axes.
+    widths: [f64; 3],
+}
+
+impl Piece {
+    fn around(centre: &[f64; 3], around: NonZero<usize>, points: &[[f64; 3]], tree: &ImmutableKdTree<f64, 3>) -> Self {
+        let near = tree.query(centre).nearest_n::<SquaredEuclidean<f64>>(around).execute();
+        let near: Vec<Vector3<f64>> = near.iter().map(|found| Vector3::from(points[found.item as usize])).collect();
+        let middle = near.iter().sum::<Vector3<f64>>() / near.len() as f64;
+        let spread: Matrix3<f64> = near.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
+        let axes = spread.symmetric_eigen();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
+        let along = |p: &Vector3<f64>| order.map(|i| (p - middle).dot(&axes.eigenvectors.column(i)));
+        Self { local: near.iter().map(along).collect(), widths: order.map(|i| axes.eigenvalues[i].max(0.0).sqrt()) }
+    }
 }
 
 fn middle(mut values: Vec<f64>) -> f64 {
