@@ -100,10 +100,11 @@ fn mark(column: &Column, cells: &[f64], coarse: &mut [bool]) {
         tallies[cell].add(misfit, before);
         before = Some(misfit);
     }
+    // Cells that are marked already explain their own misfits: the others must be noise without them.
     for together in TOGETHER {
         for (tallies, coarse) in tallies.chunks(together).zip(coarse.chunks_mut(together)) {
-            let is_marked = coarse.contains(&true);
-            if !is_marked && tallies.iter().fold(Tally::default(), Tally::with).is_more_than_noise() {
+            let rest = tallies.iter().zip(coarse.iter()).filter(|(_, is_coarse)| !**is_coarse);
+            if rest.fold(Tally::default(), |all, (own, _)| all.with(own)).is_more_than_noise() {
                 coarse.fill(true);
             }
         }
