@@ -72,6 +72,18 @@ pub(super) fn middle<'a>(bound: &Bound, breakpoints: &'a [f64]) -> Option<&'a [f
     (last - first < cells / 2 + 1).then(|| &breakpoints[first..=last])
 }
 
+/// The problem between the first and the last of these breakpoints. Equations that stand for an interval hold all along the
+/// part, however few of their points are in it.
+pub(super) fn part(bound: &Bound, breakpoints: &[f64]) -> Bound {
+    let mut part = bound.between(breakpoints[0], breakpoints[breakpoints.len() - 1]);
+    for (group, points) in part.coordinates.iter_mut().enumerate() {
+        if let Some(places) = places(bound, group, breakpoints) {
+            *points = places;
+        }
+    }
+    part
+}
+
 /// Degrees of the heads' splines: so much above the order of their highest derivative that residuals are smooth. Nothing where
 /// the degree would be too high.
 pub(super) fn degrees(schema: &schema::Scene) -> Option<Vec<usize>> {

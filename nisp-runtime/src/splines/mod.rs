@@ -140,7 +140,7 @@ pub(crate) fn solve(
         (Some(saved), _) => place.restore(saved)?,
         // A part of a long record says how smooth the sources are, and how large the noise is.
         (None, Some(middle)) => {
-            let part = bound.between(middle[0], middle[middle.len() - 1]);
+            let part = cells::part(bound, middle);
             let mut solver = Solver::over(&part, middle);
             let mut trial = Place::first(solver.first(noise), solver.has_sources());
             // A run that ends here begins anew.
@@ -209,7 +209,7 @@ const ROUGHLY: f64 = 0.02;
 pub(crate) fn richness(bound: &Bound, noise: &Noise) -> f64 {
     let breakpoints = cells::all_breakpoints(bound);
     let middle = cells::middle(bound, &breakpoints);
-    let part = middle.map(|middle| bound.between(middle[0], middle[middle.len() - 1]));
+    let part = middle.map(|middle| cells::part(bound, middle));
     let mut solver = Solver::over(part.as_ref().unwrap_or(bound), middle.unwrap_or(&breakpoints));
     let mut state = solver.first(noise);
     solver.hold_noise(&mut state, noise, ROUGHLY);
