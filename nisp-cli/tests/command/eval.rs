@@ -83,10 +83,10 @@ fn moment_and_shear_force_are_read_with_their_deviations() {
     // A given parameter is exact, and a curvature is a moment over a stiffness.
     assert!(numbers(&object, 3, "values").iter().all(|value| (value - 210.0).abs() < 1e-9));
     assert!(numbers(&object, 3, "deviations").iter().all(|deviation| *deviation == 0.0));
-    // Variances lose digits where a condition holds the quantity, as at the tip.
+    // Variances lose half of their digits where a condition holds the quantity, as at the tip.
     let most = moment.1.iter().fold(0.0, |most: f64, x| most.max(*x));
     for (curvature, moment) in numbers(&object, 4, "deviations").iter().zip(&moment.1) {
-        assert!((curvature * 210.0 - moment).abs() < 1e-4 * most, "{curvature} {moment}");
+        assert!((curvature * 210.0 - moment).abs() < 1e-3 * most, "{curvature} {moment}");
     }
 }
 
