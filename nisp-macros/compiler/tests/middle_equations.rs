@@ -4,9 +4,11 @@
 mod middle_support;
 
 use middle_support::check::{check_dot_products, check_rows};
+use middle_support::jet::Jet;
+use middle_support::oracle::call;
 use middle_support::{Numbers, network};
 use nisp_compiler::error::Errors;
-use nisp_compiler::model::{Model, check};
+use nisp_compiler::model::{Function, Model, check};
 use nisp_compiler::plan;
 use nisp_compiler::syntax::parse;
 use proptest::prelude::*;
@@ -135,5 +137,13 @@ proptest! {
                 network::check_adjoints(set, seed)?;
             }
         }
+    }
+}
+
+#[test]
+fn dense_jets_of_saturated_functions_are_finite() {
+    for at in [-1e3, 1e3] {
+        let jet = call(Function::Tanh, &Jet::affine(&[1.0], at, 2));
+        assert_eq!(jet.coefficients.values().copied().collect::<Vec<f64>>(), [at.signum(), 0.0, 0.0]);
     }
 }

@@ -81,6 +81,11 @@ pub(crate) fn call(f: Function, x: &Jet) -> Jet {
             x.compose(&derivatives)
         }
         Function::Softplus => call(Function::Ln, &one.plus(&call(Function::Exp, x))),
+        // The exponential of a large number overflows.
+        Function::Sigmoid if v < 0.0 => {
+            let growing = call(Function::Exp, x);
+            growing.times(&power(&one.plus(&growing), -1.0))
+        }
         Function::Sigmoid => power(&one.plus(&call(Function::Exp, &x.scale(-1.0))), -1.0),
         Function::Tanh => call(Function::Sigmoid, &x.scale(2.0)).scale(2.0).plus(&one.scale(-1.0)),
         other => panic!("the oracle does not know {other:?}"),
