@@ -1,7 +1,7 @@
 //! What an answer says at the points of a group, and what its programs make of it.
 
-use crate::kernel::Programs;
 use crate::residual::Points;
+use crate::residual::Programs;
 use crate::schema;
 use crate::simd::Isa;
 

@@ -4,7 +4,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use std::num::NonZero;
 
 use super::Engine;
-use super::tile::POINT_LANES;
+use super::buffers::POINT_LANES;
 use crate::facts::{Answer, CloudFacts, Facts};
 use crate::schema::TermKind;
 

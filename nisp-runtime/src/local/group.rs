@@ -8,9 +8,9 @@
 use rayon::prelude::*;
 
 use super::block::{Block, Layout};
-use super::evaluated::Evaluated;
 use super::heads::Heads;
 use super::lattice::{Exponents, Lattice, Span};
+use super::rows::Evaluated;
 use super::sites::Sites;
 use super::testing::{Test, tests};
 use crate::kernel::GroupKernel;

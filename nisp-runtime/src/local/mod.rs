@@ -27,6 +27,7 @@ mod place;
 mod prior;
 mod refuse;
 mod resolved;
+mod rows;
 mod sites;
 mod solver;
 mod sorted;

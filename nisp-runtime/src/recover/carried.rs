@@ -1,12 +1,13 @@
 //! What every carrier says of its answer, whatever carries the heads.
 
 use super::bars::Distrust;
+use crate::carrier::Kept;
 use crate::engine::Engine;
 use crate::facts::Answer;
 use crate::local::LocalSolution;
 use crate::network::Architecture;
 use crate::problem::Bound;
-use crate::saved::{Kept, KeptNetwork};
+use crate::saved::KeptNetwork;
 use crate::solve::curvature::Curvature;
 use crate::solve::posterior::posterior;
 use crate::solve::prior::WeightPrior;

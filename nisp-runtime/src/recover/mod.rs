@@ -18,7 +18,7 @@ mod settings;
 mod solution;
 mod spread;
 mod undetermined;
-pub(crate) mod weigh;
+mod weigh;
 mod words;
 
 use std::time::Instant;
@@ -26,8 +26,8 @@ use std::time::Instant;
 use thiserror::Error;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
-pub use settings::{Carrier, Optimizer, Resampling, Settings, Width};
-pub use solution::{Estimate, LearnedValue, Solution, TermReport};
+pub use settings::{Carrier, Optimizer, Settings, Width};
+pub use solution::{LearnedValue, Solution, TermReport};
 
 use choice::Chosen;
 use course::Course;

@@ -5,11 +5,11 @@ use std::time::Instant;
 use super::bars::Distrust;
 use super::course::Course;
 use super::promotion::Promotion;
-use super::settings::{Optimizer, Resampling, Settings, Width};
+use super::settings::{Optimizer, Settings, Width};
 use super::solution::Run;
 use super::undetermined::View;
 use super::{BELIEF, RecoverError, Solution, resolution, weigh};
-use crate::engine::Engine;
+use crate::engine::{Engine, Resampling, factors};
 use crate::kernel::Precision;
 use crate::memory;
 use crate::network::initialise;
@@ -29,9 +29,6 @@ use crate::solve::projection::{Projection, linear_parameters};
 
 /// Parameters up to which the curvature is factorised for error bars: a few seconds.
 const MOST_FOR_CURVATURE: usize = 4000;
-
-/// Steps that L-BFGS remembers.
-pub(super) const MEMORY: usize = 20;
 
 /// Estimated distance of the loss from its minimum, relative to the loss, at which noisy data count as
 /// fitted: some hundredths of a logarithm of probability, which move the answer by a tenth of an error bar.
@@ -153,7 +150,7 @@ impl<'a> Fit<'a> {
             for _ in 0..candidate.steps_of_a_trial() {
                 method.step(&mut self.engine)?;
             }
-            weigh::by_size(&mut self.engine);
+            factors::by_size(&mut self.engine);
             let loss = self.engine.loss(method.theta())?;
             if loss < best.0 {
                 best = (loss, candidate);
@@ -169,9 +166,9 @@ impl<'a> Fit<'a> {
             weigh::begin_wide(&mut self.engine, self.bound, &self.noise);
             return Ok(());
         }
-        weigh::by_size(&mut self.engine);
+        factors::by_size(&mut self.engine);
         if optimizer == Optimizer::Adam {
-            weigh::regress_first(&mut self.engine, &self.theta, self.settings.data_first)?;
+            factors::regress_first(&mut self.engine, &self.theta, self.settings.data_first)?;
         }
         Ok(())
     }
@@ -187,7 +184,7 @@ impl<'a> Fit<'a> {
             Optimizer::Marquardt | Optimizer::Projection => Box::new(Marquardt::new(theta, prior)),
             Optimizer::GaussNewton => Box::new(GaussNewton::new(theta, prior, INNER)),
             Optimizer::Broyden => Box::new(Broyden::new(theta, Update::SelfScaledBroyden)),
-            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, MEMORY)),
+            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, lbfgs::MEMORY)),
             Optimizer::Auto | Optimizer::Adam => Box::new(Adam::new(theta, AdamSettings::default())),
         }
     }
@@ -250,10 +247,10 @@ impl<'a> Fit<'a> {
     ) -> Result<Outcome<f64>, RecoverError> {
         let mut engine: Engine<f32> = engine(self.bound, self.settings)?;
         self.weigh(optimizer)?;
-        weigh::alike(&mut engine, &self.engine);
+        factors::alike(&mut engine, &self.engine);
         let theta: Vec<f32> = self.theta.iter().map(|&x| x as f32).collect();
         let mut method: Box<dyn Method<f32, Engine<f32>>> = match optimizer {
-            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, MEMORY)),
+            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, lbfgs::MEMORY)),
             _ => Box::new(Adam::new(theta, AdamSettings::default())),
         };
         let outcome = match promotion {

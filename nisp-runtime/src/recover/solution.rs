@@ -5,6 +5,7 @@ use std::time::Instant;
 use super::bars::Distrust;
 use super::carried::{Carried, Network, Values};
 use super::{Checkpoint, Optimizer, Settings, Width};
+use crate::carrier::Estimate;
 use crate::engine::Engine;
 use crate::local::LocalSolution;
 use crate::noise::{self, Noise};
@@ -47,23 +48,6 @@ pub struct Solution {
     bound: Bound,
     method: &'static str,
     carried: Box<dyn Carried>,
-}
-
-/// A head at some points.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Estimate {
-    /// Name of the head.
-    pub name: &'static str,
-    /// Its declared unit.
-    pub unit: schema::Unit,
-    /// True for a source.
-    pub source: bool,
-    /// Values in the declared unit, one per point.
-    pub values: Vec<f64>,
-    /// Standard deviations, one per point, where the method gives them.
-    pub deviations: Option<Vec<f64>>,
-    /// The part of each that is only the prior's word, so multiplied: smoothing that no measurement speaks for or against.
-    pub by_prior: Option<Vec<f64>>,
 }
 
 /// A learned scalar.

@@ -16,7 +16,6 @@ use crate::schema::Scene;
 use crate::solve::state::State;
 
 pub(crate) use extent::Extent;
-pub(crate) use kept::{Kept, Outputs};
 pub(crate) use network::KeptNetwork;
 pub use open::OpenAnswer;
 pub(crate) use open::save_frame;
