@@ -1,9 +1,21 @@
-//! What every carrier keeps of its answer: heads that can be read at any point, and the posterior that their deviations
-//! follow from.
+//! What every carrier shows while it solves, and what it keeps of its answer: heads that can be read at any point, and the
+//! posterior that their deviations follow from.
 
 use crate::problem::Frame;
 use crate::schema::Unit;
 use crate::solve::state::State;
+
+/// What a caller sees after every step.
+pub(crate) struct Progress<'a> {
+    /// Steps so far.
+    pub(crate) iteration: u64,
+    /// Seconds so far.
+    pub(crate) elapsed_s: f64,
+    /// The loss before the step.
+    pub(crate) loss: f64,
+    /// Gives the state before the step, which whoever goes on from it repeats.
+    pub(crate) checkpoint: &'a dyn Fn() -> State,
+}
 
 /// A head at some points.
 #[derive(Clone, Debug, PartialEq)]

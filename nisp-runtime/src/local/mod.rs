@@ -38,6 +38,7 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
+use crate::carrier::Progress;
 use crate::facts::Answer;
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status, Warning};
@@ -111,18 +112,6 @@ pub(crate) struct LocalSolution {
     pub(crate) answer: Answer,
     /// By group and term.
     pub(crate) misfits: Vec<Vec<misfits::Misfits>>,
-}
-
-/// What the caller sees after every step.
-pub(crate) struct Progress<'a> {
-    /// Steps so far, on all lattices.
-    pub(crate) iteration: u64,
-    /// Seconds so far.
-    pub(crate) elapsed_s: f64,
-    /// The loss before the step.
-    pub(crate) loss: f64,
-    /// Gives the state before the step, which whoever goes on from it repeats.
-    pub(crate) checkpoint: &'a dyn Fn() -> State,
 }
 
 /// Name of the method in saved states.

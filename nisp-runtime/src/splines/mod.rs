@@ -21,6 +21,7 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+use crate::carrier::Progress;
 use crate::facts::Answer;
 use crate::memory::{self, Exceeded};
 use crate::noise::Noise;
@@ -90,14 +91,6 @@ pub(crate) struct SplineSolution {
     pub(crate) answer: Answer,
     /// By group and term: how far rows are off, and the noise that the evidence found.
     pub(crate) misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
-}
-
-/// What the caller sees after every step.
-pub(crate) struct Progress<'a> {
-    pub(crate) iteration: u64,
-    pub(crate) elapsed_s: f64,
-    pub(crate) loss: f64,
-    pub(crate) checkpoint: &'a dyn Fn() -> state::State,
 }
 
 /// Where a run stands: which order is tried, from which iterate, and the best order so far.
