@@ -74,6 +74,11 @@ impl Class {
         Self { open: Some(guess), ..Self::known(size.max(guess.least)) }
     }
 
+    /// Begins anew from a size.
+    pub(super) fn restart(&mut self, size: f64) {
+        *self = Self { open: self.open, ..Self::known(size) };
+    }
+
     /// Takes the size at which the evidence is stationary (MacKay 1992): the mean square of the rows, where those that the
     /// answer used up do not count.
     pub(super) fn renew(&mut self, tally: Tally) {
