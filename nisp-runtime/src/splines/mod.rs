@@ -34,7 +34,6 @@ use crate::solve::state;
 use kept::Spread;
 use prior::KINDS;
 use solver::{Phase, Solver, State, TOLERANCE};
-use weighed::{Class, restore_classes, save_classes};
 
 /// Logarithm of the evidence by which a kind of smoothness may fall behind and still count.
 const NEAR: f64 = 8.0;
@@ -105,8 +104,6 @@ pub(crate) struct Progress<'a> {
 struct Place {
     /// Indices in [`KINDS`] of those that are still to be tried, the present one first.
     kinds: Vec<usize>,
-    /// True if the kinds that follow are chosen by those before.
-    is_open: bool,
     phase: Phase,
     /// Steps of the phase.
     since: u64,
@@ -152,7 +149,7 @@ pub(crate) fn solve(
             if run.go(&mut solver, &mut trial, &save)? == Status::Converged
                 && let Some(Tried { kind, state, .. }) = trial.best().cloned()
             {
-                (place.kinds, place.is_open) = (vec![kind], false);
+                place.kinds = vec![kind];
                 place.state.classes = state.classes;
                 place.state.step = trial.state.step;
             }
@@ -204,16 +201,15 @@ pub(crate) fn solve(
     })
 }
 
-/// Kinds of smoothness to begin with. Where a stretched time may be the right one, this is settled first, and orders are tried
-/// along the better.
+/// Kinds of smoothness that are tried.
 fn kinds(has_sources: bool, stretches: bool) -> Vec<usize> {
-    let of = |order: usize, stretched: bool| {
-        KINDS.iter().position(|kind| (kind.order, kind.stretched) == (order, stretched)).unwrap_or(0)
-    };
+    if let Ok(v) = std::env::var("XKINDS") {
+        return v.split(',').map(|x| x.parse().unwrap()).collect();
+    }
     match (has_sources, stretches) {
-        (false, _) => vec![of(2, false)],
-        (true, false) => vec![of(2, false), of(1, false), of(3, false)],
-        (true, true) => vec![of(2, false), of(2, true)],
+        (false, _) => vec![0],
+        (true, false) => (0..KINDS.len()).filter(|&kind| !KINDS[kind].stretched).collect(),
+        (true, true) => (0..KINDS.len()).collect(),
     }
 }
 
@@ -286,15 +282,63 @@ impl Run<'_> {
 impl Place {
     /// The start.
     fn first(state: State, kinds: Vec<usize>) -> Self {
-        Self { kinds, is_open: true, phase: Phase::Regress, since: 0, state, tried: Vec::new() }
+        Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new() }
     }
 
     /// Keeps the iterate, and turns to the next kind.
     fn next(&mut self, evidence: f64) {
         let kind = self.kinds.remove(0);
         self.tried.push(Tried { kind, evidence, state: self.state.clone() });
-        let (Some(best), true) = (self.best(), self.kinds.is_empty() && self.is_open) else { return };
-        // The first kinds all have one order: the other orders follow, from where the best of them ended.
-        let KINDS[best.kind] else { return };
+    }
+
+    /// The kind with the largest evidence.
+    fn best(&self) -> Option<&Tried> {
+        self.tried.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+    }
+
+    /// Kinds that the evidence does not rule out, with their shares of it.
+    fn likely(&self) -> Vec<(f64, Tried)> {
+        let Some(best) = self.best() else { return Vec::new() };
+        let near = || self.tried.iter().filter(|tried| tried.evidence >= best.evidence - NEAR);
+        let weight = |tried: &Tried| (tried.evidence - best.evidence).exp();
+        let all: f64 = near().map(weight).sum();
+        near().map(|tried| (weight(tried) / all, tried.clone())).collect()
+    }
+
+    fn save(&self) -> state::State {
+        let saved = self.state.save(state::State::new(METHOD), "");
+        let kinds: Vec<f64> = self.kinds.iter().map(|&kind| kind as f64).collect();
+        let saved = saved
+            .with("kinds", &kinds)
+            .with_counter("phase", u64::from(self.phase == Phase::Solve))
+            .with_counter("since", self.since)
+            .with_counter("iterations", self.state.step)
+            .with_counter("tried", self.tried.len() as u64);
+        self.tried.iter().enumerate().fold(saved, |saved, (at, Tried { kind, evidence, state })| {
+            let prefix = format!("tried {at} ");
+            let saved = saved.with(&format!("{prefix}evidence"), &[*evidence]);
+            state.save(saved.with_counter(&format!("{prefix}kind"), *kind as u64), &prefix)
+        })
+    }
+
+    fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
+        saved.check_method(METHOD)?;
+        let known = |kind: &usize| *kind < KINDS.len();
+        self.kinds = saved.indices("kinds")?;
+        if !self.kinds.iter().all(known) {
+            return Err(Fault::state("kinds"));
+        }
+        for at in 0..saved.counter("tried")? {
+            let prefix = format!("tried {at} ");
+            let mut state = self.state.clone();
+            state.restore(saved, &prefix)?;
+            let [evidence] = saved.scalars(&format!("{prefix}evidence"))?;
+            let kind = saved.counter(&format!("{prefix}kind"))? as usize;
+            self.tried.push(Tried { kind: Some(kind).filter(known).ok_or_else(|| Fault::state("kind"))?, evidence, state });
+        }
+        self.state.restore(saved, "")?;
+        self.since = saved.counter("since")?;
+        self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
+        Ok(())
     }
 }

@@ -92,12 +92,11 @@ impl Prior {
     /// What all rows are worth.
     pub(super) fn worth(&self, roughness: f64, amplitude: f64) -> Worth {
         let mut triangle = Triangle::new(self.along.len(), self.width(), 0);
-        let row = |first, slopes| Row { first, slopes, shared: &[], value: 0.0 };
         let mut smooth = self.smooth(roughness);
         for (first, factor) in self.small(amplitude).enumerate() {
-            triangle.add(row(first, &[factor]));
+            triangle.add(Row { first, slopes: &[factor], shared: &[], value: 0.0 });
             if let Some((first, factors)) = smooth.next() {
-                triangle.add(row(first, &factors[..self.width()]));
+                triangle.add(Row { first, slopes: &factors[..self.width()], shared: &[], value: 0.0 });
             }
         }
         let covariance = triangle.covariance();
