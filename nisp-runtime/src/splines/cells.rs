@@ -22,7 +22,7 @@ const MANY: usize = 8;
 /// long and says no more.
 pub(super) fn breakpoints(bound: &Bound, noise: &Noise) -> Vec<f64> {
     let all = all_breakpoints(bound, stretches(bound));
-    if all.len() > LONG { resolved::breakpoints(bound, noise, all) } else { all }
+    if noise.observations.is_empty() { all } else { resolved::breakpoints(bound, noise, all) }
 }
 
 /// True where a source may set in with the record, in a layer that its start is looked at more closely for. A long record is not

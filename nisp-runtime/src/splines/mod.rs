@@ -40,9 +40,9 @@ const NEAR: f64 = 8.0;
 /// Steps that regress the data at most.
 const REGRESS: u64 = 12;
 /// Gain of the logarithm of the evidence that no longer matters.
-const RESTING: f64 = 0.02;
+const RESTING: f64 = 0.05;
 /// Change of a coefficient, in natural sizes, that no longer matters.
-const SETTLED: f64 = 1e-4;
+const SETTLED: f64 = 1e-3;
 /// Steps of a kind of smoothness at most.
 const MOST_STEPS: u64 = 60;
 /// The end of the error bars' steps at the latest, beside the budget.
@@ -162,6 +162,14 @@ pub(crate) fn solve(
     let mut warnings = Vec::new();
     if let Some(Tried { state, .. }) = place.best().cloned() {
         place.state = State { step: place.state.step, ..state };
+    }
+    if std::env::var("XMEAN").is_ok() {
+        let likely = place.likely();
+        place.state.theta = (0..place.state.theta.len()).map(|at| likely.iter().map(|(s, t)| s * t.state.theta[at]).sum()).collect();
+    }
+    if std::env::var("XV").is_ok() {
+        eprintln!("cells {} steps {}", breakpoints.len() - 1, place.state.step);
+        for t in &place.tried { eprintln!("  {:?} evidence {:.2} step {}", KINDS[t.kind], t.evidence, t.state.step); }
     }
     let mut spreads = Vec::new();
     // Only a minimum has error bars.

@@ -11,7 +11,7 @@ use crate::noise::Noise;
 use crate::problem::Bound;
 
 /// Cells that come first, at least.
-const FEWEST: usize = 25;
+const FEWEST: usize = 12;
 /// Cells that take the place of one that leaves noise. The answer needs two of them; its error bars need more, because what
 /// the measurements leave open of a source is rougher than what they say of it.
 const FINER: usize = 8;
@@ -52,7 +52,7 @@ pub(super) fn breakpoints(bound: &Bound, noise: &Noise, all: Vec<f64>) -> Vec<f6
             break;
         }
     }
-    divided(&chosen, |_| FINER).into_iter().map(|at| all[at]).collect()
+    divided(&chosen, |_| std::env::var("XFINER").map_or(FINER, |x| x.parse().unwrap())).into_iter().map(|at| all[at]).collect()
 }
 
 /// Divides the cells between chosen breakpoints into so many parts each, as far as there are breakpoints to choose.

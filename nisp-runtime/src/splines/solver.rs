@@ -386,6 +386,7 @@ impl<'a> Solver<'a> {
         self.triangle.add_all(rows.walk());
         let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
         let covariance = self.triangle.covariance();
+        let is_equation = self.equations();
         let mut tallies = vec![Tally::default(); state.classes.len() + 1];
         let mut loss = 0.0;
         let mut walk = rows.walk();
@@ -395,7 +396,10 @@ impl<'a> Solver<'a> {
             let beside: f64 = row.shared.iter().zip(&shared).map(|(a, x)| a * x).sum();
             tally.squares += (row.value + along + beside).powi(2);
             tally.count += count as f64;
-            tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
+            // Equations are so much stricter than anything else that each settles an unknown.
+            if !is_equation[class] {
+                tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
+            }
             loss += 0.5 * row.value.powi(2);
         }
         let worth = self.count_priors(state, &mut tallies, phase);
@@ -430,6 +434,15 @@ impl<'a> Solver<'a> {
         let told = self.roughness.iter().zip(&self.amplitude);
         let told = told.map(|(&rough, amplitude)| amplitude.map_or(0.0, |class| left(rough) + left(class))).collect();
         Ok(Some(Found { next, loss, change, evidence, used, covariance, told }))
+    }
+
+    /// By class, whether its rows are those of an equation; one more for what is known beforehand.
+    fn equations(&self) -> Vec<bool> {
+        let mut found = vec![false; self.roughness.len() + self.amplitude.iter().flatten().count() + 1];
+        let terms = self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
+        let own: Vec<bool> = terms.map(|(_, term)| term.kind == TermKind::Residual).collect();
+        found.splice(0..0, own);
+        found
     }
 
     /// Sum of the logarithms of what rows are divided by, those of priors aside.
@@ -489,14 +502,9 @@ impl<'a> Solver<'a> {
         }
         let unknowns = (self.heads.len() + self.bound.learned.len()) as f64;
         let is_rough = |class: usize| self.roughness.contains(&class);
-        let is_equation = |class: usize| {
-            let terms =
-                self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
-            phase == Phase::Solve && terms.clone().any(|(&own, term)| own == class && term.kind == TermKind::Residual)
-        };
-        let others = tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class));
-        // Equations are so much stricter than anything else that each settles an unknown.
-        let used: f64 = others.map(|(class, tally)| if is_equation(class) { tally.count } else { tally.used }).sum();
+        let is_equation = self.equations();
+        tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
+        let used: f64 = tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();
         let rough = || self.roughness.iter().copied();
         let by_rows: f64 = rough().map(|class| tallies[class].used.clamp(0.0, tallies[class].count)).sum();
         let count: f64 = rough().map(|class| tallies[class].count).sum();
