@@ -207,16 +207,14 @@ pub(super) fn families() -> Vec<Family> {
         plain("lorenz", scene::<lorenz::recover::Scene>(), "flow", "f", 4.0, |random, t| {
             let drive = Drive::draw(random, 4.0, 40.0);
             let start = [5.0 * random.normal(), 5.0 * random.normal(), 20.0 + 5.0 * random.normal()];
-            let slope = |t: f64, [x, y, z]: [f64; 3]| {
-                [10.0 * (y - x) + drive.at(t), x * (28.0 - z) - y, x * y - 2.667 * z]
-            };
+            let slope =
+                |t: f64, [x, y, z]: [f64; 3]| [10.0 * (y - x) + drive.at(t), x * (28.0 - z) - y, x * y - 2.667 * z];
             course(&drive, t, integrate(slope, start, t), 3)
         }),
         plain("prey", scene::<prey::recover::Scene>(), "growth", "h", 15.0, |random, t| {
             let drive = Drive::draw(random, 15.0, 0.08);
             let start = [1.0 + random.uniform(), 0.5 + random.uniform()];
-            let slope =
-                |t: f64, [x, y]: [f64; 2]| [x - 0.8 * x * y - drive.at(t), 0.6 * x * y - 0.9 * y];
+            let slope = |t: f64, [x, y]: [f64; 2]| [x - 0.8 * x * y - drive.at(t), 0.6 * x * y - 0.9 * y];
             course(&drive, t, integrate(slope, start, t), 2)
         }),
         plain("tank", scene::<tank::recover::Scene>(), "level", "q", 60.0, |random, t| {
@@ -290,7 +288,8 @@ fn pushed(random: &mut Random, times: &[f64]) -> Course {
     balanced(random, times, 3e-3)
 }
 
-const GAIN: [f64; 6] = [0.0816496580928, 2.48160443754, -3.5552099403, 0.164279087644, 0.0625859883633, -0.603640337824];
+const GAIN: [f64; 6] =
+    [0.0816496580928, 2.48160443754, -3.5552099403, 0.164279087644, 0.0625859883633, -0.603640337824];
 
 fn balanced(random: &mut Random, times: &[f64], disturbance: f64) -> Course {
     loop {
@@ -318,8 +317,7 @@ fn links(force: f64, [_, psi, phi, dq, dpsi, dphi]: [f64; 6]) -> [f64; 6] {
         2.0 * g / l * psi.sin() - dphi * dphi * (psi - phi).sin(),
         g / l * phi.sin() + dpsi * dpsi * (psi - phi).sin(),
     ];
-    let mass =
-        [[3.0, -2.0 * psi.cos(), -phi.cos()], [-2.0 * psi.cos(), 2.0, across], [-phi.cos(), across, 1.0]];
+    let mass = [[3.0, -2.0 * psi.cos(), -phi.cos()], [-2.0 * psi.cos(), 2.0, across], [-phi.cos(), across, 1.0]];
     let determinant = |m: &[[f64; 3]; 3]| {
         m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
             + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])

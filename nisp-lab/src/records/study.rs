@@ -151,7 +151,8 @@ fn spread(values: &[f64]) -> f64 {
 }
 
 /// The head of the table.
-pub(super) const HEAD: &str = "family          noise  runs  sound   share  worse  cover  worst  beyond 4 worst  steps       s\n";
+pub(super) const HEAD: &str =
+    "family          noise  runs  sound   share  worse  cover  worst  beyond 4 worst  steps       s\n";
 
 /// What rows have in common: the share is the sum of the errors over that of the sources, a run is worse if its error is larger
 /// than that of no source, and bars count where they are given.
@@ -167,7 +168,8 @@ pub(super) fn line(name: &str, noise: &str, rows: &[Row]) -> String {
     let four = barred.iter().map(|beyond| beyond[1]).fold(0.0, f64::max);
     let fails = barred.iter().filter(|beyond| beyond[1] > 0.2).count();
     let sound = rows.iter().filter(|row| row.status == "converged").count();
-    let (steps, seconds) = (sum(&|row| row.steps as f64) / rows.len() as f64, sum(&|row| row.wall_s) / rows.len() as f64);
+    let (steps, seconds) =
+        (sum(&|row| row.steps as f64) / rows.len() as f64, sum(&|row| row.wall_s) / rows.len() as f64);
     let cover = mean(&covers);
     format!(
         "{name:14} {noise:>6} {:>5} {sound:>6} {share:>7.3} {worse:>6} {cover:>6.3} {worst:>6.2} {fails:>4} {four:>10.2} {steps:>6.0} {seconds:>7.3}\n",
@@ -180,7 +182,9 @@ impl Row {
         let beyond = self.beyond.map_or("no bars".into(), |[two, four]| format!("{two:.2} {four:.2}"));
         let Self { family, noise, seed, rows, clustered, status, error, size, steps, wall_s, .. } = self;
         let share = error / size;
-        format!("  {family} {noise} seed {seed} rows {rows} {clustered} {status} share {share:.3} beyond {beyond} steps {steps} {wall_s:.3} s\n")
+        format!(
+            "  {family} {noise} seed {seed} rows {rows} {clustered} {status} share {share:.3} beyond {beyond} steps {steps} {wall_s:.3} s\n"
+        )
     }
 
     pub(super) fn object(&self) -> Value {

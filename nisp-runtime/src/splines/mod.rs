@@ -163,14 +163,6 @@ pub(crate) fn solve(
     if let Some(Tried { state, .. }) = place.best().cloned() {
         place.state = State { step: place.state.step, ..state };
     }
-    if std::env::var("XMEAN").is_ok() {
-        let likely = place.likely();
-        place.state.theta = (0..place.state.theta.len()).map(|at| likely.iter().map(|(s, t)| s * t.state.theta[at]).sum()).collect();
-    }
-    if std::env::var("XV").is_ok() {
-        eprintln!("cells {} steps {}", breakpoints.len() - 1, place.state.step);
-        for t in &place.tried { eprintln!("  {:?} evidence {:.2} step {}", KINDS[t.kind], t.evidence, t.state.step); }
-    }
     let mut spreads = Vec::new();
     // Only a minimum has error bars.
     let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
@@ -211,9 +203,6 @@ pub(crate) fn solve(
 
 /// Kinds of smoothness that are tried.
 fn kinds(has_sources: bool, stretches: bool) -> Vec<usize> {
-    if let Ok(v) = std::env::var("XKINDS") {
-        return v.split(',').map(|x| x.parse().unwrap()).collect();
-    }
     match (has_sources, stretches) {
         (false, _) => vec![0],
         (true, false) => (0..KINDS.len()).filter(|&kind| !KINDS[kind].stretched).collect(),
@@ -293,10 +282,16 @@ impl Place {
         Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new() }
     }
 
-    /// Keeps the iterate, and turns to the next kind.
+    /// Keeps the iterate, and turns to the next kind. A time that the evidence rules out is not tried with other orders.
     fn next(&mut self, evidence: f64) {
         let kind = self.kinds.remove(0);
         self.tried.push(Tried { kind, evidence, state: self.state.clone() });
+        let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
+        let best = most(&mut self.tried.iter());
+        let along =
+            [false, true].map(|time| most(&mut self.tried.iter().filter(|tried| KINDS[tried.kind].stretched == time)));
+        // Of a time that has not been tried nothing is known.
+        self.kinds.retain(|&kind| !(along[usize::from(KINDS[kind].stretched)] < best - NEAR));
     }
 
     /// The kind with the largest evidence.
@@ -342,7 +337,11 @@ impl Place {
             state.restore(saved, &prefix)?;
             let [evidence] = saved.scalars(&format!("{prefix}evidence"))?;
             let kind = saved.counter(&format!("{prefix}kind"))? as usize;
-            self.tried.push(Tried { kind: Some(kind).filter(known).ok_or_else(|| Fault::state("kind"))?, evidence, state });
+            self.tried.push(Tried {
+                kind: Some(kind).filter(known).ok_or_else(|| Fault::state("kind"))?,
+                evidence,
+                state,
+            });
         }
         self.state.restore(saved, "")?;
         self.since = saved.counter("since")?;

@@ -168,7 +168,9 @@ mod tests {
         for at in 0..n {
             let pivot = a[at * n + at];
             log += pivot.ln();
-            (0..n).for_each(|j| (a[at * n + j], inverse[at * n + j]) = (a[at * n + j] / pivot, inverse[at * n + j] / pivot));
+            (0..n).for_each(|j| {
+                (a[at * n + j], inverse[at * n + j]) = (a[at * n + j] / pivot, inverse[at * n + j] / pivot)
+            });
             for i in (0..n).filter(|&i| i != at) {
                 let factor = a[i * n + at];
                 for j in 0..n {

@@ -1,4 +1,4 @@
-//! Cells of a long record: as fine as its measurements can tell, and no finer.
+//! Cells of a record: as fine as its measurements can tell, and no finer.
 //!
 //! A record that is sampled much faster than it changes does not need a breakpoint at every measurement. Splines of the
 //! measurements alone, on wide cells, are compared with the noise. Where they leave more than noise their cells are halved,
@@ -14,7 +14,7 @@ use crate::problem::Bound;
 const FEWEST: usize = 12;
 /// Cells that take the place of one that leaves noise. The answer needs two of them; its error bars need more, because what
 /// the measurements leave open of a source is rougher than what they say of it.
-const FINER: usize = 8;
+const FINER: usize = 4;
 /// Degree of the splines: that of the least smooth head.
 const DEGREE: usize = 5;
 /// Cells that are looked at together: a wave below the noise shows in many of its periods.
@@ -52,7 +52,7 @@ pub(super) fn breakpoints(bound: &Bound, noise: &Noise, all: Vec<f64>) -> Vec<f6
             break;
         }
     }
-    divided(&chosen, |_| std::env::var("XFINER").map_or(FINER, |x| x.parse().unwrap())).into_iter().map(|at| all[at]).collect()
+    divided(&chosen, |_| FINER).into_iter().map(|at| all[at]).collect()
 }
 
 /// Divides the cells between chosen breakpoints into so many parts each, as far as there are breakpoints to choose.

@@ -95,8 +95,6 @@ pub(super) struct Found {
     pub(super) change: f64,
     /// Logarithm of the evidence, up to a constant.
     pub(super) evidence: f64,
-    /// Numbers that the answer takes from an observation, at most: the trace of its influence matrix, by row.
-    pub(super) used: f64,
     pub(super) covariance: Covariance,
     /// By head, how many numbers rows other than its prior say of a source.
     told: Vec<f64>,
@@ -212,14 +210,6 @@ impl<'a> Solver<'a> {
             classes,
             tolerance: LOOSE,
             step: 0,
-        }
-    }
-
-    /// Holds the noise of a state at what differences of the data say, and at a share of their spread at least.
-    pub(super) fn hold_noise(&self, state: &mut State, noise: &Noise, share: f64) {
-        for found in &noise.observations {
-            let class = self.classes[found.group][found.term];
-            state.classes[class] = Class::known(found.deviation.max(share * found.spread));
         }
     }
 
@@ -405,9 +395,6 @@ impl<'a> Solver<'a> {
         let worth = self.count_priors(state, &mut tallies, phase);
         let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
         let evidence = -0.5 * squares - self.log_sizes(state, &tallies) + worth - self.triangle.log_determinant();
-        let terms = self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
-        let observed = terms.filter(|(_, term)| term.kind == TermKind::Observation);
-        let used = observed.map(|(&class, term)| tallies[class].used / term.rows as f64).fold(0.0, f64::max);
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
         let mut next = state.clone();
         for _ in 0..HALVINGS {
@@ -425,7 +412,9 @@ impl<'a> Solver<'a> {
         let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
         let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
         let renewed = next.classes.iter_mut().zip(&tallies).enumerate();
-        renewed.filter(|(class, _)| !(is_loose && is_prior(*class))).for_each(|(_, (class, tally))| class.renew(*tally));
+        renewed
+            .filter(|(class, _)| !(is_loose && is_prior(*class)))
+            .for_each(|(_, (class, tally))| class.renew(*tally));
         if phase == Phase::Solve {
             next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
         }
@@ -433,16 +422,14 @@ impl<'a> Solver<'a> {
         let left = |class: usize| tallies[class].count - tallies[class].used;
         let told = self.roughness.iter().zip(&self.amplitude);
         let told = told.map(|(&rough, amplitude)| amplitude.map_or(0.0, |class| left(rough) + left(class))).collect();
-        Ok(Some(Found { next, loss, change, evidence, used, covariance, told }))
+        Ok(Some(Found { next, loss, change, evidence, covariance, told }))
     }
 
     /// By class, whether its rows are those of an equation; one more for what is known beforehand.
     fn equations(&self) -> Vec<bool> {
-        let mut found = vec![false; self.roughness.len() + self.amplitude.iter().flatten().count() + 1];
-        let terms = self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
-        let own: Vec<bool> = terms.map(|(_, term)| term.kind == TermKind::Residual).collect();
-        found.splice(0..0, own);
-        found
+        let terms = self.groups.iter().flat_map(|group| group.schema.terms);
+        let priors = self.roughness.len() + self.amplitude.iter().flatten().count();
+        terms.map(|term| term.kind == TermKind::Residual).chain(vec![false; priors + 1]).collect()
     }
 
     /// Sum of the logarithms of what rows are divided by, those of priors aside.
@@ -504,7 +491,8 @@ impl<'a> Solver<'a> {
         let is_rough = |class: usize| self.roughness.contains(&class);
         let is_equation = self.equations();
         tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
-        let used: f64 = tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();
+        let used: f64 =
+            tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();
         let rough = || self.roughness.iter().copied();
         let by_rows: f64 = rough().map(|class| tallies[class].used.clamp(0.0, tallies[class].count)).sum();
         let count: f64 = rough().map(|class| tallies[class].count).sum();
@@ -554,12 +542,6 @@ impl<'a> Solver<'a> {
 }
 
 impl State {
-    /// Takes over the roughness and the amplitude of all heads.
-    pub(super) fn take_priors(&mut self, solver: &Solver<'_>, from: &[Class]) {
-        let classes = solver.roughness.iter().chain(solver.amplitude.iter().flatten());
-        classes.for_each(|&class| self.classes[class].clone_from(&from[class]));
-    }
-
     pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
         save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)

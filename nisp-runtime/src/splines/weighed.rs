@@ -43,8 +43,8 @@ const LEAST_LEFT: f64 = 1e-3;
 /// Farthest step of the logarithm of a size.
 const FARTHEST: f64 = 3.0;
 /// Growth of the haste, and the most of it.
-const HASTIER: f64 = 1.3;
-const MOST_HASTE: f64 = 4.0;
+const HASTIER: f64 = 1.5;
+const MOST_HASTE: f64 = 8.0;
 
 /// Classes as plain numbers.
 pub(super) fn save_classes(classes: &[Class], saved: State, prefix: &str) -> State {
