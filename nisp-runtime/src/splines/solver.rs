@@ -6,7 +6,7 @@ use super::heads::Heads;
 use super::prior::{Prior, Smoothness};
 use super::rows::{Counted, Rows};
 use super::triangle::{Covariance, Row, Triangle};
-use super::weighed::{Class, Guess, Tally, restore_classes, save_classes};
+use super::weighed::{Class, Guess, Tally, renew, restore_classes, save_classes};
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
 use crate::noise::Noise;
@@ -411,10 +411,7 @@ impl<'a> Solver<'a> {
         // While equations are loose, they need no source.
         let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
         let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
-        let renewed = next.classes.iter_mut().zip(&tallies).enumerate();
-        renewed
-            .filter(|(class, _)| !(is_loose && is_prior(*class)))
-            .for_each(|(_, (class, tally))| class.renew(*tally));
+        renew(&mut next.classes, &tallies, |class| is_loose && is_prior(class));
         if phase == Phase::Solve {
             next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
         }
