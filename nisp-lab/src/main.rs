@@ -7,6 +7,7 @@ mod honesty;
 mod measure;
 mod peers;
 mod random;
+mod records;
 mod rk4;
 
 use std::process::ExitCode;
@@ -31,6 +32,8 @@ enum Command {
     Ablate(Box<ablate::Options>),
     /// Measure whether what is said of answers is true, on right and on spoiled data.
     Honesty(Box<honesty::Options>),
+    /// Measure errors and error bars of sources on simulated records of many equations.
+    Records(records::Options),
     /// Solve problems that others publish with their programs, from texts and data made anew.
     Peers(cases::Cases),
 }
@@ -43,6 +46,7 @@ fn main() -> ExitCode {
         Ok(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),
         Ok(Args { command: Command::Ablate(options) }) => ablate::ablate(&options),
         Ok(Args { command: Command::Honesty(options) }) => honesty::honesty(&options),
+        Ok(Args { command: Command::Records(options) }) => records::records(&options),
         Ok(Args { command: Command::Peers(options) }) => peers::peers(&options),
         Err(error) => show(&error),
     };

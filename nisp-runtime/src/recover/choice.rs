@@ -5,18 +5,12 @@ use super::network::Network;
 use super::on_splines::OnSplines;
 use super::settings::{Carrier, Optimizer, Settings};
 use crate::local::Local;
-use crate::noise;
 use crate::problem::Bound;
 use crate::solve::state::State;
 use crate::splines;
 
-/// Numbers that describe an observed quantity, of which a small network holds no more: twenty periods of a wave and some.
-const RICH: f64 = 60.0;
 /// Rows from which on a network takes longer than anybody waits.
 const MANY: usize = 5000;
-
-/// Exponents of the unit of time.
-const SECOND: [f64; 7] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
 
 /// Which carrier: the only place that tells them apart.
 #[derive(Clone, Copy, PartialEq)]
@@ -94,28 +88,10 @@ fn most_rows(bound: &Bound) -> usize {
     groups.filter(|(group, _)| !group.columns.is_empty()).map(|(_, points)| points.len()).max().unwrap_or(0)
 }
 
-/// Splines where they can, but for a short record of what a source does over time: a source may set in with the record, in a
-/// layer that a network's stretched time resolves and splines smooth away.
+/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps.
 fn by_data(bound: &Bound) -> (Chosen, String) {
-    let schema = bound.problem.scene().schema;
-    if let Some(what) = splines::refused(schema) {
-        return (Chosen::Network, format!("splines over time do not do {what}"));
-    }
-    let rows = most_rows(bound);
-    if rows > MANY {
-        return (Chosen::Splines, format!("{rows} rows are more than a network is quick with"));
-    }
-    if !schema.heads.iter().any(|head| head.source) {
-        return (Chosen::Splines, "one coordinate and no source".into());
-    }
-    if schema.coordinates[0].unit.exponents != SECOND {
-        return (Chosen::Splines, "one coordinate that is not time".into());
-    }
-    let rich = splines::richness(bound, &noise::estimate(bound));
-    if rich > RICH {
-        (Chosen::Splines, format!("it takes {rich:.0} numbers to describe the data, more than a small network holds"))
-    } else {
-        let why = format!("{rich:.0} numbers describe the data, and a source may set in with the record");
-        (Chosen::Network, why)
+    match splines::refused(bound.problem.scene().schema) {
+        Some(what) => (Chosen::Network, format!("splines do not do {what}")),
+        None => (Chosen::Splines, "one coordinate".into()),
     }
 }

@@ -1,6 +1,7 @@
 //! Which cells carry the heads, and where equations are asked to hold.
 
 use super::basis::{Basis, HIGHEST_DEGREE};
+use super::prior;
 use super::resolved;
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -20,12 +21,18 @@ const MANY: usize = 8;
 /// Breakpoints of the cells: one at every place of a measurement, and more where those are far apart; fewer where a record is
 /// long and says no more.
 pub(super) fn breakpoints(bound: &Bound, noise: &Noise) -> Vec<f64> {
-    let all = all_breakpoints(bound);
-    if all.len() > LONG { resolved::breakpoints(bound, noise, all) } else { all }
+    let all = all_breakpoints(bound, stretches(bound));
+    if noise.observations.is_empty() { all } else { resolved::breakpoints(bound, noise, all) }
 }
 
-/// Breakpoints at all measurements.
-pub(super) fn all_breakpoints(bound: &Bound) -> Vec<f64> {
+/// True where a source may set in with the record, in a layer that its start is looked at more closely for. A long record is not
+/// one answer to one start.
+pub(super) fn stretches(bound: &Bound) -> bool {
+    prior::may_stretch(bound.problem.scene().schema) && bound.coordinates.iter().all(|points| points.len() <= LONG)
+}
+
+/// Breakpoints at all measurements, and more at the start where it `stretches`.
+fn all_breakpoints(bound: &Bound, stretches: bool) -> Vec<f64> {
     let groups = bound.problem.scene().schema.groups.iter().zip(&bound.coordinates);
     let mut measured: Vec<f64> = groups.filter(|(g, _)| !g.columns.is_empty()).flat_map(|(_, c)| c).copied().collect();
     let all = || bound.coordinates.iter().flatten().copied();
@@ -37,7 +44,10 @@ pub(super) fn all_breakpoints(bound: &Bound) -> Vec<f64> {
     let places: Vec<f64> = std::iter::once(low).chain(inside).chain([high]).collect();
     let mut breakpoints = vec![low];
     for gap in places.windows(2) {
-        let pieces = (FEWEST * (gap[1] - gap[0]) / (high - low)).ceil().max(1.0);
+        let share = |at: f64| (at - low) / (high - low);
+        // The layer at the start is as wide as the rest along the stretched time.
+        let pace = if stretches { (0.5 * prior::pace(share(0.5 * (gap[0] + gap[1])))).max(1.0) } else { 1.0 };
+        let pieces = (FEWEST * pace * (share(gap[1]) - share(gap[0]))).ceil().max(1.0);
         let piece = |k: u32| gap[0] + (gap[1] - gap[0]) * f64::from(k) / pieces;
         breakpoints.extend((1..pieces as u32).map(piece));
         breakpoints.push(gap[1]);

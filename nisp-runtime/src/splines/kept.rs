@@ -23,13 +23,15 @@ pub(crate) struct KeptSplines {
     pub(super) theta: Vec<f64>,
     /// Parameters of learned scalars.
     pub(super) learned: Vec<f64>,
-    /// One for each order of smoothness that may be the right one.
+    /// One for each kind of smoothness that may be the right one.
     pub(super) spreads: Vec<Spread>,
 }
 
-/// What an order of smoothness says: coefficients, parameters of learned scalars, and their covariances.
+/// What a kind of smoothness says: its share of the evidence, coefficients, parameters of learned scalars, and their
+/// covariances.
 #[derive(Clone, Debug)]
 pub(super) struct Spread {
+    pub(super) share: f64,
     pub(super) theta: Vec<f64>,
     pub(super) learned: Vec<f64>,
     pub(super) covariance: Covariance,
@@ -63,15 +65,15 @@ impl KeptSplines {
         let deviation = |at: usize| {
             let square = |spread: &Spread| {
                 let variance = spread.covariance.corner[at * (count + 1)].max(0.0);
-                variance + (spread.learned[at] - self.learned[at]).powi(2)
+                spread.share * (variance + (spread.learned[at] - self.learned[at]).powi(2))
             };
-            (!self.spreads.is_empty()).then(|| self.spreads.iter().map(square).fold(0.0, f64::max).sqrt())
+            (!self.spreads.is_empty()).then(|| self.spreads.iter().map(square).sum::<f64>().sqrt())
         };
         self.learned.iter().enumerate().map(|(at, &parameter)| (parameter, deviation(at))).collect()
     }
 
     /// Standard deviation of a quantity with these derivatives by the coefficients from `first` on and by the parameters of
-    /// learned scalars: the longest bar about the answer that an order of smoothness which may be the right one asks for.
+    /// learned scalars: that of all kinds of smoothness together, about the answer.
     fn deviation(&self, first: usize, slopes: &[f64], shared: &[f64]) -> f64 {
         let apart = |slopes: &[f64], other: &[f64], own: &[f64]| -> f64 {
             slopes.iter().zip(other.iter().zip(own)).map(|(slope, (other, own))| slope * (other - own)).sum()
@@ -79,9 +81,9 @@ impl KeptSplines {
         let square = |spread: &Spread| {
             let apart = apart(slopes, &spread.theta[first..], &self.theta[first..])
                 + apart(shared, &spread.learned, &self.learned);
-            spread.covariance.of(first, slopes, shared).max(0.0) + apart * apart
+            spread.share * (spread.covariance.of(first, slopes, shared).max(0.0) + apart * apart)
         };
-        self.spreads.iter().map(square).fold(0.0, f64::max).sqrt()
+        self.spreads.iter().map(square).sum::<f64>().sqrt()
     }
 
     /// The rows at a part of the places.
@@ -124,7 +126,9 @@ impl KeptSplines {
             let part = |name: &str| state.vector(&format!("spread {at} {name}")).map(<[f64]>::to_vec);
             let parts = [part("rows")?, part("border")?, part("corner")?];
             let covariance = Covariance::restored(heads.len(), heads.band, learned, parts);
+            let [share] = state.scalars(&format!("spread {at} share"))?;
             Ok(Spread {
+                share,
                 theta: state.sized(&format!("spread {at} theta"), heads.len())?,
                 learned: state.sized(&format!("spread {at} learned"), learned)?,
                 covariance: covariance.ok_or_else(|| Fault::state("spread"))?,
@@ -160,7 +164,7 @@ impl Kept for KeptSplines {
         self.spreads.iter().enumerate().fold(state, |state, (at, spread)| {
             let [rows, border, corner] = spread.covariance.parts();
             let parts = [("rows", rows), ("border", border), ("corner", corner)];
-            let own = [("theta", &spread.theta[..]), ("learned", &spread.learned)];
+            let own = [("share", &[spread.share][..]), ("theta", &spread.theta), ("learned", &spread.learned)];
             own.into_iter()
                 .chain(parts)
                 .fold(state, |state, (name, part)| state.with(&format!("spread {at} {name}"), part))

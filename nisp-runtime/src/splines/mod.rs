@@ -3,14 +3,15 @@
 //! A network is one smooth function of few parameters; a record with many periods has more to say than it can hold. Here every
 //! head is a sum of B-splines with a breakpoint at every measurement. Equations are asked to hold at as many places as their
 //! residual has freedom, all unknowns are found together by Gauss-Newton steps on a banded triangle, and time and memory are
-//! linear in the measurements. The size of the noise and the roughness of every source are those with the largest evidence
-//! (MacKay 1992), and so is the order of the source's derivative that is kept small.
+//! linear in the measurements. The size of the noise, and the size and roughness of every source, are those with the largest
+//! evidence (MacKay 1992), and so is the kind of smoothness.
 
 mod basis;
 mod cells;
 mod group;
 mod heads;
 mod kept;
+mod prior;
 mod resolved;
 mod rows;
 mod solver;
@@ -32,20 +33,18 @@ use crate::solve::fault::Fault;
 use crate::solve::state;
 
 use kept::Spread;
+use prior::KINDS;
 use solver::{Phase, Solver, State, TOLERANCE};
-use weighed::{Class, restore_classes, save_classes};
 
-/// Orders of a source's derivative that may be the one that is kept small, the first tried first.
-const ORDERS: [usize; 3] = [2, 1, 3];
-/// Logarithm of the evidence by which an order may fall behind and still be the right one.
+/// Logarithm of the evidence by which a kind of smoothness may fall behind and still count.
 const NEAR: f64 = 8.0;
 /// Steps that regress the data at most.
 const REGRESS: u64 = 12;
 /// Gain of the logarithm of the evidence that no longer matters.
-const RESTING: f64 = 0.02;
+const RESTING: f64 = 0.05;
 /// Change of a coefficient, in natural sizes, that no longer matters.
-const SETTLED: f64 = 1e-4;
-/// Steps of an order at most.
+const SETTLED: f64 = 1e-3;
+/// Steps of a kind of smoothness at most.
 const MOST_STEPS: u64 = 60;
 /// The end of the error bars' steps at the latest, beside the budget.
 const LATE: f64 = 1.05;
@@ -93,22 +92,24 @@ pub(crate) struct SplineSolution {
     pub(crate) misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
 }
 
-/// Where a run stands: which order is tried, from which iterate, and the best order so far.
+/// Where a run stands: which kind of smoothness is tried, from which iterate, and what came of those before.
 #[derive(Clone)]
 struct Place {
-    /// Index in [`ORDERS`].
-    order: usize,
-    /// Index of the order after the last that is to be tried.
-    orders: usize,
+    /// Indices in [`KINDS`] of those that are still to be tried, the present one first.
+    kinds: Vec<usize>,
     phase: Phase,
     /// Steps of the phase.
     since: u64,
     state: State,
-    /// Sizes of all classes when an order's data have been regressed, and when its equations come in.
-    regressed: Vec<Class>,
-    solved: Vec<Class>,
-    /// Of every order that was tried: its index, its evidence and its iterate.
-    tried: Vec<(usize, f64, State)>,
+    tried: Vec<Tried>,
+}
+
+/// A kind of smoothness that was tried: its index, its evidence and its iterate.
+#[derive(Clone)]
+struct Tried {
+    kind: usize,
+    evidence: f64,
+    state: State,
 }
 
 /// Solves a bound problem within its limits, from the start or from a saved state.
@@ -126,23 +127,23 @@ pub(crate) fn solve(
     memory::require(Solver::bytes(bound, &breakpoints), what, "give a part of the record, or fewer rows of it")?;
     let mut solver = Solver::over(bound, &breakpoints);
     let schema = bound.problem.scene().schema;
-    let mut place = Place::first(solver.first(noise), solver.has_sources());
+    let mut place = Place::first(solver.first(noise), kinds(solver.has_sources(), cells::stretches(bound)));
     let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY };
-    let begun = |saved: &&state::State| saved.counter("orders").is_ok();
+    let begun = |saved: &&state::State| saved.indices("kinds").is_ok();
     match (from.filter(begun), cells::middle(bound, &breakpoints)) {
         (Some(saved), _) => place.restore(saved)?,
         // A part of a long record says how smooth the sources are, and how large the noise is.
         (None, Some(middle)) => {
             let part = cells::part(bound, middle);
             let mut solver = Solver::over(&part, middle);
-            let mut trial = Place::first(solver.first(noise), solver.has_sources());
+            let mut trial = Place::first(solver.first(noise), kinds(solver.has_sources(), false));
             // A run that ends here begins anew.
             let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
             if run.go(&mut solver, &mut trial, &save)? == Status::Converged
-                && let Some((order, _, state)) = trial.best().cloned()
+                && let Some(Tried { kind, state, .. }) = trial.best().cloned()
             {
-                (place.order, place.orders) = (order, order + 1);
-                (place.state.classes, place.solved) = (trial.regressed, state.classes);
+                place.kinds = vec![kind];
+                place.state.classes = state.classes;
                 place.state.step = trial.state.step;
             }
         }
@@ -152,19 +153,18 @@ pub(crate) fn solve(
     let loss = run.loss;
     let checkpoint = place.save();
     let mut warnings = Vec::new();
-    if let Some((_, _, state)) = place.best().cloned() {
+    if let Some(Tried { state, .. }) = place.best().cloned() {
         place.state = State { step: place.state.step, ..state };
     }
     let mut spreads = Vec::new();
     // Only a minimum has error bars.
     let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
     if run.has_time_for(likely.len()) {
-        for (order, mut state) in likely {
-            solver.order = ORDERS[order];
-            solver.doubt_roughness(&mut state);
-            match solver.step(&state, Phase::Solve)? {
-                Some(found) => {
-                    spreads.push(Spread { theta: state.theta, learned: state.learned, covariance: found.covariance })
+        for (share, Tried { kind, state, .. }) in likely {
+            solver.set_smoothness(KINDS[kind]);
+            match solver.doubted(state)? {
+                Some((State { theta, learned, .. }, found)) => {
+                    spreads.push(Spread { share, theta, learned, covariance: found.covariance })
                 }
                 None => status = Status::NotConverged,
             }
@@ -194,25 +194,13 @@ pub(crate) fn solve(
     })
 }
 
-/// Share of the data's spread that a description of them may be off.
-const ROUGHLY: f64 = 0.02;
-
-/// How many numbers it takes to describe the richest of the observed quantities to within its noise, or to a fiftieth of its
-/// spread. A wave takes two a period, and more where it is noisy.
-pub(crate) fn richness(bound: &Bound, noise: &Noise) -> f64 {
-    let breakpoints = cells::all_breakpoints(bound);
-    let middle = cells::middle(bound, &breakpoints);
-    let part = middle.map(|middle| cells::part(bound, middle));
-    let mut solver = Solver::over(part.as_ref().unwrap_or(bound), middle.unwrap_or(&breakpoints));
-    let mut state = solver.first(noise);
-    solver.hold_noise(&mut state, noise, ROUGHLY);
-    let mut used = 0.0;
-    for _ in 0..REGRESS {
-        let Ok(Some(found)) = solver.step(&state, Phase::Regress) else { break };
-        (used, state) = (found.used, found.next);
+/// Kinds of smoothness that are tried.
+fn kinds(has_sources: bool, stretches: bool) -> Vec<usize> {
+    match (has_sources, stretches) {
+        (false, _) => vec![0],
+        (true, false) => (0..KINDS.len()).filter(|&kind| !KINDS[kind].stretched).collect(),
+        (true, true) => (0..KINDS.len()).collect(),
     }
-    let rows = |bound: &Bound| bound.coordinates.iter().map(Vec::len).max().unwrap_or(0) as f64;
-    used * rows(bound) / rows(part.as_ref().unwrap_or(bound)).max(1.0)
 }
 
 /// A run under way.
@@ -232,7 +220,7 @@ impl Run<'_> {
         steps == 0 || self.limits.budget.is_none_or(|budget| end <= LATE * budget.as_secs_f64())
     }
 
-    /// Takes steps until all orders that are to be tried have been, or steps or time are spent.
+    /// Takes steps until all kinds of smoothness that are to be tried have been, or steps or time are spent.
     fn go(
         &mut self,
         solver: &mut Solver<'_>,
@@ -240,8 +228,10 @@ impl Run<'_> {
         save: &dyn Fn(&Place) -> state::State,
     ) -> Result<Status, Fault> {
         let mut taken = 0;
-        while place.order < place.orders {
-            solver.order = ORDERS[place.order];
+        while let Some(&kind) = place.kinds.first() {
+            if place.phase == Phase::Solve {
+                solver.set_smoothness(KINDS[kind]);
+            }
             let elapsed = self.start.elapsed().as_secs_f64();
             let spent = self.limits.budget.is_some_and(|b| elapsed + 2.0 * self.longest > b.as_secs_f64());
             if (spent || place.state.step >= self.limits.iterations) && taken > 0 {
@@ -258,13 +248,13 @@ impl Run<'_> {
             match place.phase {
                 Phase::Regress if resting || place.since >= REGRESS => {
                     (place.phase, place.since) = (Phase::Solve, 0);
-                    place.regressed.clone_from(&place.state.classes);
-                    place.state.take_roughness(solver, &place.solved);
                 }
                 Phase::Solve if is_tight && (resting && found.change < SETTLED || place.since >= MOST_STEPS) => {
                     place.since = 0;
                     place.next(found.evidence);
-                    place.state.take_roughness(solver, &place.solved);
+                    if let Some(&kind) = place.kinds.first() {
+                        solver.change_smoothness(KINDS[kind], &mut place.state);
+                    }
                 }
                 _ => {}
             }
@@ -280,75 +270,74 @@ impl Run<'_> {
 }
 
 impl Place {
-    /// The start; without sources, orders make no difference.
-    fn first(state: State, has_sources: bool) -> Self {
-        let orders = if has_sources { ORDERS.len() } else { 1 };
-        let classes = state.classes.clone();
-        Self {
-            order: 0,
-            orders,
-            phase: Phase::Regress,
-            since: 0,
-            state,
-            regressed: classes.clone(),
-            solved: classes,
-            tried: Vec::new(),
-        }
+    /// The start.
+    fn first(state: State, kinds: Vec<usize>) -> Self {
+        Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new() }
     }
 
-    /// Keeps the iterate, and turns to the next order.
+    /// Keeps the iterate, and turns to the next kind. A time that the evidence rules out is not tried with other orders.
     fn next(&mut self, evidence: f64) {
-        self.tried.push((self.order, evidence, self.state.clone()));
-        self.order += 1;
+        let kind = self.kinds.remove(0);
+        self.tried.push(Tried { kind, evidence, state: self.state.clone() });
+        let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
+        let best = most(&mut self.tried.iter());
+        let along =
+            [false, true].map(|time| most(&mut self.tried.iter().filter(|tried| KINDS[tried.kind].stretched == time)));
+        // Of a time that has not been tried nothing is known.
+        self.kinds.retain(|&kind| !(along[usize::from(KINDS[kind].stretched)] < best - NEAR));
     }
 
-    /// The order with the largest evidence.
-    fn best(&self) -> Option<&(usize, f64, State)> {
-        self.tried.iter().max_by(|a, b| a.1.total_cmp(&b.1))
+    /// The kind with the largest evidence.
+    fn best(&self) -> Option<&Tried> {
+        self.tried.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
     }
 
-    /// Orders that the evidence does not rule out; the last iterate where none has been tried to its end.
-    fn likely(&self) -> Vec<(usize, State)> {
-        let Some(best) = self.best() else { return vec![(self.order.min(ORDERS.len() - 1), self.state.clone())] };
-        let near = self.tried.iter().filter(|tried| tried.1 >= best.1 - NEAR);
-        near.map(|(order, _, state)| (*order, state.clone())).collect()
+    /// Kinds that the evidence does not rule out, with their shares of it.
+    fn likely(&self) -> Vec<(f64, Tried)> {
+        let Some(best) = self.best() else { return Vec::new() };
+        let near = || self.tried.iter().filter(|tried| tried.evidence >= best.evidence - NEAR);
+        let weight = |tried: &Tried| (tried.evidence - best.evidence).exp();
+        let all: f64 = near().map(weight).sum();
+        near().map(|tried| (weight(tried) / all, tried.clone())).collect()
     }
 
     fn save(&self) -> state::State {
         let saved = self.state.save(state::State::new(METHOD), "");
+        let kinds: Vec<f64> = self.kinds.iter().map(|&kind| kind as f64).collect();
         let saved = saved
-            .with_counter("order", self.order as u64)
-            .with_counter("orders", self.orders as u64)
+            .with("kinds", &kinds)
             .with_counter("phase", u64::from(self.phase == Phase::Solve))
             .with_counter("since", self.since)
             .with_counter("iterations", self.state.step)
             .with_counter("tried", self.tried.len() as u64);
-        let saved = save_classes(&self.solved, save_classes(&self.regressed, saved, "regressed "), "solved ");
-        self.tried.iter().enumerate().fold(saved, |saved, (at, (order, evidence, state))| {
+        self.tried.iter().enumerate().fold(saved, |saved, (at, Tried { kind, evidence, state })| {
             let prefix = format!("tried {at} ");
             let saved = saved.with(&format!("{prefix}evidence"), &[*evidence]);
-            state.save(saved.with_counter(&format!("{prefix}order"), *order as u64), &prefix)
+            state.save(saved.with_counter(&format!("{prefix}kind"), *kind as u64), &prefix)
         })
     }
 
     fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
         saved.check_method(METHOD)?;
-        let order = |name: &str| match saved.counter(name)? as usize {
-            order if order <= ORDERS.len() => Ok(order),
-            _ => Err(Fault::state(name)),
-        };
-        for at in 0..order("tried")? {
+        let known = |kind: &usize| *kind < KINDS.len();
+        self.kinds = saved.indices("kinds")?;
+        if !self.kinds.iter().all(known) {
+            return Err(Fault::state("kinds"));
+        }
+        for at in 0..saved.counter("tried")? {
             let prefix = format!("tried {at} ");
             let mut state = self.state.clone();
             state.restore(saved, &prefix)?;
             let [evidence] = saved.scalars(&format!("{prefix}evidence"))?;
-            self.tried.push((order(&format!("{prefix}order"))?.min(ORDERS.len() - 1), evidence, state));
+            let kind = saved.counter(&format!("{prefix}kind"))? as usize;
+            self.tried.push(Tried {
+                kind: Some(kind).filter(known).ok_or_else(|| Fault::state("kind"))?,
+                evidence,
+                state,
+            });
         }
         self.state.restore(saved, "")?;
         self.since = saved.counter("since")?;
-        restore_classes(&mut self.regressed, saved, "regressed ")?;
-        restore_classes(&mut self.solved, saved, "solved ")?;
-        (self.order, self.orders) = (order("order")?, order("orders")?);
         self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
         Ok(())
     }

@@ -1,4 +1,4 @@
-//! Cells of a long record: as fine as its measurements can tell, and no finer.
+//! Cells of a record: as fine as its measurements can tell, and no finer.
 //!
 //! A record that is sampled much faster than it changes does not need a breakpoint at every measurement. Splines of the
 //! measurements alone, on wide cells, are compared with the noise. Where they leave more than noise their cells are halved,
@@ -11,10 +11,10 @@ use crate::noise::Noise;
 use crate::problem::Bound;
 
 /// Cells that come first, at least.
-const FEWEST: usize = 25;
+const FEWEST: usize = 12;
 /// Cells that take the place of one that leaves noise. The answer needs two of them; its error bars need more, because what
 /// the measurements leave open of a source is rougher than what they say of it.
-const FINER: usize = 8;
+const FINER: usize = 4;
 /// Degree of the splines: that of the least smooth head.
 const DEGREE: usize = 5;
 /// Cells that are looked at together: a wave below the noise shows in many of its periods.

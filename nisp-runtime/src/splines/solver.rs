@@ -3,9 +3,10 @@
 use super::cells;
 use super::group::Group;
 use super::heads::Heads;
+use super::prior::{Prior, Smoothness};
 use super::rows::{Counted, Rows};
 use super::triangle::{Covariance, Row, Triangle};
-use super::weighed::{Class, Guess, Tally, restore_classes, save_classes};
+use super::weighed::{Class, Guess, Tally, renew, restore_classes, save_classes};
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
 use crate::noise::Noise;
@@ -23,12 +24,21 @@ const TIGHTER: f64 = 0.1;
 const RIDGE: f64 = 1e-6;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
 const LEARNED: f64 = 10.0;
-/// Order of the fields' derivative that is kept small while only data are regressed.
-const REGRESS_ORDER: usize = 2;
+/// How fields are smooth while only data are regressed.
+const REGRESS: Smoothness = Smoothness { order: 2, stretched: false };
+/// Cells of a source's shortest wave, before the first step says how smooth it is.
+const SHORTEST: f64 = 12.0;
 /// Rows that the noise's estimate from differences is worth.
 const NOISE_COUNT: f64 = 2.0;
 /// Least noise, as a share of the spread of the data: rounding.
 const LEAST_NOISE: f64 = 1e-10;
+/// Least roughness, and least amplitude of a source beside its natural size.
+const LEAST_ROUGHNESS: f64 = 1e-12;
+const LEAST_AMPLITUDE: f64 = 1e-6;
+/// Logarithm of the evidence that a larger source may cost and still be possible, and how many numbers must be told of a source
+/// for the evidence to know its size.
+const DOUBT: f64 = 2.0;
+const TELLING: f64 = 2.0;
 /// Largest change of a learned parameter in a step.
 const FARTHEST: f64 = 1.0;
 /// A step is halved so often before it is given up.
@@ -64,10 +74,12 @@ pub(super) struct Solver<'a> {
     classes: Vec<Vec<usize>>,
     /// By head, the number of the class of its roughness.
     roughness: Vec<usize>,
+    /// By head, the number of the class of its amplitude, where it is a source.
+    amplitude: Vec<Option<usize>>,
+    /// By head, its prior: that of sources while everything is solved, that of fields while data are regressed.
+    priors: Vec<Prior>,
     /// Sizes of equations, by group and row.
     sizes: Vec<Vec<f64>>,
-    /// Order of the derivative of the sources that the prior keeps small.
-    pub(super) order: usize,
     scalars: Vec<f64>,
     /// Length of the domain.
     length: f64,
@@ -83,9 +95,9 @@ pub(super) struct Found {
     pub(super) change: f64,
     /// Logarithm of the evidence, up to a constant.
     pub(super) evidence: f64,
-    /// Numbers that the answer takes from an observation, at most: the trace of its influence matrix, by row.
-    pub(super) used: f64,
     pub(super) covariance: Covariance,
+    /// By head, how many numbers rows other than its prior say of a source.
+    told: Vec<f64>,
 }
 
 impl<'a> Solver<'a> {
@@ -107,11 +119,13 @@ impl<'a> Solver<'a> {
         };
         let classes = schema.groups.iter().map(|g| g.terms.iter().map(|_| next()).collect()).collect();
         let roughness = schema.heads.iter().map(|_| next()).collect();
+        let amplitude = schema.heads.iter().map(|head| head.source.then(&mut next)).collect();
+        let priors = heads.bases.iter().map(|basis| Prior::new(basis, REGRESS)).collect();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len());
         let scalars = bound.scalars.clone();
         let length = breakpoints[breakpoints.len() - 1] - breakpoints[0];
-        Self { bound, heads, groups, classes, roughness, sizes, order: REGRESS_ORDER, scalars, length, triangle }
+        Self { bound, heads, groups, classes, roughness, amplitude, priors, sizes, scalars, length, triangle }
     }
 
     /// Bytes that splines over these cells take, about: the triangle and its inverse, a row for every measurement and equation
@@ -138,6 +152,28 @@ impl<'a> Solver<'a> {
         self.bound.problem.scene().schema.heads.iter().any(|head| head.source)
     }
 
+    /// Takes sources for smooth in this way from now on.
+    pub(super) fn set_smoothness(&mut self, kind: Smoothness) {
+        for head in self.believed(Phase::Solve).collect::<Vec<usize>>() {
+            self.priors[head] = Prior::new(&self.heads.bases[head], kind);
+        }
+    }
+
+    /// Takes sources for smooth in another way from now on, with waves as long as a state's.
+    pub(super) fn change_smoothness(&mut self, kind: Smoothness, state: &mut State) {
+        let before = self.priors.clone();
+        self.set_smoothness(kind);
+        for (head, before) in before.iter().enumerate() {
+            let Some(amplitude) = self.amplitude[head] else { continue };
+            let [own, rough] = [amplitude, self.roughness[head]].map(|class| state.classes[class].size);
+            let cells = before.cells(rough, own);
+            let is_wave = cells < self.heads.bases[head].cells() as f64;
+            let (own, cells) = if is_wave { (own, cells) } else { (self.length.sqrt(), SHORTEST) };
+            state.classes[amplitude].restart(own);
+            state.classes[self.roughness[head]].restart(self.priors[head].roughness(own, cells));
+        }
+    }
+
     /// Where the solver starts: heads at their offsets, noise as differences of the data say.
     pub(super) fn first(&self, noise: &Noise) -> State {
         let schema = self.bound.problem.scene().schema;
@@ -159,29 +195,21 @@ impl<'a> Solver<'a> {
                 });
             }
         }
-        classes.extend(schema.heads.iter().map(|_| self.rough()));
+        let open = |size: f64, least: f64| Class::open(size, Guess { size: 0.0, count: 0.0, least });
+        let natural = self.length.sqrt();
+        // Fields are rougher than anything that the cells can hold, until the first step says how rough.
+        let field = |prior: &Prior| prior.roughness(natural, 1.0).max(1e9);
+        let rough = schema.heads.iter().zip(&self.priors).map(|(head, prior)| {
+            open(if head.source { prior.roughness(natural, SHORTEST) } else { field(prior) }, LEAST_ROUGHNESS)
+        });
+        classes.extend(rough);
+        classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));
         State {
             theta: vec![0.0; self.heads.len()],
             learned: vec![0.0; self.bound.learned.len()],
             classes,
             tolerance: LOOSE,
             step: 0,
-        }
-    }
-
-    /// Rougher than anything that the cells can hold, until the first step says how rough: coefficients that change their sign
-    /// from one to the next.
-    fn rough(&self) -> Class {
-        let cells = self.heads.bases[0].cells() as f64;
-        let size = self.length.sqrt() * (2.0 * cells / self.length).powi(REGRESS_ORDER as i32);
-        Class::open(size.max(1e9), Guess { size: 0.0, count: 0.0, least: 1e-12 })
-    }
-
-    /// Holds the noise of a state at what differences of the data say, and at a share of their spread at least.
-    pub(super) fn hold_noise(&self, state: &mut State, noise: &Noise, share: f64) {
-        for found in &noise.observations {
-            let class = self.classes[found.group][found.term];
-            state.classes[class] = Class::known(found.deviation.max(share * found.spread));
         }
     }
 
@@ -264,7 +292,7 @@ impl<'a> Solver<'a> {
                 }
             }
         }
-        let known = self.classes.iter().map(Vec::len).sum::<usize>() + self.roughness.len();
+        let known = state.classes.len();
         let none = vec![0.0; shared];
         cost += self.add_priors(state, phase, &mut |row, class| rows.push(row, class));
         for head in 0..self.heads.bases.len() {
@@ -282,34 +310,37 @@ impl<'a> Solver<'a> {
         Ok((rows, cost))
     }
 
-    /// Order of the derivative that priors keep small.
-    fn order(&self, phase: Phase) -> usize {
-        if phase == Phase::Solve { self.order } else { REGRESS_ORDER }
+    /// The heads that have a prior in a phase: sources, or fields while only data are regressed.
+    fn believed(&self, phase: Phase) -> impl Iterator<Item = usize> + '_ {
+        let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
+        heads.filter(move |(_, head)| head.source == (phase == Phase::Solve)).map(|(head, _)| head)
     }
 
-    /// Gives the rows that keep sources smooth, or fields smooth while only data are regressed, with their classes; returns half
-    /// the sum of their squares.
+    /// Gives the rows that keep sources small and smooth, or fields smooth while only data are regressed, with their classes;
+    /// returns half the sum of their squares.
     fn add_priors(&self, state: &State, phase: Phase, take: &mut dyn FnMut(Row<'_>, usize)) -> f64 {
         let none = vec![0.0; state.learned.len()];
-        let order = self.order(phase);
         let mut slopes = Vec::new();
         let mut cost = 0.0;
-        let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
-        for (head, _) in heads.filter(|(_, declared)| declared.source == (phase == Phase::Solve)) {
-            let class = self.roughness[head];
-            let size = state.classes[class].size;
-            for (first, factors, width) in self.heads.bases[head].differences(order) {
-                let numbers = &self.heads.numbers(head, first)[..=order];
-                let weight = width.sqrt() / size;
+        for head in self.believed(phase) {
+            let (prior, class) = (&self.priors[head], self.roughness[head]);
+            for (first, factors) in prior.smooth(state.classes[class].size) {
+                let numbers = &self.heads.numbers(head, first)[..prior.width()];
                 let mut value = 0.0;
                 slopes.clear();
-                slopes.resize(numbers[order] + 1 - numbers[0], 0.0);
+                slopes.resize(numbers[prior.width() - 1] + 1 - numbers[0], 0.0);
                 for (&number, factor) in numbers.iter().zip(&factors) {
-                    slopes[number - numbers[0]] = weight * factor;
-                    value += weight * factor * state.theta[number];
+                    slopes[number - numbers[0]] = *factor;
+                    value += factor * state.theta[number];
                 }
                 cost += 0.5 * value * value;
                 take(Row { first: numbers[0], slopes: &slopes, shared: &none, value }, class);
+            }
+            let Some(class) = self.amplitude[head] else { continue };
+            for (&number, factor) in self.heads.numbers(head, 0).iter().zip(prior.small(state.classes[class].size)) {
+                let value = factor * state.theta[number];
+                cost += 0.5 * value * value;
+                take(Row { first: number, slopes: &[factor], shared: &none, value }, class);
             }
         }
         cost
@@ -345,6 +376,7 @@ impl<'a> Solver<'a> {
         self.triangle.add_all(rows.walk());
         let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
         let covariance = self.triangle.covariance();
+        let is_equation = self.equations();
         let mut tallies = vec![Tally::default(); state.classes.len() + 1];
         let mut loss = 0.0;
         let mut walk = rows.walk();
@@ -354,16 +386,15 @@ impl<'a> Solver<'a> {
             let beside: f64 = row.shared.iter().zip(&shared).map(|(a, x)| a * x).sum();
             tally.squares += (row.value + along + beside).powi(2);
             tally.count += count as f64;
-            tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
+            // Equations are so much stricter than anything else that each settles an unknown.
+            if !is_equation[class] {
+                tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
+            }
             loss += 0.5 * row.value.powi(2);
         }
-        self.count_priors(&mut tallies, phase);
+        let worth = self.count_priors(state, &mut tallies, phase);
         let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
-        let sizes: f64 = state.classes.iter().zip(&tallies).map(|(class, tally)| tally.count * class.size.ln()).sum();
-        let evidence = -0.5 * squares - sizes - self.triangle.log_determinant() + self.log_differences(phase);
-        let terms = self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
-        let observed = terms.filter(|(_, term)| term.kind == TermKind::Observation);
-        let used = observed.map(|(&class, term)| tallies[class].used / term.rows as f64).fold(0.0, f64::max);
+        let evidence = -0.5 * squares - self.log_sizes(state, &tallies) + worth - self.triangle.log_determinant();
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
         let mut next = state.clone();
         for _ in 0..HALVINGS {
@@ -377,62 +408,98 @@ impl<'a> Solver<'a> {
         }
         let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
-        next.classes.iter_mut().zip(&tallies).for_each(|(class, tally)| class.renew(*tally));
+        // While equations are loose, they need no source.
+        let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
+        let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
+        renew(&mut next.classes, &tallies, |class| is_loose && is_prior(class));
         if phase == Phase::Solve {
             next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
         }
         next.step += 1;
-        Ok(Some(Found { next, loss, change, evidence, used, covariance }))
+        let left = |class: usize| tallies[class].count - tallies[class].used;
+        let told = self.roughness.iter().zip(&self.amplitude);
+        let told = told.map(|(&rough, amplitude)| amplitude.map_or(0.0, |class| left(rough) + left(class))).collect();
+        Ok(Some(Found { next, loss, change, evidence, covariance, told }))
     }
 
-    /// Takes every source for as rough at least as one wave of its own size over the domain. The evidence may take a source
-    /// for a polynomial that the data do not speak against; error bars should not.
-    pub(super) fn doubt_roughness(&self, state: &mut State) {
-        let sources = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| head.source);
-        for (head, _) in sources {
-            let numbers = self.heads.numbers(head, 0);
-            let square = numbers.iter().map(|&n| state.theta[n].powi(2)).sum::<f64>() / numbers.len() as f64;
-            let wave = std::f64::consts::TAU / self.length;
-            let size = (self.length * square * wave.powi(2 * self.order as i32)).sqrt();
-            let class = &mut state.classes[self.roughness[head]];
-            class.size = class.size.max(size);
+    /// By class, whether its rows are those of an equation; one more for what is known beforehand.
+    fn equations(&self) -> Vec<bool> {
+        let terms = self.groups.iter().flat_map(|group| group.schema.terms);
+        let priors = self.roughness.len() + self.amplitude.iter().flatten().count();
+        terms.map(|term| term.kind == TermKind::Residual).chain(vec![false; priors + 1]).collect()
+    }
+
+    /// Sum of the logarithms of what rows are divided by, those of priors aside.
+    fn log_sizes(&self, state: &State, tallies: &[Tally]) -> f64 {
+        let mut sum = 0.0;
+        for (at, group) in self.groups.iter().enumerate() {
+            for (number, term) in group.schema.terms.iter().enumerate() {
+                let rows = term.first..term.first + term.rows;
+                let logs: f64 = rows.map(|row| self.sigma(state, at, number, row).ln()).sum();
+                let count = tallies[self.classes[at][number]].count;
+                // Terms without rows have no size.
+                sum += if count > 0.0 { count * logs / term.rows as f64 } else { 0.0 };
+            }
         }
+        sum
     }
 
-    /// What priors of roughness use up, as what everything else leaves of all unknowns: summed row by row it would be a small
-    /// difference of large numbers where cells are much finer than the source.
-    fn count_priors(&self, tallies: &mut [Tally], phase: Phase) {
+    /// What error bars are taken from, and the step about it: sources as rough as a wave over the domain at least, and where
+    /// hardly anything is told of them, as large as the evidence does not speak against. Where the evidence takes a source for
+    /// nothing, or for a polynomial, error bars should not.
+    pub(super) fn doubted(&mut self, mut state: State) -> Result<Option<(State, Found)>, Fault> {
+        let Some(mut found) = self.step(&state, Phase::Solve)? else { return Ok(None) };
+        let (least, natural) = (found.evidence - DOUBT, self.length.sqrt());
+        for head in 0..self.roughness.len() {
+            let Some(amplitude) = self.amplitude[head] else { continue };
+            loop {
+                let mut doubted = state.clone();
+                let [own, rough] = [amplitude, self.roughness[head]].map(|class| state.classes[class].size);
+                let own = if found.told[head] < TELLING { own.max((2.0 * own).min(natural)) } else { own };
+                let wave = self.priors[head].roughness(own, self.heads.bases[head].cells() as f64);
+                doubted.classes[amplitude].size = own;
+                doubted.classes[self.roughness[head]].size = rough.max(wave);
+                if doubted.classes == state.classes {
+                    break;
+                }
+                match self.step(&doubted, Phase::Solve)? {
+                    Some(next) if next.evidence > least => (state, found) = (doubted, next),
+                    _ => break,
+                }
+            }
+        }
+        Ok(Some((state, found)))
+    }
+
+    /// What priors use up, and what they are worth; returns the logarithm of the determinant of their rows.
+    ///
+    /// What roughness uses up is what everything else leaves of all unknowns: summed row by row it would be a small difference of
+    /// large numbers where cells are much finer than the source.
+    fn count_priors(&self, state: &State, tallies: &mut [Tally], phase: Phase) -> f64 {
+        let mut log_determinant = 0.0;
+        for head in self.believed(phase) {
+            let (rough, Some(amplitude)) = (self.roughness[head], self.amplitude[head]) else { continue };
+            let worth = self.priors[head].worth(state.classes[rough].size, state.classes[amplitude].size);
+            log_determinant += worth.log_determinant;
+            tallies[rough].count = tallies[amplitude].count - worth.amplitude;
+            tallies[amplitude].count = worth.amplitude;
+        }
         let unknowns = (self.heads.len() + self.bound.learned.len()) as f64;
-        let is_prior = |class: usize| self.roughness.contains(&class);
-        let is_equation = |class: usize| {
-            let terms =
-                self.classes.iter().zip(&self.groups).flat_map(|(own, group)| own.iter().zip(group.schema.terms));
-            phase == Phase::Solve && terms.clone().any(|(&own, term)| own == class && term.kind == TermKind::Residual)
-        };
-        let others = tallies.iter().enumerate().filter(|&(class, _)| !is_prior(class));
-        // Equations are so much stricter than anything else that each settles an unknown.
-        let used: f64 = others.map(|(class, tally)| if is_equation(class) { tally.count } else { tally.used }).sum();
-        let priors = || self.roughness.iter().copied();
-        let by_rows: f64 = priors().map(|class| tallies[class].used.clamp(0.0, tallies[class].count)).sum();
-        let count: f64 = priors().map(|class| tallies[class].count).sum();
+        let is_rough = |class: usize| self.roughness.contains(&class);
+        let is_equation = self.equations();
+        tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
+        let used: f64 =
+            tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();
+        let rough = || self.roughness.iter().copied();
+        let by_rows: f64 = rough().map(|class| tallies[class].used.clamp(0.0, tallies[class].count)).sum();
+        let count: f64 = rough().map(|class| tallies[class].count).sum();
         let left = (unknowns - used).clamp(0.0, count);
-        for class in priors() {
+        for class in rough() {
             let own = tallies[class].used.clamp(0.0, tallies[class].count);
             let share = if by_rows > 0.0 { own / by_rows } else { tallies[class].count / count.max(1.0) };
             tallies[class].used = (left * share).min(tallies[class].count);
         }
-    }
-
-    /// Logarithm of the determinant of the differences that priors keep small, as functions of all but the first coefficients.
-    fn log_differences(&self, phase: Phase) -> f64 {
-        let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
-        let own = heads.filter(|(_, head)| head.source == (phase == Phase::Solve));
-        own.map(|(head, _)| {
-            let order = self.order(phase);
-            let differences = self.heads.bases[head].differences(order);
-            differences.map(|(_, factors, width)| (factors[order].abs() * width.sqrt()).ln()).sum::<f64>()
-        })
-        .sum()
+        log_determinant
     }
 
     /// The heads, and what they say at the points of all groups.
@@ -472,11 +539,6 @@ impl<'a> Solver<'a> {
 }
 
 impl State {
-    /// Takes over the roughness of all heads.
-    pub(super) fn take_roughness(&mut self, solver: &Solver<'_>, from: &[Class]) {
-        solver.roughness.iter().for_each(|&class| self.classes[class].clone_from(&from[class]));
-    }
-
     pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
         save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)

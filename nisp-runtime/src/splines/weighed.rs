@@ -1,5 +1,7 @@
 //! How much rows count: classes of rows whose size is known, or found by the evidence.
 
+use nalgebra::{DMatrix, DVector};
+
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
 
@@ -10,12 +12,12 @@ pub(super) struct Class {
     pub(super) size: f64,
     /// How the size is found; nothing if it is known.
     pub(super) open: Option<Guess>,
-    /// How far the logarithm of the size went in the last step.
-    pub(super) went: f64,
-    /// What the step gained in the logarithm of the evidence, to first order.
+    /// What the last step gained in the logarithm of the evidence, to first order.
     pub(super) gain: f64,
-    /// How much farther than the evidence says steps go while they keep their direction.
-    pub(super) haste: f64,
+    /// Logarithms of the last sizes, and how far the evidence wanted to go from each; the latest first.
+    past: [[f64; 2]; DEPTH],
+    /// How many of them there are.
+    known: usize,
 }
 
 /// What is believed of a size before any row is seen.
@@ -42,52 +44,102 @@ pub(super) struct Tally {
 const LEAST_LEFT: f64 = 1e-3;
 /// Farthest step of the logarithm of a size.
 const FARTHEST: f64 = 3.0;
-/// Growth of the haste, and the most of it.
-const HASTIER: f64 = 1.3;
-const MOST_HASTE: f64 = 4.0;
+/// What keeps an extrapolation bounded, beside the squares of its wishes.
+const RIDGE: f64 = 1e-6;
+/// Sizes of the past that a step looks back at.
+const DEPTH: usize = 2;
 
 /// Classes as plain numbers.
 pub(super) fn save_classes(classes: &[Class], saved: State, prefix: &str) -> State {
-    let of = |part: fn(&Class) -> f64| classes.iter().map(part).collect::<Vec<f64>>();
-    saved
-        .with(&format!("{prefix}sizes"), &of(|class| class.size))
-        .with(&format!("{prefix}went"), &of(|class| class.went))
-        .with(&format!("{prefix}haste"), &of(|class| class.haste))
+    let sizes: Vec<f64> = classes.iter().map(|class| class.size).collect();
+    let past: Vec<f64> = classes.iter().flat_map(|class| class.past.as_flattened()).copied().collect();
+    let known: Vec<f64> = classes.iter().map(|class| class.known as f64).collect();
+    let parts = [("sizes", sizes), ("past", past), ("known", known)];
+    parts.iter().fold(saved, |saved, (name, part)| saved.with(&format!("{prefix}{name}"), part))
 }
 
 /// Takes over what [`save_classes`] gave of the same problem.
 pub(super) fn restore_classes(classes: &mut [Class], saved: &State, prefix: &str) -> Result<(), Fault> {
-    let of = |name: &str| saved.sized::<f64>(&format!("{prefix}{name}"), classes.len());
-    let (sizes, went, haste) = (of("sizes")?, of("went")?, of("haste")?);
-    for (class, ((size, went), haste)) in classes.iter_mut().zip(sizes.into_iter().zip(went).zip(haste)) {
-        (class.size, class.went, class.haste) = (size, went, haste);
+    let of = |name: &str, each: usize| saved.sized::<f64>(&format!("{prefix}{name}"), each * classes.len());
+    let (sizes, past, known) = (of("sizes", 1)?, of("past", 2 * DEPTH)?, of("known", 1)?);
+    let all = sizes.into_iter().zip(known).zip(past.chunks_exact(2 * DEPTH));
+    for (class, ((size, known), past)) in classes.iter_mut().zip(all) {
+        (class.size, class.known) = (size, (known as usize).min(DEPTH));
+        class.past.as_flattened_mut().copy_from_slice(past);
     }
     Ok(())
 }
 
+/// Moves sizes toward those at which the evidence is stationary (MacKay 1992). His steps are short where two sizes of one source
+/// make up for each other, so that they are extrapolated from the last ones (Anderson 1965).
+pub(super) fn renew(classes: &mut [Class], tallies: &[Tally], is_held: impl Fn(usize) -> bool) {
+    let wished: Vec<f64> = classes
+        .iter()
+        .zip(tallies)
+        .enumerate()
+        .map(|(at, (class, tally))| if is_held(at) { 0.0 } else { class.wished(*tally) })
+        .collect();
+    let extrapolated = extrapolated(classes, &wished);
+    let slope = |at: usize| tallies[at].squares - (tallies[at].count - tallies[at].used);
+    let is_ascent = |steps: &Vec<f64>| steps.iter().zip(&wished).map(|(step, wished)| step * wished).sum::<f64>() > 0.0;
+    let steps = extrapolated.filter(is_ascent).unwrap_or_else(|| wished.clone());
+    let is_any_held = (0..classes.len()).any(&is_held);
+    for (at, class) in classes.iter_mut().enumerate() {
+        let step = steps[at].clamp(-FARTHEST, FARTHEST);
+        class.past.rotate_right(1);
+        class.past[0] = [class.size.ln(), wished[at]];
+        // What is wished while others are held is no past of what is wished without.
+        class.known = if is_any_held { 0 } else { (class.known + 1).min(DEPTH) };
+        class.gain = if class.open.is_some() && !is_held(at) { (step * slope(at)).abs() } else { 0.0 };
+        if let Some(guess) = class.open.filter(|_| step != 0.0) {
+            class.size = (class.size * step.exp()).max(guess.least);
+        }
+    }
+}
+
+/// Steps to where the wishes of the present and of the past together would vanish, if they were linear in the logarithms of the
+/// sizes; nothing without a past.
+fn extrapolated(classes: &[Class], wished: &[f64]) -> Option<Vec<f64>> {
+    let open = || classes.iter().zip(wished).filter(|(class, _)| class.open.is_some());
+    let depth = open().map(|(class, _)| class.known).min().unwrap_or(0);
+    let change = |class: &Class, wished: f64, back: usize| wished - class.past[back][1];
+    let sum = |of: &dyn Fn(&Class, f64) -> f64| open().map(|(class, &wished)| of(class, wished)).sum::<f64>();
+    let normal = DMatrix::from_fn(depth, depth, |i, j| {
+        sum(&|class, wished| change(class, wished, i) * change(class, wished, j))
+    });
+    let right = DVector::from_fn(depth, |i, _| sum(&|class, wished| change(class, wished, i) * wished));
+    let ridge = DMatrix::identity(depth, depth) * (RIDGE * normal.trace());
+    let parts = (depth > 0).then(|| (normal + ridge).cholesky())??.solve(&right);
+    let step = |(class, &wished): (&Class, &f64)| {
+        let own =
+            |(back, part): (usize, &f64)| part * (class.size.ln() - class.past[back][0] + change(class, wished, back));
+        if class.open.is_some() { wished - parts.iter().enumerate().map(own).sum::<f64>() } else { 0.0 }
+    };
+    let steps: Vec<f64> = classes.iter().zip(wished).map(step).collect();
+    steps.iter().all(|step| step.is_finite()).then_some(steps)
+}
+
 impl Class {
     pub(super) fn known(size: f64) -> Self {
-        Self { size, open: None, went: 0.0, gain: 0.0, haste: 1.0 }
+        Self { size, open: None, gain: 0.0, past: [[0.0; 2]; DEPTH], known: 0 }
     }
 
     pub(super) fn open(size: f64, guess: Guess) -> Self {
         Self { open: Some(guess), ..Self::known(size.max(guess.least)) }
     }
 
-    /// Takes the size at which the evidence is stationary (MacKay 1992): the mean square of the rows, where those that the
-    /// answer used up do not count.
-    pub(super) fn renew(&mut self, tally: Tally) {
-        self.gain = 0.0;
-        let Some(guess) = self.open.filter(|_| tally.count > 0.0) else { return };
+    /// Begins anew from a size.
+    pub(super) fn restart(&mut self, size: f64) {
+        *self = Self { open: self.open, ..Self::known(size) };
+    }
+
+    /// How far the logarithm of the size is from that of the mean square of the rows, where those that the answer used up do not
+    /// count.
+    fn wished(&self, tally: Tally) -> f64 {
+        let Some(guess) = self.open.filter(|_| tally.count > 0.0) else { return 0.0 };
         let left = (tally.count - tally.used).max(LEAST_LEFT * tally.count) + guess.count;
         let square = (tally.squares * self.size.powi(2) + guess.count * guess.size.powi(2)) / left;
-        let wanted = square.sqrt().max(guess.least);
-        let step = (wanted / self.size).ln();
-        self.haste = if step * self.went > 0.0 { (HASTIER * self.haste).min(MOST_HASTE) } else { 1.0 };
-        self.went = (self.haste * step).clamp(-FARTHEST, FARTHEST);
-        self.gain = (self.went * (tally.squares - (tally.count - tally.used))).abs();
-        if step.is_finite() {
-            self.size = (self.size * self.went.exp()).max(guess.least);
-        }
+        let step = (square.sqrt().max(guess.least) / self.size).ln();
+        if step.is_finite() { step } else { 0.0 }
     }
 }

@@ -1,0 +1,332 @@
+//! Equations of records, each with a way to draw a truth.
+
+use nisp::{SceneRef, scene};
+use nisp_equations::{pendulum::pendulum, rlc::rlc};
+
+use super::drive::Drive;
+use crate::random::Random;
+use crate::rk4::integrate;
+
+/// What is true of a record at some places.
+pub(super) struct Course {
+    /// What is measured, without noise.
+    pub(super) columns: Vec<Vec<f64>>,
+    pub(super) source: Vec<f64>,
+    /// Parameters that the scene is told.
+    pub(super) told: Vec<(&'static str, f64)>,
+}
+
+/// An equation.
+pub(super) struct Family {
+    pub(super) name: &'static str,
+    pub(super) scene: SceneRef,
+    /// The group of the equations, and that of the measurements.
+    pub(super) law: &'static str,
+    pub(super) samples: &'static str,
+    /// The unknown source.
+    pub(super) source: &'static str,
+    /// Conditions, with where they hold as a share of the span.
+    pub(super) conditions: &'static [(&'static str, f64)],
+    pub(super) span: f64,
+    /// True if noise is in declared units, and not in spreads of each column.
+    pub(super) absolute: bool,
+    /// The truth at rising places, the first of which is zero.
+    pub(super) draw: fn(&mut Random, &[f64]) -> Course,
+}
+
+nisp::pde! {
+    /// An oscillator with a hardening spring.
+    mod duffing {
+        coordinates: t [s];
+        fields: y [V];
+        sources: u [V];
+        parameters: m [s^2] = 4e-2, c [s] = 4e-2, a = 1, b [1/V^2] = 3;
+        on motion { balance: m * d(y, t, 2) + c * d(y, t) + a * y + b * y^3 == u; }
+        on samples { observe y; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// Van der Pol's oscillator under a drive.
+    mod pol {
+        coordinates: t [s];
+        fields: x;
+        sources: u [1/s^2];
+        parameters: mu [1/s] = 1, k [1/s^2] = 1;
+        on motion { balance: d(x, t, 2) - mu * (1 - x^2) * d(x, t) + k * x == u; }
+        on samples { observe x; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A cart with friction.
+    mod cart {
+        coordinates: t [s];
+        fields: x [m];
+        sources: F [N];
+        parameters: m [kg] = 2, c [kg/s] = 0.8;
+        on motion { balance: m * d(x, t, 2) + c * d(x, t) == F; }
+        on samples { observe x; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// Lorenz's equations, the first of them driven.
+    mod lorenz {
+        units: off;
+        coordinates: t;
+        fields: x, y, z;
+        sources: f;
+        parameters: s = 10, r = 28, b = 2.667;
+        on flow {
+            first: d(x, t) == s * (y - x) + f;
+            second: d(y, t) == x * (r - z) - y;
+            third: d(z, t) == x * y - b * z;
+        }
+        on samples { observe x, y, z; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// Lotka's and Volterra's equations with a harvest of the prey.
+    mod prey {
+        units: off;
+        coordinates: t;
+        fields: x, y;
+        sources: h;
+        parameters: a = 1, b = 0.8, c = 0.6, e = 0.9;
+        on growth {
+            prey: d(x, t) == a * x - b * x * y - h;
+            predators: d(y, t) == c * x * y - e * y;
+        }
+        on samples { observe x, y; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A tank that empties through a hole, and what flows in.
+    mod tank {
+        coordinates: t [s];
+        fields: h [m];
+        sources: q [m^3/s];
+        parameters: A [m^2] = 0.5, k [m^3/s] = 0.05, h0 [m] = 1;
+        on level { balance: A * d(h, t) + k * sqrt(h / h0) == q; }
+        on samples { observe h; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// Two reactions in a row, the first of second order, and what is fed.
+    mod reaction {
+        coordinates: t [s];
+        fields: a [mol/m^3], b [mol/m^3];
+        sources: u [mol/(m^3 s)];
+        parameters: k [m^3/(mol s)] = 0.4, l [1/s] = 0.3;
+        on reactor {
+            fed: d(a, t) == u - k * a^2;
+            made: d(b, t) == k * a^2 - l * b;
+        }
+        on samples { observe a, b; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A beam on two supports under an unknown load.
+    mod beam {
+        coordinates: x [m];
+        fields: w [mm], M [N m];
+        sources: q [N/m];
+        parameters: EI [N m^2] > 0 = 100;
+        on span {
+            moment: M == EI * d(w, x, 2);
+            balance: d(M, x, 2) == q;
+        }
+        on left { held: w == 0; hinged: M == 0; }
+        on right { held: w == 0; hinged: M == 0; }
+        on gauges { observe w; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A rod that loses heat along its length and is heated somewhere.
+    mod rod {
+        coordinates: x [m];
+        fields: T [K];
+        sources: q [W/m];
+        parameters: k [W m/K] = 0.02, h [W/(m K)] = 0.2;
+        on inside { conduction: -k * d(T, x, 2) + h * T == q; }
+        on probes { observe T; }
+        scene recover { }
+    }
+}
+
+/// All of them.
+pub(super) fn families() -> Vec<Family> {
+    let plain = |name, scene, law, source, span, draw| Family {
+        name,
+        scene,
+        law,
+        samples: "samples",
+        source,
+        conditions: &[],
+        span,
+        absolute: false,
+        draw,
+    };
+    let of_pendulum = scene::<pendulum::recover::Scene>();
+    let of_rlc = scene::<rlc::recover::Scene>();
+    vec![
+        Family { absolute: true, ..plain("pendulum", of_pendulum, "motion", "f", 4.0, regulated) },
+        Family { absolute: true, ..plain("pushed", of_pendulum, "motion", "f", 4.0, pushed) },
+        Family { conditions: &[("start", 0.0)], ..plain("rlc", of_rlc, "circuit", "f", 2.0, circuit) },
+        plain("duffing", scene::<duffing::recover::Scene>(), "motion", "u", 6.0, |random, t| {
+            let drive = Drive::draw(random, 6.0, 0.3);
+            let start = [0.3 * random.normal(), 0.3 * random.normal()];
+            let slope = |t: f64, [y, v]: [f64; 2]| [v, (drive.at(t) - 4e-2 * v - y - 3.0 * y.powi(3)) / 4e-2];
+            course(&drive, t, integrate(slope, start, t), 1)
+        }),
+        plain("van der pol", scene::<pol::recover::Scene>(), "motion", "u", 12.0, |random, t| {
+            let drive = Drive::draw(random, 12.0, 1.5);
+            let start = [random.normal(), random.normal()];
+            let slope = |t: f64, [x, v]: [f64; 2]| [v, drive.at(t) + (1.0 - x * x) * v - x];
+            course(&drive, t, integrate(slope, start, t), 1)
+        }),
+        plain("cart", scene::<cart::recover::Scene>(), "motion", "F", 10.0, |random, t| {
+            let drive = Drive::draw(random, 10.0, 3.0);
+            let slope = |t: f64, [_, v]: [f64; 2]| [v, (drive.at(t) - 0.8 * v) / 2.0];
+            course(&drive, t, integrate(slope, [0.0, random.normal()], t), 1)
+        }),
+        plain("lorenz", scene::<lorenz::recover::Scene>(), "flow", "f", 4.0, |random, t| {
+            let drive = Drive::draw(random, 4.0, 40.0);
+            let start = [5.0 * random.normal(), 5.0 * random.normal(), 20.0 + 5.0 * random.normal()];
+            let slope =
+                |t: f64, [x, y, z]: [f64; 3]| [10.0 * (y - x) + drive.at(t), x * (28.0 - z) - y, x * y - 2.667 * z];
+            course(&drive, t, integrate(slope, start, t), 3)
+        }),
+        plain("prey", scene::<prey::recover::Scene>(), "growth", "h", 15.0, |random, t| {
+            let drive = Drive::draw(random, 15.0, 0.08);
+            let start = [1.0 + random.uniform(), 0.5 + random.uniform()];
+            let slope = |t: f64, [x, y]: [f64; 2]| [x - 0.8 * x * y - drive.at(t), 0.6 * x * y - 0.9 * y];
+            course(&drive, t, integrate(slope, start, t), 2)
+        }),
+        plain("tank", scene::<tank::recover::Scene>(), "level", "q", 60.0, |random, t| {
+            let drive = Drive::draw(random, 60.0, 0.02);
+            let inflow = |t: f64| 0.06 + drive.at(t);
+            let slope = |t: f64, [h]: [f64; 1]| [(inflow(t) - 0.05 * h.max(0.0).sqrt()) / 0.5];
+            let levels = integrate(slope, [1.0 + random.uniform()], t);
+            Course { source: t.iter().map(|&t| inflow(t)).collect(), ..course(&drive, t, levels, 1) }
+        }),
+        plain("reaction", scene::<reaction::recover::Scene>(), "reactor", "u", 20.0, |random, t| {
+            let drive = Drive::draw(random, 20.0, 0.15);
+            let feed = |t: f64| 0.4 + drive.at(t);
+            let slope = |t: f64, [a, b]: [f64; 2]| [feed(t) - 0.4 * a * a, 0.4 * a * a - 0.3 * b];
+            let found = integrate(slope, [random.uniform(), random.uniform()], t);
+            Course { source: t.iter().map(|&t| feed(t)).collect(), ..course(&drive, t, found, 2) }
+        }),
+        Family {
+            law: "span",
+            samples: "gauges",
+            conditions: &[("left", 0.0), ("right", 1.0)],
+            ..plain("beam", scene::<beam::recover::Scene>(), "span", "q", 1.0, bent)
+        },
+        Family { samples: "probes", ..plain("rod", scene::<rod::recover::Scene>(), "inside", "q", 1.0, heated) },
+    ]
+}
+
+/// The first states of a course are measured.
+fn course<const N: usize>(drive: &Drive, times: &[f64], states: Vec<[f64; N]>, measured: usize) -> Course {
+    let columns = (0..measured).map(|at| states.iter().map(|state| state[at]).collect()).collect();
+    Course { columns, source: times.iter().map(|&t| drive.at(t)).collect(), told: Vec::new() }
+}
+
+/// The circuit starts anywhere.
+fn circuit(random: &mut Random, t: &[f64]) -> Course {
+    let drive = Drive::draw(random, 2.0, 4.0);
+    let start = [4.0 * random.normal(), 4.0 * random.normal()];
+    let slope = |t: f64, [v, r]: [f64; 2]| [r, drive.slope(t) + 6.0 * drive.at(t) - 7.0 * r - 10.0 * v];
+    Course { told: vec![("f0", drive.at(0.0))], ..course(&drive, t, integrate(slope, start, t), 1) }
+}
+
+/// Sums of half waves: deflection in mm, and load.
+fn bent(random: &mut Random, places: &[f64]) -> Course {
+    let sizes = [1.0, 0.3, 0.1, 0.03].map(|size| size * random.normal());
+    let sum = |x: f64, factor: &dyn Fn(f64) -> f64| -> f64 {
+        let own = |(n, size): (usize, &f64)| {
+            let pace = (n + 1) as f64 * std::f64::consts::PI;
+            factor(pace) * size * (pace * x).sin()
+        };
+        sizes.iter().enumerate().map(own).sum()
+    };
+    let of = |factor: &dyn Fn(f64) -> f64| places.iter().map(|&x| sum(x, factor)).collect::<Vec<f64>>();
+    Course { columns: vec![of(&|_| 1.0)], source: of(&|pace| 0.1 * pace.powi(4)), told: Vec::new() }
+}
+
+/// Temperatures in closed form, of which the heat follows.
+fn heated(random: &mut Random, places: &[f64]) -> Course {
+    let drive = Drive::draw(random, 1.0, 10.0);
+    let bend = |x: f64| (drive.slope(x + 1e-5) - drive.slope(x - 1e-5)) / 2e-5;
+    let temperature = |x: f64| 20.0 + drive.at(x);
+    let source = places.iter().map(|&x| -0.02 * bend(x) + 0.2 * temperature(x)).collect();
+    Course { columns: vec![places.iter().map(|&x| temperature(x)).collect()], source, told: Vec::new() }
+}
+
+/// The double pendulum balanced by a regulator near that of `data/pendulum/pendulum.toml`, from anywhere near upright.
+fn regulated(random: &mut Random, times: &[f64]) -> Course {
+    balanced(random, times, 0.0)
+}
+
+/// The same with a sine on the regulator's force.
+fn pushed(random: &mut Random, times: &[f64]) -> Course {
+    balanced(random, times, 3e-3)
+}
+
+const GAIN: [f64; 6] =
+    [0.0816496580928, 2.48160443754, -3.5552099403, 0.164279087644, 0.0625859883633, -0.603640337824];
+
+fn balanced(random: &mut Random, times: &[f64], disturbance: f64) -> Course {
+    loop {
+        let gain = GAIN.map(|gain| gain * (1.0 + 0.1 * (2.0 * random.uniform() - 1.0)));
+        let start = [0.0, 0.03, 0.03, 0.0, 0.03, 0.03].map(|size| size * (2.0 * random.uniform() - 1.0));
+        let (amplitude, pace) = (disturbance * random.uniform(), 2.0 + 10.0 * random.uniform());
+        let force = |t: f64, x: &[f64; 6]| {
+            amplitude * (pace * t).sin() - gain.iter().zip(x).map(|(gain, x)| gain * x).sum::<f64>()
+        };
+        let states = integrate(|t, x| links(force(t, &x), x), start, times);
+        if states.iter().all(|state| state[1].abs() < 0.5 && state[2].abs() < 0.5) {
+            let source = times.iter().zip(&states).map(|(&t, state)| force(t, state)).collect();
+            let columns = (0..3).map(|at| states.iter().map(|state| state[at]).collect()).collect();
+            return Course { columns, source, told: Vec::new() };
+        }
+    }
+}
+
+/// Rates of q, psi, phi and their own rates under a force: the equations of motion over m l^2, with s = q'' / l, by Cramer.
+fn links(force: f64, [_, psi, phi, dq, dpsi, dphi]: [f64; 6]) -> [f64; 6] {
+    let (m, l, g) = (0.005, 0.5, 9.81);
+    let across = (psi - phi).cos();
+    let right = [
+        force / (m * l) - 2.0 * dpsi * dpsi * psi.sin() - dphi * dphi * phi.sin(),
+        2.0 * g / l * psi.sin() - dphi * dphi * (psi - phi).sin(),
+        g / l * phi.sin() + dpsi * dpsi * (psi - phi).sin(),
+    ];
+    let mass = [[3.0, -2.0 * psi.cos(), -phi.cos()], [-2.0 * psi.cos(), 2.0, across], [-phi.cos(), across, 1.0]];
+    let determinant = |m: &[[f64; 3]; 3]| {
+        m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) - m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0])
+            + m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0])
+    };
+    let whole = determinant(&mass);
+    let found = [0, 1, 2].map(|column| {
+        let mut own = mass;
+        (0..3).for_each(|row| own[row][column] = right[row]);
+        determinant(&own) / whole
+    });
+    [dq, dpsi, dphi, l * found[0], found[1], found[2]]
+}

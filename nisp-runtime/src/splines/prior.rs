@@ -1,0 +1,184 @@
+//! What is believed of a source before any measurement: how large it is, and how smooth along which time.
+//!
+//! A source is a Gaussian process: `|f|^2 / amplitude^2 + |d^order f / ds^order|^2 / roughness^2` is small, in the mean over a
+//! time `s` that is the record's own, or that passes faster at the record's start. What is set off with the record answers at
+//! first in a layer that is thin beside the rest, and slower and slower later on.
+
+use super::basis::{Basis, Line};
+use super::triangle::{Row, Triangle};
+use crate::schema;
+
+/// Exponents of the unit of time.
+const SECOND: [f64; 7] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
+/// Range of a stretched time over the width of the layer at its start.
+const LAYER: f64 = 100.0;
+
+/// A kind of smoothness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Smoothness {
+    /// Order of the derivative that is kept small.
+    pub(super) order: usize,
+    /// True along a stretched time.
+    pub(super) stretched: bool,
+}
+
+/// Kinds of smoothness that may be the right one, the first tried first.
+pub(super) const KINDS: [Smoothness; 6] =
+    [of(2, false), of(2, true), of(1, false), of(3, false), of(1, true), of(3, true)];
+
+const fn of(order: usize, stretched: bool) -> Smoothness {
+    Smoothness { order, stretched }
+}
+
+/// True if something may be set off with the records of a scene: they are over time.
+pub(super) fn may_stretch(schema: &schema::Scene) -> bool {
+    schema.coordinates[0].unit.exponents == SECOND && schema.heads.iter().any(|head| head.source)
+}
+
+/// How much faster than on average a stretched time passes, at a share of the record.
+pub(super) fn pace(share: f64) -> f64 {
+    LAYER / ((1.0 + LAYER * share) * LAYER.ln_1p())
+}
+
+/// The rows of a head's prior, by the head's coefficients.
+#[derive(Clone, Debug)]
+pub(super) struct Prior {
+    order: usize,
+    /// The head's functions along the time that the prior goes by.
+    along: Basis,
+}
+
+/// What the rows of a prior are worth.
+pub(super) struct Worth {
+    /// Logarithm of their determinant.
+    pub(super) log_determinant: f64,
+    /// Unknowns that the amplitude alone settles, of all that the prior does.
+    pub(super) amplitude: f64,
+}
+
+impl Prior {
+    /// Of functions over cells. The coefficients of a function of time are, to the second order in the width of a cell, those of
+    /// the same function along another time.
+    pub(super) fn new(basis: &Basis, kind: Smoothness) -> Self {
+        let along = if kind.stretched {
+            let places = basis.breakpoints();
+            let (first, length) = (places[0], places[places.len() - 1] - places[0]);
+            let stretch = |at: &f64| first + length * (LAYER * (at - first) / length).ln_1p() / LAYER.ln_1p();
+            Basis::new(basis.degree, &places.iter().map(stretch).collect::<Vec<f64>>())
+        } else {
+            basis.clone()
+        };
+        Self { order: kind.order, along }
+    }
+
+    /// Rows that keep the head smooth: for each the first of its coefficients, and what so many of them are multiplied by.
+    pub(super) fn smooth(&self, roughness: f64) -> impl Iterator<Item = (usize, Line)> + '_ {
+        self.along.differences(self.order).map(move |(first, mut factors, width)| {
+            factors.iter_mut().for_each(|factor| *factor *= width.sqrt() / roughness);
+            (first, factors)
+        })
+    }
+
+    /// Coefficients that a row of [`Prior::smooth`] multiplies.
+    pub(super) fn width(&self) -> usize {
+        self.order + 1
+    }
+
+    /// Rows that keep the head small: what each of its coefficients is multiplied by.
+    pub(super) fn small(&self, amplitude: f64) -> impl Iterator<Item = f64> + '_ {
+        self.along.differences(0).map(move |(_, _, width)| width.sqrt() / amplitude)
+    }
+
+    /// What all rows are worth.
+    pub(super) fn worth(&self, roughness: f64, amplitude: f64) -> Worth {
+        let mut triangle = Triangle::new(self.along.len(), self.width(), 0);
+        let mut smooth = self.smooth(roughness);
+        for (first, factor) in self.small(amplitude).enumerate() {
+            triangle.add(Row { first, slopes: &[factor], shared: &[], value: 0.0 });
+            if let Some((first, factors)) = smooth.next() {
+                triangle.add(Row { first, slopes: &factors[..self.width()], shared: &[], value: 0.0 });
+            }
+        }
+        let covariance = triangle.covariance();
+        let settled = self.small(amplitude).enumerate().map(|(first, factor)| covariance.of(first, &[factor], &[]));
+        Worth { log_determinant: triangle.log_determinant(), amplitude: settled.sum() }
+    }
+
+    /// A roughness at which a head of this amplitude is one wave over so many cells of the mean width.
+    pub(super) fn roughness(&self, amplitude: f64, cells: f64) -> f64 {
+        amplitude * (std::f64::consts::TAU / (cells * self.mean_width())).powi(self.order as i32)
+    }
+
+    /// Mean cells to one wave of a head of such a roughness and amplitude.
+    pub(super) fn cells(&self, roughness: f64, amplitude: f64) -> f64 {
+        let wave = std::f64::consts::TAU / (roughness / amplitude).powf(1.0 / self.order as f64);
+        wave / self.mean_width()
+    }
+
+    fn mean_width(&self) -> f64 {
+        let places = self.along.breakpoints();
+        (places[places.len() - 1] - places[0]) / self.along.cells() as f64
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The determinant and the trace by a dense factorisation of the sum of squares.
+    #[test]
+    fn worth_is_that_of_the_dense_matrix() {
+        let places: Vec<f64> = (0..9).map(|at| f64::from(at) / 8.0).collect();
+        for kind in KINDS {
+            let prior = Prior::new(&Basis::new(5, &places), kind);
+            let count = prior.along.len();
+            let (roughness, amplitude) = (3.0, 0.4);
+            let mut rows: Vec<Vec<f64>> = Vec::new();
+            for (first, factors) in prior.smooth(roughness) {
+                let mut row = vec![0.0; count];
+                row[first..][..prior.width()].copy_from_slice(&factors[..prior.width()]);
+                rows.push(row);
+            }
+            let smooth = rows.len();
+            for (at, factor) in prior.small(amplitude).enumerate() {
+                let mut row = vec![0.0; count];
+                row[at] = factor;
+                rows.push(row);
+            }
+            let square = |from: usize| {
+                let mut sum = vec![0.0; count * count];
+                for row in &rows[from..] {
+                    (0..count * count).for_each(|at| sum[at] += row[at / count] * row[at % count]);
+                }
+                sum
+            };
+            let (log, inverse) = inverted(square(0), count);
+            let small = square(smooth);
+            let trace: f64 = (0..count * count).map(|at| inverse[at] * small[at]).sum();
+            let worth = prior.worth(roughness, amplitude);
+            assert!((worth.log_determinant - 0.5 * log).abs() < 1e-9 * log.abs(), "{kind:?}");
+            assert!((worth.amplitude - trace).abs() < 1e-7 * trace, "{kind:?}: {} {trace}", worth.amplitude);
+        }
+    }
+
+    /// Logarithm of the determinant and inverse of a positive matrix, by Gauss and Jordan.
+    fn inverted(mut a: Vec<f64>, n: usize) -> (f64, Vec<f64>) {
+        let mut inverse: Vec<f64> = (0..n * n).map(|at| f64::from(at / n == at % n)).collect();
+        let mut log = 0.0;
+        for at in 0..n {
+            let pivot = a[at * n + at];
+            log += pivot.ln();
+            (0..n).for_each(|j| {
+                (a[at * n + j], inverse[at * n + j]) = (a[at * n + j] / pivot, inverse[at * n + j] / pivot)
+            });
+            for i in (0..n).filter(|&i| i != at) {
+                let factor = a[i * n + at];
+                for j in 0..n {
+                    a[i * n + j] -= factor * a[at * n + j];
+                    inverse[i * n + j] -= factor * inverse[at * n + j];
+                }
+            }
+        }
+        (log, inverse)
+    }
+}
