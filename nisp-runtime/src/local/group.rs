@@ -184,6 +184,30 @@ impl Group {
         block.excess = excess.into_iter().sum();
     }
 
+    /// Rows over their tolerances, in the order of [`Group::blocks`].
+    pub(super) fn over_tolerances(&self, evaluated: &Evaluated) -> Vec<f64> {
+        let rows = self.own_rows();
+        let at =
+            |value: &dyn Fn(usize) -> f64| rows.iter().map(|&row| value(row) / self.sigma[row]).collect::<Vec<_>>();
+        match self.weights.is_empty() {
+            true => (0..self.sites.count).flat_map(|p| at(&|row| evaluated.row(row, p))).collect(),
+            false => self.tests.iter().flat_map(|test| at(&|row| test.weight * evaluated.mean(test, row))).collect(),
+        }
+    }
+
+    /// Roots of what squares of [`Group::over_tolerances`] are multiplied by where losses are robust.
+    pub(super) fn root_weights(&self, over: &[f64]) -> Vec<f64> {
+        let losses = self.own_rows().into_iter().map(|row| self.losses[row]).cycle();
+        losses.zip(over).map(|((loss, times), over)| loss.weight(over / times.sqrt()).sqrt()).collect()
+    }
+
+    /// What an integral's misfit is divided by.
+    pub(super) fn integral_tolerance(&self, number: usize) -> f64 {
+        let terms = self.schema.terms.iter().filter(|term| term.kind == TermKind::Integral);
+        let mut rows = terms.flat_map(|term| term.first..term.first + term.rows);
+        rows.nth(number).map_or(1.0, |row| self.sigma[row])
+    }
+
     /// What the misfit of a row costs.
     fn cost(&self, row: usize, misfit: f64) -> f64 {
         let over = misfit / self.sigma[row];

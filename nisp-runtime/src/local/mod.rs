@@ -28,6 +28,7 @@ mod prior;
 mod refuse;
 mod resolved;
 mod rows;
+mod scores;
 mod sites;
 mod solver;
 mod sorted;
@@ -157,7 +158,11 @@ pub(crate) fn solve(
     if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
         end.warnings.extend(solver.unresolved(&end.state, settings.cells));
     }
-    let answer = solver.answer(&end.state);
+    let mut answer = solver.answer(&end.state);
+    // An answer that nothing says against is asked what it rests on.
+    if solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest)) {
+        answer.scores = solver.scores(&end.state).unwrap_or_default();
+    }
     let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     Ok(LocalSolution {

@@ -181,7 +181,7 @@ pub(crate) fn solve(
     let misfits = solver.misfits(&place.state);
     let State { theta, learned, step: iterations, .. } = place.state;
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
-    let answer = Answer { facts, clouds: Vec::new(), scalars };
+    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new() };
     Ok(SplineSolution {
         kept: KeptSplines { heads, theta, learned, spreads },
         status,
