@@ -7,6 +7,7 @@ pub mod language {}
 
 pub use nisp_macros::pde;
 pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene, scene_in_both_precisions};
+pub use nisp_runtime::live::{FixedLagSmoother, LagSettings, LiveError, RowColumn, Smoothed};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
     Carrier, Checkpoint, CheckpointError, Estimate, LearnedValue, Optimizer, RecoverError, Report, Resampling,

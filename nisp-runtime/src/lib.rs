@@ -32,3 +32,5 @@ pub mod tanh;
 pub mod values;
 pub mod verdict;
 mod wide;
+
+pub use splines::live;

@@ -20,7 +20,7 @@ pub(super) const TOLERANCE: f64 = 1e-6;
 const LOOSE: f64 = 1e-2;
 const TIGHTER: f64 = 0.1;
 /// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
-const RIDGE: f64 = 1e-6;
+pub(super) const RIDGE: f64 = 1e-6;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
 const LEARNED: f64 = 10.0;
 /// Order of the fields' derivative that is kept small while only data are regressed.
@@ -219,7 +219,7 @@ impl<'a> Solver<'a> {
     }
 
     /// What a row of a group is divided by.
-    fn sigma(&self, state: &State, group: usize, term: usize, row: usize) -> f64 {
+    pub(super) fn sigma(&self, state: &State, group: usize, term: usize, row: usize) -> f64 {
         let declared = &self.groups[group].schema.terms[term];
         match declared.kind {
             TermKind::Observation => state.classes[self.classes[group][term]].size,
@@ -383,6 +383,11 @@ impl<'a> Solver<'a> {
         }
         next.step += 1;
         Ok(Some(Found { next, loss, change, evidence, used, covariance }))
+    }
+
+    /// Size of the derivative of a head that the prior keeps small.
+    pub(super) fn roughness(&self, state: &State, head: usize) -> f64 {
+        state.classes[self.roughness[head]].size
     }
 
     /// Takes every source for as rough at least as one wave of its own size over the domain. The evidence may take a source
