@@ -9,9 +9,9 @@ use nisp::local::Local;
 use nisp::{Carrier, Settings};
 use nisp::{Problem, SceneRef};
 use nisp_data::cloud::LengthUnit;
-use nisp_data::nearest_name;
+use nisp_data::{Cloud, nearest_name};
 
-use crate::contact::{Contact, References};
+use crate::contact::{Contact, Frames, References};
 use crate::error::PrepareError;
 use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::series::Series;
@@ -124,6 +124,8 @@ pub struct Request {
     pub scene: Option<String>,
     /// Tables or a cloud of measurements, or else the example's: each for a group or, without a name, for all that want data.
     pub data: Vec<(Option<String>, PathBuf)>,
+    /// A cloud that was read already, instead of `data`, and where it came from.
+    pub frame: Option<(PathBuf, Cloud)>,
     /// Where the answer is wanted, if not where it was measured.
     pub wanted: Option<Wanted>,
     /// File with a sample's parameters and the names of its clouds.
@@ -189,6 +191,8 @@ pub struct Prepared {
     pub contact: Option<Contact>,
     /// What a calibration is made from, where the scene makes one.
     pub references: Option<References>,
+    /// How further clouds of the same body are bound, where they can come one after the other.
+    pub frames: Option<Frames>,
 }
 
 /// A measured column.

@@ -1,6 +1,6 @@
 //! What a user may have got wrong. Each message is one line and says what to do next.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use nisp::BindError;
 use nisp_data::DataError;
@@ -198,4 +198,11 @@ pub enum PrepareError {
         /// The headers there are.
         columns: String,
     },
+}
+
+impl PrepareError {
+    /// True where the record of this name is at fault, so that another of the same body may do.
+    pub fn is_of(&self, source: &Path) -> bool {
+        matches!(self, Self::File { path, .. } | Self::Elsewhere { path, .. } if path == source)
+    }
 }

@@ -90,6 +90,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         local: None,
         contact: None,
         references: None,
+        frames: None,
     })
 }
 

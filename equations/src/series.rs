@@ -120,6 +120,7 @@ impl Series {
             local: None,
             contact: None,
             references: None,
+            frames: None,
         })
     }
 }

@@ -91,6 +91,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         local: None,
         contact: None,
         references: None,
+        frames: None,
     })
 }
 

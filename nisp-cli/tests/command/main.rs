@@ -15,6 +15,7 @@ mod open_directions;
 mod plate;
 mod readme;
 mod resume;
+mod stream;
 mod streams;
 mod text;
 mod verdict;
