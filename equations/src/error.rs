@@ -2,12 +2,24 @@
 
 use std::path::{Path, PathBuf};
 
-use nisp::BindError;
+use nisp::{BindError, LiveError};
 use nisp_data::DataError;
 
 /// Why a scene cannot be prepared.
 #[derive(Debug, thiserror::Error)]
 pub enum PrepareError {
+    /// A scene that cannot be smoothed row by row.
+    #[error(transparent)]
+    Live(#[from] LiveError),
+    /// A condition that a stream does not come to.
+    #[error(
+        "group `{group}` lies at an edge of the record, which a stream does not know: choose a scene without it (--scene), or solve \
+         the record as a whole with `nisp solve`"
+    )]
+    Endless {
+        /// The group.
+        group: &'static str,
+    },
     /// The table.
     #[error(transparent)]
     Data(#[from] DataError),

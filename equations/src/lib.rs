@@ -9,6 +9,7 @@ pub mod membrane;
 pub mod pendulum;
 mod places;
 pub mod plate;
+mod record;
 pub mod rivals;
 pub mod rlc;
 pub mod series;
@@ -21,5 +22,6 @@ pub use catalogue::{Assumed, Binding, Entry, Measured, Prepared, Request, Wanted
 pub use contact::Contact;
 pub use copies::noisy_copy;
 pub use error::PrepareError;
+pub use record::Record;
 pub use truth::Truth;
 pub use yardsticks::{Yardstick, yardsticks};

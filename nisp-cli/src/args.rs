@@ -65,7 +65,7 @@ pub(crate) enum Command {
     /// Recover a source; without options, from the repository's own noisy example.
     #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
     Solve(Box<Options>),
-    /// Answer frame after frame of a camera, as they come: one JSON object a line.
+    /// Answer frame after frame of a camera, or row after row of a record, as they come: one JSON object a line.
     #[command(after_help = stream::SEE_HELP, after_long_help = stream::TEACH)]
     Stream(Box<StreamOptions>),
     /// Read values, derivatives and declared expressions from a saved answer, without its data.
@@ -362,7 +362,7 @@ fn data(word: OsString) -> Result<(Option<String>, PathBuf), String> {
     }
 }
 
-fn pair(text: &str) -> Result<(String, String), String> {
+pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=HEADER, for instance q=q_m_sigma0.01")?;
     Ok((name.trim().into(), value.trim().into()))
 }

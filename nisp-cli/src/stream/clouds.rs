@@ -59,7 +59,7 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
     Ok(ExitCode::SUCCESS)
 }
 
-fn not_written(message: &str) -> ExitCode {
+pub(super) fn not_written(message: &str) -> ExitCode {
     note(&format!("{}: {message}\n", crate::NAME));
     ExitCode::from(NOT_WRITTEN)
 }

@@ -87,7 +87,9 @@ pub enum LiveError {
     #[error(transparent)]
     Fault(#[from] Fault),
     /// More than the rows determine.
-    #[error("the first rows and the equations leave some of the unknowns open: give more conditions, more columns or more rows")]
+    #[error(
+        "the first rows and the equations leave some of the unknowns open: give more conditions, more columns or more rows"
+    )]
     Open,
     /// A record that ends too soon.
     #[error("{rows} rows are too few to tell noise from a source; give {least} at least")]
@@ -129,4 +131,11 @@ pub enum LiveError {
         /// Rows that a lag may take.
         most: usize,
     },
+}
+
+impl LiveError {
+    /// True of a row that was left out: the next may be taken.
+    pub fn is_of_row(&self) -> bool {
+        matches!(self, Self::Columns { .. } | Self::NotFinite { .. } | Self::Backwards { .. })
+    }
 }

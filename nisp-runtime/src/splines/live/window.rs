@@ -8,6 +8,7 @@ use std::collections::VecDeque;
 
 use super::evidence::Weights;
 use super::grid::Grid;
+use crate::kernel::GroupKernel;
 use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
@@ -53,6 +54,9 @@ pub(super) struct Window {
     places: Vec<f64>,
     /// What is asked for in the tail, in the order of the coordinate.
     events: VecDeque<Event>,
+    /// Whether a cell has left the tail since the last step.
+    has_left: bool,
+    kernels: Vec<GroupKernel<f64>>,
     step: Vec<f64>,
     scratch: Vec<f64>,
 }
@@ -73,7 +77,7 @@ impl Window {
         let highest = degrees.iter().copied().max().unwrap_or(0);
         let unknowns = degrees.len() * (grid.cells + highest);
         let places = grid.equations();
-        let kernels: Vec<_> = bound.problem.scene().double();
+        let kernels = bound.problem.scene().double();
         let equation = |&at: &usize| (at, Group::new(&schema.groups[at], kernels[at], &heads, &places, &[]));
         let equations = continuous.iter().map(equation).collect();
         let triangle = Triangle::new(unknowns, heads.band, 0);
@@ -86,6 +90,8 @@ impl Window {
             equations,
             places,
             events: VecDeque::new(),
+            has_left: false,
+            kernels,
             step: vec![0.0; unknowns],
             scratch: Vec::new(),
             bound,
@@ -141,9 +147,9 @@ impl Window {
         self.events.push_back(event);
     }
 
-    /// Adds a cell at the end: the first of the tail becomes part of the triangle, and the first of all is forgotten. New
-    /// coefficients are guessed.
-    pub(super) fn advance(&mut self, known: Known<'_>) -> Result<(), Fault> {
+    /// Adds a cell at the end: the first of all is forgotten, and the first of the tail leaves it with the next step, which must
+    /// come before the next cell. New coefficients are guessed.
+    pub(super) fn advance(&mut self, known: Known<'_>) {
         let count = self.heads_count();
         self.grid.advance();
         for part in [&mut self.theta, &mut self.reference] {
@@ -162,26 +168,26 @@ impl Window {
             self.guess_one(head, function, known);
             self.reference[number] = self.theta[number];
         }
-        let leaving = self.grid.tail_start() - 1;
-        let mut rows = self.rows()?.leaving;
-        rows.sort();
-        self.settled.add_all(rows.walk());
-        let grid = &self.grid;
-        while self.events.front().is_some_and(|event| grid.cell(event.at) <= leaving) {
-            self.events.pop_front();
-        }
-        Ok(())
+        self.has_left = true;
     }
 
     /// Turns the tail's rows in about the present state, and solves for all unknowns from a cell on. Returns the largest
     /// change of a coefficient in the tail, in units of the heads' natural sizes.
     pub(super) fn solve(&mut self, from: usize) -> Result<f64, Fault> {
         let first = self.first(self.grid.tail_start());
-        let mut rows = self.rows()?.staying;
-        rows.sort();
+        let Split { mut leaving, mut staying } = self.rows()?;
+        if std::mem::take(&mut self.has_left) {
+            leaving.sort();
+            self.settled.add_all(leaving.walk());
+            let grid = &self.grid;
+            while self.events.front().is_some_and(|event| grid.cell(event.at) < grid.tail_start()) {
+                self.events.pop_front();
+            }
+        }
+        staying.sort();
         // Rows of the cell that left the tail last reach down to its first unknown.
         self.all.copy_from(&self.settled, first.saturating_sub(self.heads_count()));
-        self.all.add_all(rows.walk());
+        self.all.add_all(staying.walk());
         let from = self.first(from);
         if !self.all.solve_from(from, &mut self.step) {
             return Err(Fault::state("window"));
@@ -209,20 +215,16 @@ impl Window {
         }
         self.equations = equations;
         let schema = self.bound.problem.scene().schema;
-        let mut kernels = Vec::new();
         for (at, schema) in schema.groups.iter().enumerate() {
             let own = || self.events.iter().filter(|event| event.group == at);
             if own().next().is_none() {
                 continue;
             }
-            if kernels.is_empty() {
-                kernels = self.bound.problem.scene().double();
-            }
             let places: Vec<f64> = own().map(|event| event.at - left).collect();
             let filled = |x: f64| if x.is_nan() { 0.0 } else { x };
             let column = |column: usize| own().map(|event| filled(event.columns[column])).collect();
             let columns: Vec<Vec<f64>> = (0..schema.columns.len()).map(column).collect();
-            let mut group = Group::new(schema, kernels[at], &self.heads, &places, &columns);
+            let mut group = Group::new(schema, self.kernels[at], &self.heads, &places, &columns);
             group.begin_at(&places, left);
             let events: Vec<&Event> = own().collect();
             let is_there = |term: &crate::schema::Term, p: usize| {
@@ -281,9 +283,12 @@ impl Window {
         let schema = self.bound.problem.scene().schema;
         let mut slopes = Vec::new();
         for (head, _) in schema.heads.iter().enumerate().filter(|(_, head)| head.source) {
-            for (first, factors, width) in self.heads.bases[head].differences(order).skip(tail - 1) {
+            // All cells are alike.
+            let basis = &self.heads.bases[head];
+            let Some((_, factors, width)) = basis.differences(order).next() else { continue };
+            let weight = width.sqrt() / self.weights.roughness[head];
+            for first in tail - 1..basis.len() - order {
                 let numbers = &self.heads.numbers(head, first)[..=order];
-                let weight = width.sqrt() / self.weights.roughness[head];
                 let mut value = 0.0;
                 slopes.clear();
                 slopes.resize(numbers[order] + 1 - numbers[0], 0.0);
@@ -314,10 +319,9 @@ impl Window {
     /// Gives how far each observation of an event is off, over the noise of neighbours.
     pub(super) fn misfits(&self, event: &Event, take: &mut dyn FnMut(f64)) {
         let schema = &self.bound.problem.scene().schema.groups[event.group];
-        let kernels = self.bound.problem.scene().double();
         let columns: Vec<Vec<f64>> = event.columns.iter().map(|&x| vec![x]).collect();
         let place = [event.at - self.grid.left()];
-        let mut group = Group::new(schema, kernels[event.group], &self.heads, &place, &columns);
+        let mut group = Group::new(schema, self.kernels[event.group], &self.heads, &place, &columns);
         group.begin_at(&place, self.grid.left());
         let found = group.evaluate(&self.heads, &self.theta, &self.weights.scalars, None);
         for (number, term) in schema.terms.iter().enumerate().filter(|(_, term)| term.kind == TermKind::Observation) {
