@@ -14,6 +14,7 @@ mod json;
 mod open_directions;
 mod plate;
 mod readme;
+mod records;
 mod resume;
 mod stream;
 mod streams;
