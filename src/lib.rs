@@ -9,6 +9,7 @@ pub use nisp_macros::pde;
 pub use nisp_runtime::carrier::Estimate;
 pub use nisp_runtime::engine::Resampling;
 pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene, scene_in_both_precisions};
+pub use nisp_runtime::live::{FixedLagSmoother, LagSettings, LiveError, RowColumn, Smoothed};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
     Carrier, Checkpoint, CheckpointError, LearnedValue, Optimizer, RecoverError, Report, Settings, Solution,

@@ -1,13 +1,25 @@
 //! What a user may have got wrong. Each message is one line and says what to do next.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use nisp::BindError;
+use nisp::{BindError, LiveError};
 use nisp_data::DataError;
 
 /// Why a scene cannot be prepared.
 #[derive(Debug, thiserror::Error)]
 pub enum PrepareError {
+    /// A scene that cannot be smoothed row by row.
+    #[error(transparent)]
+    Live(#[from] LiveError),
+    /// A condition that a stream does not come to.
+    #[error(
+        "group `{group}` lies at an edge of the record, which a stream does not know: choose a scene without it (--scene), or solve \
+         the record as a whole with `nisp solve`"
+    )]
+    Endless {
+        /// The group.
+        group: &'static str,
+    },
     /// The table.
     #[error(transparent)]
     Data(#[from] DataError),
@@ -198,4 +210,11 @@ pub enum PrepareError {
         /// The headers there are.
         columns: String,
     },
+}
+
+impl PrepareError {
+    /// True where the record of this name is at fault, so that another of the same body may do.
+    pub fn is_of(&self, source: &Path) -> bool {
+        matches!(self, Self::File { path, .. } | Self::Elsewhere { path, .. } if path == source)
+    }
 }

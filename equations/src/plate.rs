@@ -92,6 +92,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         local: None,
         contact: None,
         references: None,
+        frames: None,
     })
 }
 

@@ -4,6 +4,7 @@ use nisp::local::Local;
 use nisp::{Carrier, Problem, Settings};
 
 use crate::contact::{Contact, References};
+use crate::frames::Frames;
 use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::truth::Truth;
 
@@ -35,6 +36,8 @@ pub struct Prepared {
     pub contact: Option<Contact>,
     /// What a calibration is made from, where the scene makes one.
     pub references: Option<References>,
+    /// How further clouds of the same body are bound, where they can come one after the other.
+    pub frames: Option<Frames>,
 }
 
 /// A measured column.

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use nisp_data::Cloud;
 use nisp_data::cloud::LengthUnit;
 
 use crate::error::PrepareError;
@@ -13,6 +14,8 @@ pub struct Request {
     pub scene: Option<String>,
     /// Tables or a cloud of measurements, or else the example's: each for a group or, without a name, for all that want data.
     pub data: Vec<(Option<String>, PathBuf)>,
+    /// A cloud that was read already, instead of `data`, and where it came from.
+    pub frame: Option<(PathBuf, Cloud)>,
     /// Where the answer is wanted, if not where it was measured.
     pub wanted: Option<Wanted>,
     /// File with a sample's parameters and the names of its clouds.

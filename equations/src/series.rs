@@ -95,6 +95,7 @@ impl Series {
             local: None,
             contact: None,
             references: None,
+            frames: None,
         })
     }
 }

@@ -93,6 +93,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         local: None,
         contact: None,
         references: None,
+        frames: None,
     })
 }
 
@@ -324,12 +325,12 @@ fn widen(bounds: &mut [[f64; 2]], points: &[f64]) {
 }
 
 /// The header that the user chose for a name; the last word counts.
-fn header<'a>(request: &'a Request, name: &str) -> Option<&'a str> {
+pub(crate) fn header<'a>(request: &'a Request, name: &str) -> Option<&'a str> {
     request.columns.iter().rev().find(|(own, _)| own == name).map(|(_, header)| header.as_str())
 }
 
 /// The values of a quantity in its declared unit.
-fn read(
+pub(crate) fn read(
     table: &Table,
     (name, unit): (&'static str, &'static str),
     may_lack: bool,
@@ -358,7 +359,7 @@ fn check_group(schema: &Scene, group: Option<&str>, path: &Path) -> Result<(), P
 }
 
 /// Every name in `--column` must be one that the scene observes, or a coordinate.
-fn check_columns(schema: &Scene, request: &Request) -> Result<(), PrepareError> {
+pub(crate) fn check_columns(schema: &Scene, request: &Request) -> Result<(), PrepareError> {
     let observed = schema.groups.iter().flat_map(|group| group.columns).map(|column| column.name);
     let known: Vec<_> = observed.chain(schema.coordinates.iter().map(|axis| axis.name)).collect();
     match request.columns.iter().find(|(name, _)| !known.contains(&name.as_str())) {

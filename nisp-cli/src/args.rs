@@ -8,6 +8,8 @@ use clap::{Args as Group, Parser, Subcommand};
 use nisp_cli::options::{count, optimizers, precisions, seconds, seed, size};
 use nisp_data::cloud::LengthUnit;
 
+use crate::stream::{self, StreamOptions};
+
 /// Recover unknown sources from noisy measurements and a known governing equation.
 #[derive(Parser)]
 #[command(version, after_help = "Begin with `nisp solve pendulum`; `nisp solve --help` has examples.")]
@@ -63,6 +65,9 @@ pub(crate) enum Command {
     /// Recover a source; without options, from the repository's own noisy example.
     #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
     Solve(Box<Options>),
+    /// Answer frame after frame of a camera, or row after row of a record, as they come: one JSON object a line.
+    #[command(after_help = stream::SEE_HELP, after_long_help = stream::TEACH)]
+    Stream(Box<StreamOptions>),
     /// Read values, derivatives and declared expressions from a saved answer, without its data.
     #[command(after_help = EVAL_SEE_HELP, after_long_help = EVAL_TEACH)]
     Eval(EvalOptions),
@@ -357,12 +362,12 @@ fn data(word: OsString) -> Result<(Option<String>, PathBuf), String> {
     }
 }
 
-fn pair(text: &str) -> Result<(String, String), String> {
+pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=HEADER, for instance q=q_m_sigma0.01")?;
     Ok((name.trim().into(), value.trim().into()))
 }
 
-fn value(text: &str) -> Result<(String, f64), String> {
+pub(crate) fn value(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, for instance m0=0.005")?;
     let number = value.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     let number = number.ok_or("the value must be a finite number, in the declared unit and without it")?;

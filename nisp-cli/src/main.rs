@@ -12,6 +12,7 @@ mod new;
 mod report;
 mod results;
 mod solve;
+mod stream;
 
 use std::ffi::OsString;
 use std::process::ExitCode;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         }
         Parsed::Asked(Args { command: Command::Calibrate(frames) }) => calibrate::calibrate(&frames),
         Parsed::Asked(Args { command: Command::Eval(options) }) => eval::eval(&options),
+        Parsed::Asked(Args { command: Command::Stream(options) }) => stream::stream(&options),
         Parsed::Asked(Args { command: Command::Solve(options) }) => solve::solve(&options),
     });
     end(NAME, result)

@@ -33,6 +33,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         network: settings.carrier == Carrier::Network,
         columns: options.column.clone(),
         parameters: options.set.clone(),
+        ..Request::default()
     };
     let mut prepared = entry.prepare(&request).map_err(|error| error.to_string())?;
     prepared.problem.set_robust(options.robust);

@@ -33,3 +33,5 @@ pub mod tanh;
 pub mod values;
 pub mod verdict;
 mod wide;
+
+pub use splines::live;

@@ -71,7 +71,7 @@ impl Given<'_> {
     /// As [`Given::problem`].
     pub(super) fn assumed(&self) -> Result<Vec<Assumed>, PrepareError> {
         let mut assumed = Vec::new();
-        if self.request.data.is_empty() {
+        if self.request.data.is_empty() && self.request.frame.is_none() {
             return Ok(assumed);
         }
         let schema = self.scene.schema;

@@ -5,12 +5,12 @@ use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use serde::Deserialize;
 
-use super::bind_cloud;
 use super::given::{Given, Number, Positive, Size};
-use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
+use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
 use crate::contact::{CALIBRATES, Calibration, Contact, ContactRival, Face, Load, Membrane, References, Rule, Surface};
 use crate::entry::Entry;
+use crate::frames::{Frames, bind_cloud};
 use crate::prepared::Prepared;
 use crate::request::Request;
 use crate::truth::{Headers, Truth};
@@ -67,7 +67,8 @@ const ALSO: &[(&str, &str)] = &[("alpha", "x"), ("beta", "y")];
 
 /// Reads what is asked for and binds a scene to it.
 pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
-    if request.calibration.is_some() && (request.data.is_empty() || request.sample.is_some()) {
+    let has_cloud = request.frame.is_some() || !request.data.is_empty();
+    if request.calibration.is_some() && (!has_cloud || request.sample.is_some()) {
         let instead = "it goes with a frame of the calibrated sensor, and without --sample: --data FRAME";
         return Err(PrepareError::Option { entry: entry.name, option: "calibration", instead });
     }
@@ -81,9 +82,6 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
     let example = if pressure.is_some() { &theory.pressed } else { &theory.inflated };
     let mut observed = if calibrates { Observed::all(request)? } else { Observed::read(entry, request, example)? };
-    if let Some(calibration) = &calibration {
-        calibration.correct(&mut observed.cloud);
-    }
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
@@ -94,7 +92,6 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     if calibrates && given.says("E").is_none() {
         problem.set_parameter("E", stiff(&given)?)?;
     }
-    observed.require_of("membrane", [-a, -b, 0.0], [a, b, b])?;
 
     let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
     let level = given.of("p")?.filter(|_| pressure.is_some());
@@ -114,9 +111,17 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         let points = nisp::Points { coordinates: points.coords, weights, ..nisp::Points::default() };
         problem.set_group(group.name, points, Vec::new())?;
     }
-    observed.cloud.thin(2.0 * a.max(b) / cells as f64, POINTS_OF_A_CELL);
+    let frames = Frames {
+        // Of many files, each was taken into metres.
+        unit: request.unit.filter(|_| !calibrates),
+        calibration,
+        body: "membrane",
+        within: ([-a, -b, 0.0], [a, b, b]),
+        cell: 2.0 * a.max(b) / cells as f64,
+    };
+    frames.take(&observed.source, &mut observed.cloud)?;
     bind_cloud(&mut problem, &observed.cloud)?;
-    match &calibration {
+    match &frames.calibration {
         // What was taken off a point may be off by as much as it is where the surface is pressed into another shape.
         Some(calibration) => problem.set_tolerance("surface", "cloud", calibration.found.misfit_m)?,
         // The camera looks up, and its depth is what is noisy.
@@ -155,6 +160,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         local,
         contact: Some(contact),
         references,
+        frames: Some(frames).filter(|_| !calibrates),
     })
 }
 

@@ -112,8 +112,11 @@ impl Observed {
             (sample, data) => (sample.cloned(), data),
         };
         let sample = sample.map(|path| Sample::read(&path)).transpose()?;
+        if let Some((source, cloud)) = &request.frame {
+            return Ok(Self { sample, cloud: cloud.clone(), source: source.clone(), truth: None });
+        }
         let alone = |what: &str| Err(PrepareError::Cloud { index: request.cloud.unwrap_or(0), instead: what.into() });
-        let (source, mut cloud) = match (&sample, data) {
+        let (source, cloud) = match (&sample, data) {
             (_, Some(_)) if request.cloud.is_some() => return alone("--data names a cloud already"),
             (_, Some(data)) => (data.to_path_buf(), Cloud::read(data)?),
             (Some(sample), None) => {
@@ -128,9 +131,6 @@ impl Observed {
                 (path, cloud)
             }
         };
-        if let Some(unit) = request.unit {
-            cloud.convert_from(unit);
-        }
         let own = sample.is_none() && data.is_none();
         let truth = match &request.truth {
             Some(path) => Some(Table::read(path)?),
@@ -140,38 +140,7 @@ impl Observed {
         let example = || Sample { path: example.path.into(), text: example.sample.into() };
         Ok(Self { sample: if own { Some(example()) } else { sample }, cloud, source, truth })
     }
-
-    /// Checks that the cloud can be one of a body in a box, with a unit that makes it so.
-    pub(super) fn require_of(&self, body: &'static str, low: [f64; 3], high: [f64; 3]) -> Result<(), PrepareError> {
-        let fault =
-            |error: nisp_data::DataError| PrepareError::File { path: self.source.clone(), reason: error.to_string() };
-        let count = self.cloud.points.len();
-        if count < FEWEST {
-            let reason = format!("{count} points do not show a {body}; record {FEWEST} at least");
-            return Err(PrepareError::File { path: self.source.clone(), reason });
-        }
-        self.cloud.require_near(&low, &high).map_err(fault)?;
-        let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);
-        let (from, to) = (low.map(|x| x - MARGIN * size), high.map(|x| x + MARGIN * size));
-        let share = self.cloud.share_within(from, to);
-        if share >= LEAST_INSIDE {
-            return Ok(());
-        }
-        let span = |axis: usize| format!("{:.3} to {:.3} m", from[axis], to[axis]);
-        let place = format!("x {}, y {}, z {}", span(0), span(1), span(2));
-        Err(PrepareError::Elsewhere { path: self.source.clone(), share: 100.0 * share, body, place })
-    }
 }
-
-/// How far beyond its box, in parts of its size, a body may bulge and noise may throw a point.
-const MARGIN: f64 = 0.25;
-/// Points without which a surface is anyone's guess.
-const FEWEST: usize = 50;
-/// Points of a cloud in each cell of the answer's lattice that it passes through, in the mean, from which on more of them cost
-/// more than they say: three displacements are wanted there.
-pub(super) const POINTS_OF_A_CELL: usize = 4;
-/// Share of a cloud that must be where its body can be; the rest may be outliers.
-const LEAST_INSIDE: f64 = 0.8;
 
 /// The sample that `--data` names, if it names one: by its file, or by the file's name without its ending.
 fn sample_beside(data: &Path) -> Option<PathBuf> {

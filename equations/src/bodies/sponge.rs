@@ -4,12 +4,12 @@ use nisp::local::{Local, Patches};
 use nisp_data::domain::{Domain, Points, Sampling};
 use serde::Deserialize;
 
-use super::bind_cloud;
 use super::given::{Given, Number, Positive, Size};
-use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
+use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
 use crate::contact::{Contact, ContactRival, Face, Load, Rule, Surface};
 use crate::entry::Entry;
+use crate::frames::{Frames, bind_cloud};
 use crate::prepared::Prepared;
 use crate::request::Request;
 use crate::rivals::LinearPressure;
@@ -110,8 +110,14 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let assumed = given.assumed()?;
     let side = given.size("side")?;
     let (low, high) = ([-0.5 * side, -0.5 * side, -side], [0.5 * side, 0.5 * side, 0.0]);
-    observed.require_of("sponge", low, high)?;
-    observed.cloud.thin(side / LOCAL.cells as f64, POINTS_OF_A_CELL);
+    let frames = Frames {
+        unit: request.unit,
+        calibration: None,
+        body: "sponge",
+        within: (low, high),
+        cell: side / LOCAL.cells as f64,
+    };
+    frames.take(&observed.source, &mut observed.cloud)?;
 
     let vector = |names: [&'static str; 3]| -> Result<[f64; 3], PrepareError> {
         let [x, y, z] = names.map(|name| given.of(name));
@@ -172,6 +178,8 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         local,
         contact: Some(contact),
         references: None,
+        // The wrench is part of every frame too.
+        frames: None,
     })
 }
 

@@ -50,7 +50,7 @@ pub(crate) fn json(solution: &Solution, run: &Run<'_>, found: &Found) -> String 
 }
 
 /// An interrupted run is one that has not converged.
-fn status(solution: &Solution) -> &'static str {
+pub(crate) fn status(solution: &Solution) -> &'static str {
     match solution.status {
         Status::Interrupted => Status::NotConverged.name(),
         status => status.name(),
@@ -98,7 +98,7 @@ fn errors(found: &Found) -> Map<String, Value> {
 }
 
 /// A connected touched part, in SI units.
-fn patch(patch: &Patch) -> Value {
+pub(crate) fn patch(patch: &Patch) -> Value {
     json!({
         "centre_at_rest_m": patch.centre_at_rest,
         "centre_m": patch.centre,
@@ -127,7 +127,8 @@ fn head(estimate: &Estimate) -> Value {
     })
 }
 
-fn learned(learned: &LearnedValue) -> Value {
+/// A learned parameter.
+pub(crate) fn learned(learned: &LearnedValue) -> Value {
     json!({
         "name": learned.name,
         "unit": learned.unit.text,

@@ -12,7 +12,7 @@ use nisp_equations::Prepared;
 use crate::args::Options;
 use crate::results::Answer;
 
-pub(crate) use json::json;
+pub(crate) use json::{json, learned, patch, status};
 pub(crate) use table::table;
 
 /// A run, beside its solution.

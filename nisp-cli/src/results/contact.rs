@@ -16,9 +16,7 @@ pub(super) const SURFACE: [&str; 3] = ["surface.svg", "surface.vtu", "surface.pl
 /// Everything that is said of a contact.
 pub(super) fn answer(prepared: &Prepared, contact: &Contact, solution: &mut Solution) -> Result<Answer, DataError> {
     let estimates = super::evaluate(solution, &prepared.points);
-    let shown = contact.pressure.unwrap_or(contact.displacement[2]);
-    let missing = || DataError::Invalid(format!("the scene has no `{shown}` to draw"));
-    let head = solution.scene().heads.iter().find(|head| head.name == shown).ok_or_else(missing)?;
+    let head = shown(contact, solution)?;
     let plot = maps(prepared, contact, solution, head, &estimates).map(|plot| plot.svg().into());
     let mut answer = Answer::new(prepared, estimates)?;
     answer.show(super::PLOT, plot);
@@ -30,14 +28,27 @@ pub(super) fn answer(prepared: &Prepared, contact: &Contact, solution: &mut Solu
         }
     };
     answer.show(SURFACE[0], surface_view(&surface).map(|view| view.svg().into()));
-    match mesh(contact, solution, shown, &surface) {
+    match mesh(contact, solution, head.name, &surface) {
         Ok(mesh) => {
             answer.show(SURFACE[1], Ok(mesh.vtu_bytes()));
-            answer.show(SURFACE[2], mesh.ply_bytes(Some((shown, surface.scale))));
+            answer.show(SURFACE[2], mesh.ply_bytes(Some((head.name, surface.scale))));
         }
         Err(error) => answer.show(SURFACE[1], Err(error)),
     }
     Ok(answer)
+}
+
+/// A map of the pressure, or of the height where nothing presses.
+pub(crate) fn map(prepared: &Prepared, contact: &Contact, solution: &mut Solution) -> Result<Picture, DataError> {
+    let estimates = solution.evaluate(&prepared.points);
+    maps(prepared, contact, solution, shown(contact, solution)?, &estimates)
+}
+
+/// The head that pictures show.
+fn shown(contact: &Contact, solution: &Solution) -> Result<&'static Head, DataError> {
+    let shown = contact.pressure.unwrap_or(contact.displacement[2]);
+    let missing = || DataError::Invalid(format!("the scene has no `{shown}` to draw"));
+    solution.scene().heads.iter().find(|head| head.name == shown).ok_or_else(missing)
 }
 
 /// The deformed surface with every head on it.

@@ -2,6 +2,8 @@
 
 mod contact;
 
+pub(crate) use contact::map as contact_map;
+
 use nisp::{Estimate, Solution};
 use nisp_cli::interrupt;
 use nisp_data::colour::ColourScale;

@@ -2,9 +2,11 @@
 
 mod lookup;
 mod read;
+mod rows;
 mod units;
 mod write;
 
+pub use rows::Rows;
 use std::path::{Path, PathBuf};
 
 use crate::DataError;

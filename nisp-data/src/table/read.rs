@@ -36,12 +36,7 @@ impl Table {
         if text.trim().is_empty() {
             return Err(DataError::file(path, "the file is empty; a header line and rows of numbers are needed"));
         }
-        let mut reader = csv::ReaderBuilder::new()
-            .delimiter(separator(text))
-            .comment(Some(b'#'))
-            .flexible(true)
-            .trim(csv::Trim::All)
-            .from_reader(text.as_bytes());
+        let mut reader = reader(separator(text)).from_reader(text.as_bytes());
         let headers = reader.headers().map_err(|error| syntax(path, &error))?.clone();
         let mut columns = check_headers(path, &headers)?;
         let mut lines = Vec::new();
@@ -71,8 +66,15 @@ impl Table {
     }
 }
 
+/// How CSV with a separator is read.
+pub(super) fn reader(separator: u8) -> csv::ReaderBuilder {
+    let mut reader = csv::ReaderBuilder::new();
+    reader.delimiter(separator).comment(Some(b'#')).flexible(true).trim(csv::Trim::All);
+    reader
+}
+
 impl Column {
-    fn push(&mut self, line: usize, cell: &str) {
+    pub(super) fn push(&mut self, line: usize, cell: &str) {
         let parsed = cell.parse::<f64>();
         let kind = match parsed {
             _ if cell.is_empty() => Kind::Empty,
@@ -104,12 +106,12 @@ fn describe(cell: &str) -> String {
 }
 
 /// The separator of the header line: a comma unless there is none and another one is.
-fn separator(text: &str) -> u8 {
+pub(super) fn separator(text: &str) -> u8 {
     let header = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or("");
     [b',', b';', b'\t'].into_iter().find(|&mark| header.as_bytes().contains(&mark)).unwrap_or(b',')
 }
 
-fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<Vec<Column>, DataError> {
+pub(super) fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<Vec<Column>, DataError> {
     if headers.is_empty() {
         return Err(DataError::file(path, "only comments; a header line and rows of numbers are needed"));
     }
@@ -120,7 +122,7 @@ fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<Vec<Column>
     Ok(headers.iter().map(|header| Column { header: header.to_string(), values: Vec::new(), fault: None }).collect())
 }
 
-fn syntax(path: &Path, error: &csv::Error) -> DataError {
+pub(super) fn syntax(path: &Path, error: &csv::Error) -> DataError {
     match error.position() {
         Some(at) => DataError::line(path, at.line() as usize, format!("not CSV: {error}")),
         None => DataError::file(path, format!("not CSV: {error}")),

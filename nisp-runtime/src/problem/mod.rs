@@ -160,12 +160,14 @@ impl Problem {
         Ok(())
     }
 
-    /// Gives a Chamfer term its cloud, flat and point by point, in the term's unit.
+    /// Gives a Chamfer term its cloud, flat and point by point, in the term's unit, instead of one that it had.
     ///
     /// # Errors
     /// No such group, or nothing bound to it yet.
     pub fn set_cloud(&mut self, group: &str, term: &str, cloud: Vec<f64>) -> Result<(), BindError> {
-        self.binding(group)?.clouds.push((term.into(), cloud));
+        let clouds = &mut self.binding(group)?.clouds;
+        clouds.retain(|(own, _)| own != term);
+        clouds.push((term.into(), cloud));
         Ok(())
     }
 

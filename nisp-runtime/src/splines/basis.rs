@@ -1,5 +1,5 @@
-//! B-splines on any breakpoints, with all knots at the ends repeated (de Boor, *A Practical Guide to Splines*, chapters IX
-//! and X).
+//! B-splines on any breakpoints, with all knots at the ends repeated, or on cells of one width (de Boor, *A Practical Guide to
+//! Splines*, chapters IX and X).
 
 /// Largest degree.
 pub(super) const HIGHEST_DEGREE: usize = 13;
@@ -12,7 +12,7 @@ pub(super) type Line = [f64; HIGHEST_DEGREE + 1];
 #[derive(Clone, Debug)]
 pub(super) struct Basis {
     pub(super) degree: usize,
-    /// The breakpoints, with the first and the last repeated.
+    /// The breakpoints, with as many knots as the degree before the first and after the last.
     knots: Vec<f64>,
 }
 
@@ -22,6 +22,13 @@ impl Basis {
         let ends = |at: f64| std::iter::repeat_n(at, degree);
         let (first, last) = (breakpoints[0], breakpoints[breakpoints.len() - 1]);
         Self { degree, knots: ends(first).chain(breakpoints.iter().copied()).chain(ends(last)).collect() }
+    }
+
+    /// Splines of a degree over so many cells of one width from zero on, with the knots going on at both ends: every function is
+    /// a shift of every other.
+    pub(super) fn uniform(degree: usize, cells: usize, width: f64) -> Self {
+        let knot = |at: usize| (at as f64 - degree as f64) * width;
+        Self { degree, knots: (0..=cells + 2 * degree).map(knot).collect() }
     }
 
     /// Number of functions.
@@ -150,6 +157,20 @@ mod tests {
         let line: Vec<f64> = (0..basis.len()).map(|i| 3.0 - 2.0 * basis.centre(i)).collect();
         assert!((sum(&basis, &line, 0.77, 0) - (3.0 - 2.0 * 0.77)).abs() < 1e-14);
         assert!((sum(&basis, &line, 1.9, 1) + 2.0).abs() < 1e-13);
+    }
+
+    #[test]
+    fn splines_on_cells_of_one_width_are_shifts_of_each_other() {
+        let basis = Basis::uniform(3, 6, 0.25);
+        assert_eq!((basis.len(), basis.cells(), basis.cell(0.3)), (9, 6, 1));
+        // The cubic of the textbooks: 1/6, 2/3, 1/6 at a knot, slopes -1/2, 0, 1/2 over the width.
+        for cell in 0..6 {
+            let at = cell as f64 * 0.25;
+            for (order, exact) in [(0, [1.0 / 6.0, 2.0 / 3.0, 1.0 / 6.0, 0.0]), (1, [-2.0, 0.0, 2.0, 0.0])] {
+                let line = basis.line(cell, at, order);
+                assert!(line.iter().zip(exact).all(|(found, exact)| (found - exact).abs() < 1e-14), "{line:?}");
+            }
+        }
     }
 
     #[test]

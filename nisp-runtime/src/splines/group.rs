@@ -86,6 +86,12 @@ impl Group {
         }
     }
 
+    /// Says where on the coordinate the place is that its splines take for zero: what programs read is so much farther on.
+    pub(super) fn begin_at(&mut self, places: &[f64], zero: f64) {
+        let last = places.len() - 1;
+        self.coordinates.iter_mut().enumerate().for_each(|(p, x)| *x = zero + places[p.min(last)]);
+    }
+
     /// Number of places.
     pub(super) fn len(&self) -> usize {
         self.cells.len()

@@ -11,6 +11,7 @@ mod cells;
 mod group;
 mod heads;
 mod kept;
+pub mod live;
 mod prior;
 mod resolved;
 mod rows;

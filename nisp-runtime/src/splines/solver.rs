@@ -21,7 +21,7 @@ pub(super) const TOLERANCE: f64 = 1e-6;
 const LOOSE: f64 = 1e-2;
 const TIGHTER: f64 = 0.1;
 /// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
-const RIDGE: f64 = 1e-6;
+pub(super) const RIDGE: f64 = 1e-6;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
 const LEARNED: f64 = 10.0;
 /// How fields are smooth while only data are regressed.
@@ -247,7 +247,7 @@ impl<'a> Solver<'a> {
     }
 
     /// What a row of a group is divided by.
-    fn sigma(&self, state: &State, group: usize, term: usize, row: usize) -> f64 {
+    pub(super) fn sigma(&self, state: &State, group: usize, term: usize, row: usize) -> f64 {
         let declared = &self.groups[group].schema.terms[term];
         match declared.kind {
             TermKind::Observation => state.classes[self.classes[group][term]].size,
@@ -427,6 +427,12 @@ impl<'a> Solver<'a> {
         let terms = self.groups.iter().flat_map(|group| group.schema.terms);
         let priors = self.roughness.len() + self.amplitude.iter().flatten().count();
         terms.map(|term| term.kind == TermKind::Residual).chain(vec![false; priors + 1]).collect()
+    }
+
+    /// How rough and how large a source is believed to be; nothing of fields.
+    pub(super) fn source_sizes(&self, state: &State, head: usize) -> Option<(f64, f64)> {
+        let size = |class: usize| state.classes[class].size;
+        self.amplitude[head].map(|amplitude| (size(self.roughness[head]), size(amplitude)))
     }
 
     /// Sum of the logarithms of what rows are divided by, those of priors aside.

@@ -5,6 +5,8 @@
 //! coordinate, so that a row sees a few neighbours only; the few unknowns that all rows share form a border. Time and memory
 //! are linear in the rows.
 
+mod lag;
+
 use crate::simd::{self, Isa, Kernel, Simd};
 
 /// A row: its first unknown, what the unknowns from there on are multiplied by, what the shared ones are, and its value.

@@ -1,0 +1,178 @@
+//! Records, row by row.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, stdin};
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread::Builder;
+use std::time::{Duration, Instant};
+
+use nisp::schema::{Head, Scene};
+use nisp::{FixedLagSmoother, LagSettings, Smoothed};
+use nisp_cli::interrupt;
+use nisp_cli::terminal::{NOT_CONVERGED, note};
+use nisp_data::Rows;
+use nisp_equations::{Entry, Record, Request};
+use serde_json::{Map, Value, json};
+
+use super::clouds::not_written;
+use super::line;
+use super::options::StreamOptions;
+
+/// Rows that are read ahead of the one at hand.
+const AHEAD: usize = 1024;
+/// How often a signal is looked for while no row comes.
+const LOOK: Duration = Duration::from_millis(50);
+
+/// A row: its place and its columns, or what is wrong with it.
+type Row = Result<(f64, Vec<f64>), String>;
+
+/// Answers every row.
+pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode, String> {
+    if let Some(option) = options.about_clouds() {
+        return Err(format!("{option} is about clouds, and `{}` is measured in rows: leave it out", entry.name));
+    }
+    let scene = entry.scene(options.scene.as_deref()).map_err(|error| error.to_string())?.schema;
+    let request = Request {
+        scene: options.scene.clone(),
+        columns: options.column.clone(),
+        parameters: options.set.clone(),
+        ..Request::default()
+    };
+    let (name, input): (&Path, Box<dyn BufRead + Send>) = match &options.from.data {
+        None => (Path::new("standard input"), Box::new(BufReader::new(stdin()))),
+        Some(path) => {
+            let file = File::open(path).map_err(|error| format!("{}: {error}", path.display()))?;
+            (path, Box::new(BufReader::new(file)))
+        }
+    };
+    let rows = Rows::read(name, input).map_err(|error| error.to_string())?;
+    let record = Record::new(entry, &request, rows.header()).map_err(|error| error.to_string())?;
+    for name in record.lacking() {
+        say(&format!("`{name}` is not measured: no column answers to it"));
+    }
+    let (sender, came) = sync_channel(AHEAD);
+    let bring = {
+        let record = record.clone();
+        move || bring(rows, &record, &sender)
+    };
+    Builder::new().name("rows".into()).spawn(bring).map_err(|error| format!("cannot start a thread: {error}"))?;
+    let mut answers =
+        Answers { scene, settings: LagSettings { lag: options.lag, ..LagSettings::default() }, smoother: None };
+    match answers.follow(&record, &came)? {
+        Ended::NotWritten(message) => Ok(not_written(&message)),
+        Ended::Open(message) => {
+            say(&message);
+            Ok(ExitCode::from(NOT_CONVERGED))
+        }
+        Ended::Read => Ok(ExitCode::SUCCESS),
+    }
+}
+
+fn say(message: &str) {
+    note(&format!("{}: {message}\n", crate::NAME));
+}
+
+/// Reads rows until they end or nobody wants any more.
+fn bring(mut rows: Rows<Box<dyn BufRead + Send>>, record: &Record, place: &SyncSender<(Instant, Row)>) {
+    while let Some(row) = rows.next_row() {
+        let came = Instant::now();
+        let row = row.map_err(|error| error.to_string());
+        let row = row.and_then(|row| record.row(row).map_err(|error| error.to_string()));
+        if place.send((came, row)).is_err() {
+            return;
+        }
+    }
+}
+
+/// How a stream ended.
+enum Ended {
+    /// Its rows have, or the user asked to stop, or nobody reads answers any more.
+    Read,
+    NotWritten(String),
+    /// No answer can be given.
+    Open(String),
+}
+
+/// Answers under way.
+struct Answers {
+    scene: &'static Scene,
+    settings: LagSettings,
+    /// From the first row on.
+    smoother: Option<FixedLagSmoother>,
+}
+
+impl Answers {
+    /// Takes rows until they end.
+    ///
+    /// # Errors
+    /// Parameters that do not fit.
+    fn follow(&mut self, record: &Record, rows: &Receiver<(Instant, Row)>) -> Result<Ended, String> {
+        loop {
+            let (row, is_live) = match rows.recv_timeout(LOOK) {
+                Err(RecvTimeoutError::Timeout) if !interrupt::asked() => continue,
+                Ok(row) if !interrupt::asked() => (Some(row.1), true),
+                _ => (None, false),
+            };
+            // Rows of a file wait for their turn.
+            let start = Instant::now();
+            let lines = match (row, &mut self.smoother) {
+                (Some(Err(error)), _) => vec![json!({ "status": "error", "error": error })],
+                (Some(Ok((at, values))), smoother) => {
+                    let smoother = match smoother {
+                        Some(smoother) => smoother,
+                        None => {
+                            let problem = record.problem(at).map_err(|error| error.to_string())?;
+                            let new =
+                                FixedLagSmoother::new(problem, self.settings).map_err(|error| error.to_string())?;
+                            self.smoother.insert(new)
+                        }
+                    };
+                    match smoother.push(at, &values) {
+                        Ok(found) => found.iter().map(|found| self.line(found)).collect(),
+                        Err(error) if error.is_of_row() => {
+                            vec![json!({ "status": "error", "error": error.to_string(), "t": at })]
+                        }
+                        Err(error) => return Ok(Ended::Open(error.to_string())),
+                    }
+                }
+                (None, Some(smoother)) => match smoother.finish() {
+                    Ok(found) => found.iter().map(|found| self.line(found)).collect(),
+                    Err(error) => return Ok(Ended::Open(error.to_string())),
+                },
+                (None, None) => return Ok(Ended::Open("there was no row; give some below the header".into())),
+            };
+            let took = 1e3 * start.elapsed().as_secs_f64();
+            for mut line in lines {
+                line["latency_ms"] = took.into();
+                match line::print(&line) {
+                    Ok(true) => {}
+                    Ok(false) => return Ok(Ended::Read),
+                    Err(message) => return Ok(Ended::NotWritten(message)),
+                }
+            }
+            if !is_live {
+                return Ok(Ended::Read);
+            }
+        }
+    }
+
+    /// The members of a row's line.
+    fn line(&self, found: &Smoothed) -> Value {
+        let of = |source: bool| -> Map<String, Value> {
+            let heads = self.scene.heads.iter().zip(&found.heads).filter(|(head, _)| head.source == source);
+            let member =
+                |(head, (value, sd)): (&Head, &(f64, f64))| (head.name.into(), json!({ "value": value, "sd": sd }));
+            heads.map(member).collect()
+        };
+        json!({
+            self.scene.coordinates[0].name: found.at,
+            "lag": found.lag,
+            "status": if found.is_sound() { "converged" } else { "inconsistent" },
+            "sources": of(true),
+            "state": of(false),
+            "misfit": found.misfit,
+        })
+    }
+}

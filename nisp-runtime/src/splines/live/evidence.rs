@@ -1,0 +1,101 @@
+//! How noisy a stretch of a record is, and how smooth its sources are: what the evidence of all of its rows says.
+
+use std::time::Instant;
+
+use super::super::cells;
+use super::super::heads::Heads;
+use super::super::solver::{Solver, State};
+use super::super::triangle::Covariance;
+use super::super::weighed::Class;
+use super::super::{KINDS, Place, Run, Tried, kinds};
+use super::LiveError;
+use crate::noise::{self, Noise};
+use crate::problem::Bound;
+use crate::solve::driver::{Flow, Limits, Status};
+
+/// What rows count as known to, in the engine's units.
+#[derive(Clone, Debug)]
+pub(super) struct Weights {
+    /// How sources are smooth, as a number of [`KINDS`].
+    pub(super) kind: usize,
+    /// By group and row, what the row is divided by.
+    pub(super) sigma: Vec<Vec<f64>>,
+    /// By head, how rough and how large it is, where it is a source.
+    pub(super) sizes: Vec<Option<(f64, f64)>>,
+    /// Scalars that programs read, the learned ones as they were found.
+    pub(super) scalars: Vec<f64>,
+    /// Noise that differences of neighbours show.
+    pub(super) noise: Noise,
+    /// The classes to start from the next time.
+    classes: Vec<Class>,
+}
+
+/// The answer to a stretch of a record.
+pub(super) struct Stretch {
+    pub(super) weights: Weights,
+    heads: Heads,
+    theta: Vec<f64>,
+    covariance: Covariance,
+}
+
+impl Stretch {
+    /// Solves a part of a record by itself; from what another part said, where it is known.
+    pub(super) fn solve(bound: &Bound, from: Option<&Weights>) -> Result<Self, LiveError> {
+        let noise = noise::estimate(bound);
+        let breakpoints = cells::breakpoints(bound, &noise);
+        let mut solver = Solver::over(bound, &breakpoints);
+        let kinds = from.map_or_else(|| kinds(solver.has_sources(), false), |from| vec![from.kind]);
+        let mut place = Place::first(solver.first(&noise), kinds);
+        if let Some(from) = from {
+            place.state.classes.clone_from(&from.classes);
+        }
+        let mut monitor = |_: super::super::Progress<'_>| Flow::Continue;
+        let mut run = Run {
+            start: Instant::now(),
+            limits: Limits::default(),
+            longest: 0.0,
+            monitor: &mut monitor,
+            loss: f64::INFINITY,
+        };
+        let status = run.go(&mut solver, &mut place, &Place::save)?;
+        let best = place.best().filter(|_| status == Status::Converged).cloned();
+        let Tried { kind, state, .. } = best.ok_or(LiveError::Open)?;
+        solver.set_smoothness(KINDS[kind]);
+        let classes = state.classes.clone();
+        let (state, found) = solver.doubted(state)?.ok_or(LiveError::Open)?;
+        let covariance = found.covariance;
+        let weights = Weights {
+            kind,
+            sigma: sigma(&solver, &state),
+            sizes: (0..solver.heads.bases.len()).map(|head| solver.source_sizes(&state, head)).collect(),
+            scalars: solver.scalars(&state.learned).to_vec(),
+            noise,
+            classes,
+        };
+        Ok(Self { weights, heads: solver.heads, theta: state.theta, covariance })
+    }
+
+    /// A head at a place in the engine's units.
+    pub(super) fn value(&self, head: usize, at: f64) -> f64 {
+        self.heads.derivative(head, (self.heads.cell(at), at), 0, &self.theta)
+    }
+
+    /// Its standard deviation.
+    pub(super) fn deviation(&self, head: usize, at: f64) -> f64 {
+        let (first, slopes) = self.heads.value_row(head, at);
+        self.covariance.of(first, &slopes, &[]).max(0.0).sqrt()
+    }
+}
+
+fn sigma(solver: &Solver<'_>, state: &State) -> Vec<Vec<f64>> {
+    let of = |(at, group): (usize, &crate::schema::Group)| {
+        let mut sigma = vec![1.0; group.rows];
+        for (number, term) in group.terms.iter().enumerate() {
+            for row in term.first..term.first + term.rows {
+                sigma[row] = solver.sigma(state, at, number, row);
+            }
+        }
+        sigma
+    };
+    solver.bound.problem.scene().schema.groups.iter().enumerate().map(of).collect()
+}

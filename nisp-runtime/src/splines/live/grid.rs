@@ -1,0 +1,75 @@
+//! Cells of one width that move along the coordinate, and where on them equations are asked to hold.
+
+/// Cells whose rows are made anew in every step.
+const TAIL: usize = 6;
+/// Where equations are asked to hold at an end of the record, in cells from it: the centres of splines of degree five whose
+/// last knots are repeated there. The first and second knot from an end are replaced by these.
+const AT_END: [f64; 4] = [0.0, 0.2, 0.6, 1.2];
+
+/// The cells of a window.
+#[derive(Clone, Debug)]
+pub(super) struct Grid {
+    pub(super) cells: usize,
+    pub(super) width: f64,
+    /// Where cell zero of the record begins, and the number of the window's first cell.
+    zero: f64,
+    first: i64,
+}
+
+impl Grid {
+    /// A window that reaches back by a lag. A record that begins at `start` begins with the first cell of the tail.
+    pub(super) fn new(start: f64, width: f64, lag: f64) -> Self {
+        let cells = (lag / width).ceil() as usize + TAIL + 2;
+        Self { cells, width, zero: start, first: -((cells - TAIL) as i64) }
+    }
+
+    /// Where the window begins.
+    pub(super) fn left(&self) -> f64 {
+        self.zero + self.first as f64 * self.width
+    }
+
+    /// Where the window ends.
+    pub(super) fn right(&self) -> f64 {
+        self.zero + (self.first + self.cells as i64) as f64 * self.width
+    }
+
+    /// The first cell of the tail.
+    pub(super) fn tail_start(&self) -> usize {
+        self.cells - TAIL
+    }
+
+    /// One cell farther.
+    pub(super) fn advance(&mut self) {
+        self.first += 1;
+    }
+
+    /// The cell of a place; places outside belong to the nearest.
+    pub(super) fn cell(&self, at: f64) -> usize {
+        (((at - self.left()) / self.width).floor().max(0.0) as usize).min(self.cells - 1)
+    }
+
+    /// The first cell of the window that is part of the record.
+    pub(super) fn begun(&self) -> usize {
+        (-self.first).max(0) as usize
+    }
+
+    /// Places of the equations from the window's first cell on: knots from the cell before the tail on, and those of the end.
+    pub(super) fn equations(&self) -> Vec<f64> {
+        let knots = (self.tail_start() - 1..self.cells - 1).map(|knot| knot as f64);
+        let end = AT_END.iter().rev().map(|from_end| self.cells as f64 - from_end);
+        knots.chain(end).map(|at| at * self.width).collect()
+    }
+
+    /// The cell in whose rows one of these places counts; nothing if it is not asked for, because the record begins behind it
+    /// or with places of its own.
+    pub(super) fn cell_of_equation(&self, place: usize) -> Option<usize> {
+        let cell = (self.tail_start() - 1 + place).min(self.cells - 1);
+        let number = self.first + cell as i64;
+        (number >= 0 && number != 1 || cell == self.cells - 1).then_some(cell)
+    }
+
+    /// Places of equations at the beginning of the record, beside those at knots.
+    pub(super) fn beginning(&self) -> impl Iterator<Item = f64> + '_ {
+        AT_END[1..].iter().map(|from| self.zero + from * self.width)
+    }
+}

@@ -1,0 +1,141 @@
+//! Records as they come: a fixed-lag smoother over one coordinate.
+//!
+//! The same splines, equations and priors as for a whole record, on a window of cells that moves along with it
+//! ([`window`](self)). The first rows are solved as a whole: they say how large the noise is, how smooth the sources are, and
+//! after which lag a longer wait would tell little more. Later parts of the record are asked again, on a thread of their own.
+
+mod evidence;
+mod grid;
+mod record;
+mod smoother;
+mod window;
+
+use thiserror::Error;
+
+use crate::problem::BindError;
+use crate::schema::Unit;
+use crate::solve::fault::Fault;
+
+pub use smoother::FixedLagSmoother;
+
+/// How a record is smoothed as it comes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LagSettings {
+    /// How long every answer waits for later rows, in the coordinate's declared unit. Nothing: as long as it takes until a
+    /// source's standard deviation is within a twentieth of what any wait would bring, by the first rows.
+    pub lag: Option<f64>,
+    /// Rows from which noise and smoothness are found before the first answer, ten at least.
+    pub first_rows: usize,
+}
+
+impl Default for LagSettings {
+    fn default() -> Self {
+        Self { lag: None, first_rows: 200 }
+    }
+}
+
+/// What is known at the place of a row.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Smoothed {
+    /// The place, in the coordinate's declared unit.
+    pub at: f64,
+    /// How much farther the record had come, in the same unit: the lag, or less at the end of a record.
+    pub lag: f64,
+    /// Values and standard deviations of all heads in their declared units, in the order of the scene.
+    pub heads: Vec<(f64, f64)>,
+    /// Root mean square of what observations are off, over the noise that differences of neighbouring rows show: about one
+    /// where equations and data agree. A running mean over a hundred values or so.
+    pub misfit: f64,
+}
+
+impl Smoothed {
+    /// Misfit up to which equations and data agree.
+    pub const MISFIT: f64 = 1.6;
+
+    /// True where equations and data agree.
+    pub fn is_sound(&self) -> bool {
+        self.misfit <= Self::MISFIT
+    }
+}
+
+/// A column that every row has a number for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct RowColumn {
+    /// Group that it belongs to.
+    pub group: &'static str,
+    /// Its name.
+    pub name: &'static str,
+    /// Its declared unit.
+    pub unit: Unit,
+    /// True if NaN may stand for what was not measured.
+    pub may_lack: bool,
+}
+
+/// Why a record cannot be smoothed, or a row not be taken.
+#[derive(Debug, Error)]
+pub enum LiveError {
+    /// The problem is not sensibly bound.
+    #[error(transparent)]
+    Bind(#[from] BindError),
+    /// What splines over one coordinate do not do.
+    #[error("a record is smoothed by splines over one coordinate, which do not do {0}; solve it as a whole")]
+    Scene(&'static str),
+    /// No measurements to wait for.
+    #[error("the scene observes nothing, so that there are no rows to wait for; solve it as a whole")]
+    NoRows,
+    /// Something that cannot be evaluated.
+    #[error(transparent)]
+    Fault(#[from] Fault),
+    /// More than the rows determine.
+    #[error(
+        "the first rows and the equations leave some of the unknowns open: give more conditions, more columns or more rows"
+    )]
+    Open,
+    /// A record that ends too soon.
+    #[error("{rows} rows are too few to tell noise from a source; give {least} at least")]
+    FewRows {
+        /// Rows there were.
+        rows: usize,
+        /// Rows that it takes.
+        least: usize,
+    },
+    /// A row with the wrong number of values.
+    #[error("the row has {found} values where {expected} are expected")]
+    Columns {
+        /// How many there were.
+        found: usize,
+        /// How many there should be.
+        expected: usize,
+    },
+    /// A value that is not finite where it must be.
+    #[error("`{name}` is {value}; the row is left out")]
+    NotFinite {
+        /// Which value.
+        name: &'static str,
+        /// What it is.
+        value: f64,
+    },
+    /// A row that is not behind all others.
+    #[error("{at} does not come after {last}: rows must come in order; the row is left out")]
+    Backwards {
+        /// Its place.
+        at: f64,
+        /// Place of the last row.
+        last: f64,
+    },
+    /// A lag that takes too many cells.
+    #[error("a lag of {lag} takes more than {most} rows; give a shorter one")]
+    Lag {
+        /// The lag.
+        lag: f64,
+        /// Rows that a lag may take.
+        most: usize,
+    },
+}
+
+impl LiveError {
+    /// True of a row that was left out: the next may be taken.
+    pub fn is_of_row(&self) -> bool {
+        matches!(self, Self::Columns { .. } | Self::NotFinite { .. } | Self::Backwards { .. })
+    }
+}

@@ -1,0 +1,104 @@
+//! Rows of a record, and stretches of them as problems of their own.
+
+use super::window::Event;
+use super::{LiveError, RowColumn};
+use crate::network::Inputs;
+use crate::problem::{Bound, Problem};
+use crate::schema::{Group, TermKind};
+
+/// Places of an equation that stand for a whole stretch.
+const ALONG: usize = 32;
+
+/// A row in the engine's units.
+#[derive(Clone, Debug)]
+pub(super) struct MeasuredRow {
+    pub(super) at: f64,
+    /// All columns of all measured groups, one after the other.
+    pub(super) values: Vec<f64>,
+}
+
+/// What of a scene's groups comes with rows, holds everywhere, or at a place.
+#[derive(Clone, Debug)]
+pub(super) struct Layout {
+    /// Groups with columns, and where their columns begin in a row.
+    measured: Vec<(usize, usize)>,
+    /// Groups of equations that hold everywhere.
+    pub(super) continuous: Vec<usize>,
+    pub(super) columns: Vec<RowColumn>,
+}
+
+impl Layout {
+    /// Groups without columns to which the problem has no points yet hold everywhere.
+    pub(super) fn of(problem: &Problem) -> Result<Self, LiveError> {
+        let schema = problem.scene().schema;
+        let (mut measured, mut continuous, mut columns) = (Vec::new(), Vec::new(), Vec::new());
+        for (at, group) in schema.groups.iter().enumerate().filter(|(_, group)| !group.is_beliefs()) {
+            if !group.columns.is_empty() {
+                measured.push((at, columns.len()));
+                columns.extend(group.columns.iter().map(|column| RowColumn {
+                    group: group.name,
+                    name: column.name,
+                    unit: column.unit,
+                    may_lack: group.may_lack(column.name),
+                }));
+            } else if problem.group(group.name).is_none() {
+                continuous.push(at);
+            }
+        }
+        let is_observed = |group: &Group| group.terms.iter().any(|term| term.kind == TermKind::Observation);
+        if !measured.iter().any(|(at, _)| is_observed(&schema.groups[*at])) {
+            return Err(LiveError::NoRows);
+        }
+        Ok(Self { measured, continuous, columns })
+    }
+
+    /// The events of a row: one for every group of which something was measured.
+    pub(super) fn events<'a>(&'a self, row: &'a MeasuredRow) -> impl Iterator<Item = Event> + 'a {
+        let ends = self.measured.iter().skip(1).map(|(_, first)| *first).chain([self.columns.len()]);
+        self.measured.iter().zip(ends).filter_map(|(&(group, first), end)| {
+            let columns = &row.values[first..end];
+            let is_there = columns.iter().any(|x| !x.is_nan());
+            is_there.then(|| Event { group, at: row.at, columns: columns.to_vec() })
+        })
+    }
+
+    /// The problem of the first rows, which are in declared units.
+    pub(super) fn bound(&self, problem: &Problem, rows: &[MeasuredRow]) -> Result<Bound, LiveError> {
+        let schema = problem.scene().schema;
+        let mut problem = problem.clone();
+        for &group in &self.continuous {
+            problem.set_group(schema.groups[group].name, along(rows).into(), Vec::new())?;
+        }
+        for &(group, _) in &self.measured {
+            let (places, columns) = self.table(group, rows);
+            problem.set_group(schema.groups[group].name, places.into(), columns)?;
+        }
+        Ok(problem.bound(Inputs::Automatic)?)
+    }
+
+    /// A later stretch of a record whose first rows are bound: rows are in the engine's units.
+    pub(super) fn stretch(&self, first: &Bound, rows: &[MeasuredRow]) -> Bound {
+        let (low, high) = (rows[0].at, rows[rows.len() - 1].at);
+        let mut bound = first.between(low, high);
+        for &group in &self.continuous {
+            bound.coordinates[group] = along(rows);
+        }
+        for &(group, _) in &self.measured {
+            (bound.coordinates[group], bound.columns[group]) = self.table(group, rows);
+        }
+        bound
+    }
+
+    /// Places and columns of a group, of the rows in which something of it was measured.
+    fn table(&self, group: usize, rows: &[MeasuredRow]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let own: Vec<Event> = rows.iter().flat_map(|row| self.events(row)).filter(|e| e.group == group).collect();
+        let count = own.first().map_or(0, |event| event.columns.len());
+        let column = |column: usize| own.iter().map(|event| event.columns[column]).collect();
+        (own.iter().map(|event| event.at).collect(), (0..count).map(column).collect())
+    }
+}
+
+fn along(rows: &[MeasuredRow]) -> Vec<f64> {
+    let (low, high) = (rows[0].at, rows[rows.len() - 1].at);
+    (0..ALONG).map(|i| low + (high - low) * i as f64 / (ALONG - 1) as f64).collect()
+}

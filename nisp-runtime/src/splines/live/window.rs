@@ -1,0 +1,343 @@
+//! The last cells of a record: a square-root information smoother whose unknowns are coefficients of splines.
+//!
+//! Cells have one width and move along the coordinate with the record. Rows of the last few cells, the tail, are made anew in
+//! every step about the present state; rows of older cells have been turned into a triangle once and for all. What that
+//! triangle says of cells that have left the window is in its later rows already (`triangle/lag.rs`).
+
+use std::collections::VecDeque;
+
+use super::evidence::Weights;
+use super::grid::Grid;
+use crate::kernel::GroupKernel;
+use crate::problem::Bound;
+use crate::schema::TermKind;
+use crate::solve::fault::Fault;
+use crate::splines::KINDS;
+use crate::splines::group::Group;
+use crate::splines::heads::Heads;
+use crate::splines::prior::Prior;
+use crate::splines::rows::Rows;
+use crate::splines::solver::RIDGE;
+use crate::splines::triangle::{Row, Triangle};
+
+/// Noise below this share of the data's spread is rounding.
+const ROUNDING: f64 = 1e-5;
+
+/// Something that is asked for at a place: what was measured there, a condition, or an equation.
+#[derive(Clone, Debug)]
+pub(super) struct Event {
+    pub(super) group: usize,
+    /// In the engine's units.
+    pub(super) at: f64,
+    /// Columns of the group there, NaN where nothing was measured.
+    pub(super) columns: Vec<f64>,
+}
+
+/// What a head is at a place, in the engine's units, where that is known.
+pub(super) type Known<'a> = &'a dyn Fn(usize, f64) -> Option<f64>;
+
+/// The last cells of a record, and what is known of the heads on them.
+pub(super) struct Window {
+    pub(super) bound: Bound,
+    weights: Weights,
+    grid: Grid,
+    heads: Heads,
+    /// Coefficients.
+    theta: Vec<f64>,
+    /// Where each coefficient was when it came into the window: the triangles are about these.
+    reference: Vec<f64>,
+    /// All rows of cells before the tail.
+    settled: Triangle,
+    /// These and the rows of the tail.
+    all: Triangle,
+    /// Groups of equations at the places of the tail, by the number of the group.
+    equations: Vec<(usize, Group)>,
+    /// Places of the equations, from the first cell of the window on.
+    places: Vec<f64>,
+    /// What is asked for in the tail, in the order of the coordinate.
+    events: VecDeque<Event>,
+    /// Whether a cell has left the tail since the last step.
+    has_left: bool,
+    kernels: Vec<GroupKernel<f64>>,
+    step: Vec<f64>,
+    scratch: Vec<f64>,
+}
+
+/// Which rows of a step are wanted: those of the cell that leaves the tail, and those that stay in it.
+struct Split {
+    leaving: Rows,
+    staying: Rows,
+}
+
+impl Split {
+    /// The rows that leave the window, or those that stay.
+    fn at(&mut self, leaves: bool) -> &mut Rows {
+        if leaves { &mut self.leaving } else { &mut self.staying }
+    }
+}
+
+impl Window {
+    /// Over a grid, before any row. `continuous` are the groups whose equations hold everywhere.
+    pub(super) fn new(bound: Bound, weights: Weights, grid: Grid, continuous: &[usize]) -> Self {
+        let schema = bound.problem.scene().schema;
+        let degrees = crate::splines::cells::degrees(schema).unwrap_or_default();
+        let scale = (0..degrees.len()).map(|head| bound.head_scale(head)).collect();
+        let heads = Heads::uniform(grid.cells, grid.width, &degrees, bound.scaling.offset.clone(), scale);
+        let highest = degrees.iter().copied().max().unwrap_or(0);
+        let unknowns = degrees.len() * (grid.cells + highest);
+        let places = grid.equations();
+        let kernels = bound.problem.scene().double();
+        let equation = |&at: &usize| (at, Group::new(&schema.groups[at], kernels[at], &heads, &places, &[]));
+        let equations = continuous.iter().map(equation).collect();
+        let triangle = Triangle::new(unknowns, heads.band, 0);
+        Self {
+            weights,
+            theta: vec![0.0; unknowns],
+            reference: vec![0.0; unknowns],
+            settled: triangle.clone(),
+            all: triangle,
+            equations,
+            places,
+            events: VecDeque::new(),
+            has_left: false,
+            kernels,
+            step: vec![0.0; unknowns],
+            scratch: Vec::new(),
+            bound,
+            grid,
+            heads,
+        }
+    }
+
+    pub(super) fn grid(&self) -> &Grid {
+        &self.grid
+    }
+
+    /// Takes over what the evidence of a later part of the record says.
+    pub(super) fn weigh(&mut self, weights: Weights) {
+        self.weights = weights;
+    }
+
+    pub(super) fn weights(&self) -> &Weights {
+        &self.weights
+    }
+
+    fn heads_count(&self) -> usize {
+        self.heads.bases.len()
+    }
+
+    /// The first unknown of a cell.
+    fn first(&self, cell: usize) -> usize {
+        self.heads_count() * cell
+    }
+
+    /// Sets all coefficients to what is known of the heads.
+    pub(super) fn guess(&mut self, known: Known<'_>) {
+        for head in 0..self.heads_count() {
+            for function in 0..self.heads.bases[head].len() {
+                self.guess_one(head, function, known);
+            }
+        }
+        self.reference.copy_from_slice(&self.theta);
+    }
+
+    /// Sets a coefficient to what a head is at the spline's centre, or where its predecessors point to.
+    fn guess_one(&mut self, head: usize, function: usize, known: Known<'_>) {
+        let at = self.grid.left() + self.heads.bases[head].centre(function);
+        let (number, count) = (self.heads.numbers(head, function)[0], self.heads_count());
+        self.theta[number] = match known(head, at) {
+            Some(value) => (value - self.heads.offset[head]) / self.heads.scale[head],
+            None => 2.0 * self.theta[number - count] - self.theta[number - 2 * count],
+        };
+    }
+
+    /// Puts in what is asked for at a place of the tail. Places come in order.
+    pub(super) fn ask(&mut self, event: Event) {
+        self.events.push_back(event);
+    }
+
+    /// Adds a cell at the end: the first of all is forgotten, and the first of the tail leaves it with the next step, which must
+    /// come before the next cell. New coefficients are guessed.
+    pub(super) fn advance(&mut self, known: Known<'_>) {
+        let count = self.heads_count();
+        self.grid.advance();
+        for part in [&mut self.theta, &mut self.reference] {
+            part.copy_within(count.., 0);
+        }
+        self.settled.shift(count);
+        self.all.shift(count);
+        let last = self.theta.len() - count;
+        for at in last..self.theta.len() {
+            self.theta[at] = 0.0;
+            self.reference[at] = 0.0;
+        }
+        for head in 0..count {
+            let function = self.heads.bases[head].len() - 1;
+            let number = self.heads.numbers(head, function)[0];
+            self.guess_one(head, function, known);
+            self.reference[number] = self.theta[number];
+        }
+        self.has_left = true;
+    }
+
+    /// Turns the tail's rows in about the present state, and solves for all unknowns from a cell on. Returns the largest
+    /// change of a coefficient in the tail, in units of the heads' natural sizes.
+    pub(super) fn solve(&mut self, from: usize) -> Result<f64, Fault> {
+        let first = self.first(self.grid.tail_start());
+        let Split { mut leaving, mut staying } = self.rows()?;
+        if std::mem::take(&mut self.has_left) {
+            leaving.sort();
+            self.settled.add_all(leaving.walk());
+            let grid = &self.grid;
+            while self.events.front().is_some_and(|event| grid.cell(event.at) < grid.tail_start()) {
+                self.events.pop_front();
+            }
+        }
+        staying.sort();
+        // Rows of the cell that left the tail last reach down to its first unknown.
+        self.all.copy_from(&self.settled, first.saturating_sub(self.heads_count()));
+        self.all.add_all(staying.walk());
+        let from = self.first(from);
+        if !self.all.solve_from(from, &mut self.step) {
+            return Err(Fault::state("window"));
+        }
+        let mut change = 0.0_f64;
+        for at in from..self.theta.len() {
+            let next = self.reference[at] + self.step[at];
+            if at >= first {
+                change = change.max((next - self.theta[at]).abs());
+            }
+            self.theta[at] = next;
+        }
+        Ok(change)
+    }
+
+    /// Rows of the tail, and of the cell before it, about the present state.
+    fn rows(&mut self) -> Result<Split, Fault> {
+        let mut split = Split { leaving: Rows::new(0), staying: Rows::new(0) };
+        let left = self.grid.left();
+        let mut equations = std::mem::take(&mut self.equations);
+        for (at, group) in &mut equations {
+            group.begin_at(&self.places, left);
+            let mut places = (0..self.places.len()).filter_map(|p| Some((p, self.grid.cell_of_equation(p)?)));
+            self.add_group(*at, group, &mut places, &|_, _| true, &mut split)?;
+        }
+        self.equations = equations;
+        let schema = self.bound.problem.scene().schema;
+        for (at, schema) in schema.groups.iter().enumerate() {
+            let own = || self.events.iter().filter(|event| event.group == at);
+            if own().next().is_none() {
+                continue;
+            }
+            let places: Vec<f64> = own().map(|event| event.at - left).collect();
+            let filled = |x: f64| if x.is_nan() { 0.0 } else { x };
+            let column = |column: usize| own().map(|event| filled(event.columns[column])).collect();
+            let columns: Vec<Vec<f64>> = (0..schema.columns.len()).map(column).collect();
+            let mut group = Group::new(schema, self.kernels[at], &self.heads, &places, &columns);
+            group.begin_at(&places, left);
+            let events: Vec<&Event> = own().collect();
+            let is_there = |term: &crate::schema::Term, p: usize| {
+                term.columns.iter().all(|&column| !events[p].columns[column].is_nan())
+            };
+            let cells: Vec<usize> = events.iter().map(|event| self.grid.cell(event.at)).collect();
+            let mut all = cells.into_iter().enumerate();
+            self.add_group(at, &group, &mut all, &is_there, &mut split)?;
+        }
+        self.add_priors(&mut split);
+        Ok(split)
+    }
+
+    /// Adds the rows of a group at those of its places that are in the tail or the cell before it.
+    fn add_group(
+        &self,
+        at: usize,
+        group: &Group,
+        places: &mut dyn Iterator<Item = (usize, usize)>,
+        is_there: &dyn Fn(&crate::schema::Term, usize) -> bool,
+        split: &mut Split,
+    ) -> Result<(), Fault> {
+        let found = group.evaluate(&self.heads, &self.theta, &self.weights.scalars, Some(0));
+        let tail = self.grid.tail_start();
+        for (p, cell) in places.filter(|(_, cell)| cell + 1 >= tail) {
+            for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| is_there(term, p)) {
+                let loss = self.bound.losses[at][number];
+                for row in term.first..term.first + term.rows {
+                    let (misfit, sigma) = (found.row(row, p), self.weights.sigma[at][row]);
+                    if !misfit.is_finite() {
+                        return Err(Fault::residual(format!("{}.{}", group.schema.name, term.name), Some(p)));
+                    }
+                    let factor = loss.weight(misfit / sigma).sqrt() / sigma;
+                    let mut bundle = group.bundle(&self.heads, group.cell(p), 0);
+                    group.add_row(&self.heads, (&found, row, p), &[], factor, &mut bundle);
+                    let out = split.at(cell < tail);
+                    bundle.iter().for_each(|row| out.push(self.about_reference(row), 0));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// A row about the present state as one about the reference.
+    fn about_reference<'r>(&self, row: Row<'r>) -> Row<'r> {
+        let unknowns = row.first..row.first + row.slopes.len();
+        let apart = self.reference[unknowns.clone()].iter().zip(&self.theta[unknowns]);
+        let moved: f64 = row.slopes.iter().zip(apart).map(|(slope, (reference, own))| slope * (reference - own)).sum();
+        Row { value: row.value + moved, ..row }
+    }
+
+    /// Rows that keep sources smooth and small, and those that keep coefficients bounded that nothing else speaks of.
+    fn add_priors(&self, split: &mut Split) {
+        let tail = self.grid.tail_start();
+        let mut slopes = Vec::new();
+        for (head, sizes) in self.weights.sizes.iter().enumerate() {
+            let Some((roughness, amplitude)) = *sizes else { continue };
+            let prior = Prior::new(&self.heads.bases[head], KINDS[self.weights.kind]);
+            for (first, factors) in prior.smooth(roughness).filter(|(first, _)| *first >= tail - 1) {
+                let numbers = &self.heads.numbers(head, first)[..prior.width()];
+                let mut value = 0.0;
+                slopes.clear();
+                slopes.resize(numbers[prior.width() - 1] + 1 - numbers[0], 0.0);
+                for (&number, factor) in numbers.iter().zip(&factors) {
+                    slopes[number - numbers[0]] = *factor;
+                    value += factor * self.reference[number];
+                }
+                split.at(first < tail).push(Row { first: numbers[0], slopes: &slopes, shared: &[], value }, 0);
+            }
+            let small = prior.small(amplitude).enumerate().skip(tail - 1);
+            for (first, factor) in small {
+                let number = self.heads.numbers(head, first)[0];
+                let value = factor * self.reference[number];
+                split.at(first < tail).push(Row { first: number, slopes: &[factor], shared: &[], value }, 0);
+            }
+        }
+        let unknowns = self.first(tail - 1)..self.theta.len();
+        for number in unknowns {
+            let value = RIDGE * self.reference[number];
+            split.at(number < self.first(tail)).push(Row { first: number, slopes: &[RIDGE], shared: &[], value }, 0);
+        }
+    }
+
+    /// A head at a place of the window in the engine's units, and its standard deviation.
+    pub(super) fn read(&mut self, head: usize, at: f64) -> (f64, f64) {
+        let local = at - self.grid.left();
+        let value = self.heads.derivative(head, (self.heads.cell(local), local), 0, &self.theta);
+        let (first, slopes) = self.heads.value_row(head, local);
+        (value, self.all.deviation(first, &slopes, &mut self.scratch))
+    }
+
+    /// Gives how far each observation of an event is off, over the noise of neighbours.
+    pub(super) fn misfits(&self, event: &Event, take: &mut dyn FnMut(f64)) {
+        let schema = &self.bound.problem.scene().schema.groups[event.group];
+        let columns: Vec<Vec<f64>> = event.columns.iter().map(|&x| vec![x]).collect();
+        let place = [event.at - self.grid.left()];
+        let mut group = Group::new(schema, self.kernels[event.group], &self.heads, &place, &columns);
+        group.begin_at(&place, self.grid.left());
+        let found = group.evaluate(&self.heads, &self.theta, &self.weights.scalars, None);
+        for (number, term) in schema.terms.iter().enumerate().filter(|(_, term)| term.kind == TermKind::Observation) {
+            let Some(noise) = self.weights.noise.of(event.group, number) else { continue };
+            let rows = (term.first..term.first + term.rows).map(|row| found.row(row, 0));
+            let noise = noise.deviation.max(ROUNDING * noise.spread);
+            rows.filter(|misfit| misfit.is_finite()).for_each(|misfit| take(misfit / noise));
+        }
+    }
+}

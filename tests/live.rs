@@ -1,0 +1,198 @@
+//! A record smoothed as it comes: beside the same record solved as a whole, beside closed forms, and where rows are spoiled.
+
+use nisp::solve::driver::Flow;
+use nisp::{Carrier, FixedLagSmoother, LagSettings, LiveError, Problem, SceneRef, Settings, Smoothed, recover, scene};
+
+nisp::pde! {
+    /// A damped oscillator under an unknown drive.
+    mod driven {
+        units: off;
+        coordinates: t;
+        fields: y;
+        sources: u;
+        on motion { balance: d(y, t, 2) + 0.4 * d(y, t) + 4 * y == u; }
+        on samples { observe y; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A spring that hardens, under an unknown drive.
+    mod hard {
+        units: off;
+        coordinates: t;
+        fields: y;
+        sources: u;
+        on motion { balance: d(y, t, 2) + 0.4 * d(y, t) + 4 * y + 3 * y^3 == u; }
+        on samples { observe y; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// An oscillator that is left to itself.
+    mod free {
+        units: off;
+        coordinates: t;
+        fields: y;
+        parameters: k = 4;
+        on motion { balance: d(y, t, 2) + 0.1 * d(y, t) + k * y == 0; }
+        on samples { observe y; }
+        scene ring { }
+    }
+}
+
+/// Numbers of deviation one, the same every time: sums of twelve uniform ones (a linear congruential generator, Knuth).
+fn noise(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    let mut uniform = move || {
+        state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+}
+
+/// The motion `sin(1.3 t) + 0.5 cos(2.9 t)`, and the drive that it takes.
+fn motion(t: f64) -> f64 {
+    (1.3 * t).sin() + 0.5 * (2.9 * t).cos()
+}
+
+fn drive(t: f64, cubic: f64) -> f64 {
+    let (rate, bend) =
+        (1.3 * (1.3 * t).cos() - 1.45 * (2.9 * t).sin(), -1.69 * (1.3 * t).sin() - 4.205 * (2.9 * t).cos());
+    bend + 0.4 * rate + 4.0 * motion(t) + cubic * motion(t).powi(3)
+}
+
+fn record(rows: usize, step: f64, sigma: f64) -> Vec<(f64, f64)> {
+    let mut noise = noise(7);
+    (0..rows).map(|i| i as f64 * step).map(|t| (t, motion(t) + sigma * noise())).collect()
+}
+
+fn smoother(scene: SceneRef, settings: LagSettings) -> FixedLagSmoother {
+    FixedLagSmoother::new(Problem::new(scene), settings).unwrap()
+}
+
+fn smoothed(smoother: &mut FixedLagSmoother, rows: &[(f64, f64)]) -> Vec<Smoothed> {
+    let mut found: Vec<Smoothed> = Vec::new();
+    rows.iter().for_each(|(t, y)| found.extend(smoother.push(*t, &[*y]).unwrap()));
+    found.extend(smoother.finish().unwrap());
+    found
+}
+
+#[test]
+fn a_linear_record_is_smoothed_as_it_is_solved() {
+    let rows = record(200, 0.1, 0.02);
+    let mut smoother = smoother(scene::<driven::recover::Scene>(), LagSettings { lag: Some(4.0), first_rows: 200 });
+    let found = smoothed(&mut smoother, &rows);
+    assert_eq!(found.len(), rows.len());
+    let mut problem = Problem::new(scene::<driven::recover::Scene>());
+    let times: Vec<f64> = rows.iter().map(|row| row.0).collect();
+    problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", times.clone().into(), vec![rows.iter().map(|row| row.1).collect()]).unwrap();
+    let settings = Settings { carrier: Carrier::Splines, ..Settings::default() };
+    let mut whole = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
+    let whole = whole.evaluate_with_errors(&times);
+    for (at, found) in found.iter().enumerate() {
+        assert!(found.lag >= 4.0 - 1e-9 || at >= 160, "row {at} waited for {}", found.lag);
+        for (head, (value, deviation)) in found.heads.iter().enumerate() {
+            let (exact, bar) = (whole[head].values[at], whole[head].deviations.as_ref().unwrap()[at]);
+            // Cells are half as wide in the whole, and its bars count other orders of smoothness that may be right too.
+            assert!((value - exact).abs() < 0.25 * bar, "row {at}: {value} beside {exact} +- {bar}");
+            assert!((0.7..1.02).contains(&(deviation / bar)), "row {at}: {deviation} beside {bar}");
+        }
+    }
+}
+
+#[test]
+fn a_long_record_is_right_by_its_closed_form() {
+    for (scene, cubic) in [(scene::<driven::recover::Scene>(), 0.0), (scene::<hard::recover::Scene>(), 3.0)] {
+        let rows = record(3000, 0.05, 0.01);
+        let mut smoother = smoother(scene, LagSettings::default());
+        let found = smoothed(&mut smoother, &rows);
+        assert_eq!(found.len(), rows.len());
+        let lag = smoother.lag().unwrap();
+        let (mut square, mut size, mut inside, mut count) = (0.0, 0.0, 0, 0);
+        for found in &found[100..2900] {
+            let (value, deviation) = found.heads[1];
+            let error = value - drive(found.at, cubic);
+            square += error * error;
+            size += drive(found.at, cubic).powi(2);
+            inside += usize::from(error.abs() < 2.0 * deviation);
+            count += 1;
+        }
+        let error = (square / size).sqrt();
+        assert!(error < 0.1, "{error} of the drive's size");
+        assert!(inside as f64 > 0.93 * count as f64, "{inside} of {count} within two deviations");
+        assert!(found.iter().all(Smoothed::is_sound));
+        assert!(lag < 2.0, "a lag of {lag} is longer than a period of the drive");
+    }
+}
+
+/// A wrong stiffness has nothing to hide behind where the drive is known to be zero: there is no source then.
+#[test]
+fn a_wrong_equation_is_told_from_a_right_one() {
+    let free = |t: f64| (-0.05 * t).exp() * (2.0 * t).sin();
+    let mut noise = noise(3);
+    let rows: Vec<(f64, f64)> = (0..600).map(|i| 0.05 * f64::from(i)).map(|t| (t, free(t) + 0.01 * noise())).collect();
+    for (stiffness, is_right) in [(4.0025, true), (5.0, false)] {
+        let mut problem = Problem::new(scene::<free::ring::Scene>());
+        problem.set_parameter("k", stiffness).unwrap();
+        let found = smoothed(&mut FixedLagSmoother::new(problem, LagSettings::default()).unwrap(), &rows);
+        let sound = found[200..].iter().filter(|found| found.is_sound()).count();
+        assert_eq!(sound > 390, is_right, "{sound} of 400 rows are sound for k = {stiffness}");
+    }
+}
+
+#[test]
+fn rows_that_cannot_be_taken_are_left_out() {
+    let rows = record(600, 0.1, 0.02);
+    let settings = LagSettings { lag: Some(1.0), ..LagSettings::default() };
+    let plain = smoothed(&mut smoother(scene::<driven::recover::Scene>(), settings), &rows);
+    let mut spoiled = smoother(scene::<driven::recover::Scene>(), settings);
+    let mut found = Vec::new();
+    for (at, (t, y)) in rows.iter().enumerate() {
+        found.extend(spoiled.push(*t, &[*y]).unwrap());
+        if at % 50 == 49 {
+            assert!(matches!(spoiled.push(*t - 0.05, &[*y]), Err(LiveError::Backwards { .. })));
+            assert!(matches!(spoiled.push(*t, &[*y]), Err(LiveError::Backwards { .. })));
+            assert!(matches!(spoiled.push(f64::NAN, &[*y]), Err(LiveError::NotFinite { .. })));
+            assert!(matches!(spoiled.push(*t + 0.01, &[f64::INFINITY]), Err(LiveError::NotFinite { .. })));
+            assert!(matches!(spoiled.push(*t + 0.01, &[]), Err(LiveError::Columns { .. })));
+        }
+    }
+    found.extend(spoiled.finish().unwrap());
+    assert_eq!(plain, found);
+}
+
+/// Cells without a measurement, rows in bursts, and a gap after which everything begins anew.
+#[test]
+fn gaps_and_bursts_are_taken_as_they_are() {
+    let mut noise = noise(11);
+    let place = |i: u32| match i {
+        // Bursts of four rows.
+        0..600 => 0.2 * f64::from(i / 4) + 0.02 * f64::from(i % 4),
+        // A gap of a hundred.
+        _ => 130.0 + 0.05 * f64::from(i - 600),
+    };
+    let mut smoother = smoother(scene::<driven::recover::Scene>(), LagSettings::default());
+    let mut found = Vec::new();
+    for i in 0..1200 {
+        let t = place(i);
+        let is_lacking = i % 7 == 3 || (400..416).contains(&i);
+        let y = if is_lacking { f64::NAN } else { motion(t) + 0.01 * noise() };
+        found.extend(smoother.push(t, &[y]).unwrap());
+    }
+    found.extend(smoother.finish().unwrap());
+    assert_eq!(found.len(), 1200);
+    assert!(found.iter().enumerate().all(|(i, found)| (found.at - place(i as u32)).abs() < 1e-9));
+    let inside = |found: &&Smoothed| (found.heads[1].0 - drive(found.at, 0.0)).abs() < 2.0 * found.heads[1].1;
+    let within = found.iter().filter(inside).count();
+    assert!(within > 1100, "{within} of 1200 within two deviations");
+}
+
+#[test]
+fn few_rows_are_said_to_be_few() {
+    let mut smoother = smoother(scene::<driven::recover::Scene>(), LagSettings::default());
+    record(5, 0.1, 0.02).iter().for_each(|(t, y)| assert!(smoother.push(*t, &[*y]).unwrap().is_empty()));
+    assert!(matches!(smoother.finish(), Err(LiveError::FewRows { rows: 5, .. })));
+}
