@@ -6,11 +6,13 @@
 pub mod language {}
 
 pub use nisp_macros::pde;
+pub use nisp_runtime::carrier::Estimate;
+pub use nisp_runtime::engine::Resampling;
 pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene, scene_in_both_precisions};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
-    Carrier, Checkpoint, CheckpointError, Estimate, LearnedValue, Optimizer, RecoverError, Report, Resampling,
-    Settings, Solution, TermReport, Width, recover, resume,
+    Carrier, Checkpoint, CheckpointError, LearnedValue, Optimizer, RecoverError, Report, Settings, Solution,
+    TermReport, Width, recover, resume,
 };
 pub use nisp_runtime::saved::{OpenAnswer, SavedAnswer, SavedError, SavedParameter};
 pub use nisp_runtime::verdict::{Check, Verdict};
@@ -21,10 +23,11 @@ pub use nisp_runtime::{engine, local, network, peak, real, schema, simd, solve};
 pub mod __private {
     pub use nisp_runtime::compiled::{CompiledLayers, CompiledPrograms};
     pub use nisp_runtime::functions;
-    pub use nisp_runtime::kernel::{GroupKernel, Residuals, Rules};
+    pub use nisp_runtime::kernel::GroupKernel;
     pub use nisp_runtime::problem::component;
     pub use nisp_runtime::real::Real;
-    pub use nisp_runtime::residual::{Lane, Sink};
+    pub use nisp_runtime::residual::{Lane, Residuals, Sink};
+    pub use nisp_runtime::rules::Rules;
     pub use nisp_runtime::schema;
     pub use nisp_runtime::simd::Simd;
     pub use nisp_runtime::values::{Precompiled, Values};

@@ -182,6 +182,21 @@ fn error_bars_cover_the_truth_and_no_more() {
     assert!(covered > 0.8, "{covered} of the pressures");
 }
 
+/// A pressure of the contact takes over what a gas pressure a fifth too high leaves, and the surface fits.
+#[test]
+fn a_wrong_pressure_is_named_and_a_right_one_is_not_doubted() {
+    for (given, passes) in [(P, true), (1.2 * P, false)] {
+        let mut problem = Problem::new(scene::<drum::pressed::Scene>());
+        problem.set_parameter("T", T).unwrap();
+        bind(&mut problem, 12_000.0, 12.0, 0.3);
+        problem.set_parameter("p", given).unwrap();
+        let solution = solve(&problem, Some(Patches { level: P, edges: 0.15, area: 0.75 }), 2);
+        let first = &solution.verdict.checks[0];
+        assert_eq!((first.check, first.passed), ("given", passes), "{first:?}");
+        assert!(passes || first.message.contains("`p` about"), "{first:?}");
+    }
+}
+
 #[test]
 fn the_answer_does_not_depend_on_the_threads() {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());

@@ -1,7 +1,7 @@
 //! Five operators: as `pde!` scenes, and as scenes of the dense jet that read the same derivatives.
 
-use nisp::__private::{CompiledLayers, CompiledPrograms, GroupKernel, Lane, Real, Residuals, Simd, Sink, schema};
-use nisp::{Problem, Scene, scene};
+use nisp::__private::{CompiledLayers, CompiledPrograms, GroupKernel, Lane, Residuals, Simd, Sink, schema};
+use nisp::{Precision, Problem, Scene, scene};
 
 use crate::dense::{Dense, channel};
 use crate::support::{group, scatter};
@@ -121,7 +121,7 @@ macro_rules! dense_scene {
                 }],
                 ..SIMPLEST
             };
-            fn kernels<E: Real>() -> Vec<GroupKernel<E>> {
+            fn kernels<E: Precision>() -> Vec<GroupKernel<E>> {
                 type Rules = Dense<$channels, { $order + 2 }, $coordinates>;
                 vec![GroupKernel {
                     layers: CompiledLayers::<Rules, Rules, $channels, { $order + 2 }, $coordinates>::erased(),

@@ -2,8 +2,8 @@
 
 use nisp::scene_in_both_precisions as scene;
 
-use crate::catalogue::{Binding, Entry};
-use crate::contact;
+use crate::bodies;
+use crate::entry::{Binding, Entry};
 
 /// The bubble on the command line.
 pub(crate) fn entry() -> Entry {
@@ -19,7 +19,7 @@ pub(crate) fn entry() -> Entry {
             scene::<bubble::calibrate_rubber::Scene>(),
         ],
         data: "data/membrane_large/large_sphere_d35.toml",
-        binding: Binding::Cloud(contact::prepare_bubble),
+        binding: Binding::Cloud(bodies::prepare_bubble),
     }
 }
 

@@ -2,8 +2,8 @@
 
 use nisp::scene_in_both_precisions as scene;
 
-use crate::catalogue::{Binding, Entry};
-use crate::contact;
+use crate::bodies;
+use crate::entry::{Binding, Entry};
 
 /// The membrane on the command line.
 pub(crate) fn entry() -> Entry {
@@ -20,7 +20,7 @@ pub(crate) fn entry() -> Entry {
             scene::<membrane::identify_unknown_pressure::Scene>(),
         ],
         data: "data/membrane/y_shape_1.toml",
-        binding: Binding::Cloud(contact::prepare_membrane),
+        binding: Binding::Cloud(bodies::prepare_membrane),
     }
 }
 

@@ -2,9 +2,9 @@
 
 use nisp::scene_in_both_precisions as scene;
 
-use crate::catalogue::{Binding, Entry};
+use crate::entry::{Binding, Entry};
+use crate::entry::{Given, Series};
 use crate::rivals::{Pendulum, System};
-use crate::series::{Given, Series};
 
 /// The pendulum on the command line.
 pub(crate) fn entry() -> Entry {

@@ -9,8 +9,10 @@ use nisp_data::input::read_text;
 use serde::Deserialize;
 use std::path::Path;
 
-use crate::catalogue::{Binding, Entry, Prepared, Request};
+use crate::entry::{Binding, Entry};
 use crate::error::PrepareError;
+use crate::prepared::Prepared;
+use crate::request::Request;
 use crate::truth::{Headers, Truth};
 
 /// The plate on the command line.
@@ -44,7 +46,7 @@ const POINTS: (usize, usize) = (400, 80);
 fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
     const EXAMPLE: &str = include_str!("../../data/plate/plate.toml");
     const TRUTH: &[u8] = include_bytes!("../../data/plate/plate_points.csv");
-    let file = request.file(entry)?;
+    let file = request.file(entry.name)?;
     let path = file.map_or_else(|| entry.data.into(), Path::to_path_buf);
     let fault = |reason: String| PrepareError::File { path: path.clone(), reason };
     let text = match file {

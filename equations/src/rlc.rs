@@ -4,9 +4,9 @@
 
 use nisp::scene_in_both_precisions as scene;
 
-use crate::catalogue::{Binding, Entry};
+use crate::entry::{Binding, Entry};
+use crate::entry::{Given, Series};
 use crate::rivals::{Rlc, System};
-use crate::series::{Given, Series};
 
 /// The circuit on the command line.
 pub(crate) fn entry() -> Entry {

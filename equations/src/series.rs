@@ -4,38 +4,13 @@ use nisp::schema::{Origin, Scene};
 use nisp_data::Table;
 use std::path::Path;
 
-use crate::catalogue::{Entry, Prepared, Request};
 use crate::copies::noisy_copy;
+use crate::entry::{Entry, Given, Series};
 use crate::error::PrepareError;
-use crate::rivals::System;
+use crate::prepared::Prepared;
+use crate::request::Request;
 use crate::tables::{self, Tables};
 use crate::truth::{Headers, Truth};
-
-/// What is given besides measurements.
-#[derive(Clone, Copy)]
-pub(crate) struct Given<'a> {
-    /// First time of the measurements.
-    pub(crate) start: f64,
-    /// A parameter's value in its declared unit.
-    pub(crate) parameter: &'a dyn Fn(&str) -> f64,
-}
-
-/// A scene over time: its example, its truths and its rivals.
-#[derive(Clone, Copy, Debug)]
-pub struct Series {
-    /// The example's measurements.
-    pub(crate) data: &'static [u8],
-    /// The example's truth.
-    pub(crate) truth: &'static [u8],
-    /// Columns of the example: name and header.
-    pub columns: &'static [(&'static str, &'static str)],
-    /// Paths of truths in the repository, from which fresh noisy copies can be made.
-    pub truths: &'static [&'static str],
-    /// Rows of a truth for each measurement.
-    pub every: usize,
-    /// The system that classical rivals solve for a scene of this name, where they know how.
-    pub(crate) rival: fn(&str, Given<'_>) -> Option<Box<dyn System>>,
-}
 
 impl Series {
     /// The repository's truths as if measured anew, `count` times from the first on and then from the beginning: number k
@@ -67,7 +42,7 @@ impl Series {
     /// # Errors
     /// A table, a column, a scene or a parameter that does not fit.
     pub fn prepare(&self, entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
-        let file = request.file(entry)?;
+        let file = request.file(entry.name)?;
         let example = file.is_none();
         let table = match file {
             Some(path) => Table::read(path)?,

@@ -2,8 +2,8 @@
 
 use nisp::scene_in_both_precisions as scene;
 
-use crate::catalogue::{Binding, Entry};
-use crate::contact;
+use crate::bodies;
+use crate::entry::{Binding, Entry};
 
 /// The sponge on the command line.
 pub(crate) fn entry() -> Entry {
@@ -16,7 +16,7 @@ pub(crate) fn entry() -> Entry {
             scene::<sponge::displacement::Scene>(),
         ],
         data: "data/sponge/plane_1.toml",
-        binding: Binding::Cloud(contact::prepare_sponge),
+        binding: Binding::Cloud(bodies::prepare_sponge),
     }
 }
 

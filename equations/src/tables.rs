@@ -7,9 +7,11 @@ use nisp::{Points, Problem, SceneRef};
 use nisp_data::Table;
 use std::path::Path;
 
-use crate::catalogue::{Assumed, Entry, Measured, Prepared, Request, Wanted, hint};
+use crate::entry::{Entry, hint};
 use crate::error::PrepareError;
 use crate::places::{Body, Placed};
+use crate::prepared::{Assumed, Measured, Prepared};
+use crate::request::{Request, Wanted};
 use crate::truth::{Headers, Truth};
 
 /// Places over one coordinate at which the equations are asked to hold.

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use nisp_data::nearest::intersection_over_union;
 
-use crate::catalogue::Prepared;
+use crate::prepared::Prepared;
 use crate::rivals::{mean_abs_error, zero_error};
 
 /// How well, and how fast, a simpler way does.

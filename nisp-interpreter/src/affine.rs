@@ -1,8 +1,7 @@
 //! Affine layers and fixed features of the coordinates, interpreted.
 
 use nisp_compiler::program::Slot;
-use nisp_runtime::features::{Features, derivatives};
-use nisp_runtime::layer::{Affine, AffineAdjoint};
+use nisp_runtime::layer::{Affine, AffineAdjoint, Features, derivatives};
 use nisp_runtime::real::Real;
 use nisp_runtime::simd::{Isa, Kernel, Simd};
 

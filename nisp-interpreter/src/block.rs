@@ -4,7 +4,7 @@ use std::marker::PhantomData;
 
 use nisp_compiler::program::Slot;
 use nisp_runtime::real::Real;
-use nisp_runtime::simd::{Isa, Kernel, Simd, dispatch};
+use nisp_runtime::simd::{Element, Isa, Kernel, Simd, dispatch};
 
 use crate::scratch::Scratch;
 use crate::tape::{Code, Step, Tape};
@@ -99,7 +99,7 @@ struct Steps<'a, E> {
     vectors: usize,
 }
 
-impl<E: Real> Kernel<E> for Steps<'_, E> {
+impl<E: Element> Kernel<E> for Steps<'_, E> {
     type Output = ();
 
     #[inline(always)]

@@ -1,16 +1,15 @@
 //! The layers of a group behind the engine's seam: each method enters its kernel.
 
-use nisp_runtime::features::Features;
-use nisp_runtime::kernel::Layers;
-use nisp_runtime::layer::{Affine, AffineAdjoint, Gate, GateAdjoint, Gated, GatedAdjoint, Layer, LayerAdjoint};
-use nisp_runtime::real::Real;
-use nisp_runtime::simd::{Isa, dispatch};
+use nisp_runtime::layer::{
+    Affine, AffineAdjoint, Features, Gate, GateAdjoint, Gated, GatedAdjoint, Layer, LayerAdjoint, Layers,
+};
+use nisp_runtime::simd::{Element, Isa, dispatch};
 
 use crate::affine::{AffineAdjointKernel, AffineKernel, FeaturesKernel};
 use crate::hidden::{GateAdjointKernel, GateKernel, LayerAdjointKernel, LayerKernel};
 use crate::rules::InterpretedLayers;
 
-impl<E: Real> Layers<E> for InterpretedLayers {
+impl<E: Element> Layers<E> for InterpretedLayers {
     fn channels(&self) -> usize {
         self.channels
     }

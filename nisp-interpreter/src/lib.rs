@@ -37,8 +37,7 @@ mod text;
 use nisp_compiler::model::{self, Model};
 use nisp_compiler::plan::{GroupPlan, Plan, ScenePlan};
 use nisp_compiler::{Failure, analyse};
-use nisp_runtime::kernel::{GroupKernel, Kernels, SceneRef};
-use nisp_runtime::real::Real;
+use nisp_runtime::kernel::{GroupKernel, Kernels, Precision, SceneRef};
 use thiserror::Error;
 
 pub use answer::{OpenError, ask, open};
@@ -125,17 +124,17 @@ impl Interpreted {
         }
     }
 
-    fn kernel<E: Real>(&'static self) -> GroupKernel<E> {
+    fn kernel<E: Precision>(&'static self) -> GroupKernel<E> {
         let layers = match &self.layers {
             Ok(layers) => layers,
-            Err(coordinates) => nisp_runtime::values::precompiled(*coordinates),
+            Err(coordinates) => E::values(*coordinates),
         };
         GroupKernel { layers, programs: &self.programs }
     }
 }
 
 impl Interpretation {
-    fn kernels<E: Real>(&self) -> Vec<GroupKernel<E>> {
+    fn kernels<E: Precision>(&self) -> Vec<GroupKernel<E>> {
         self.0.iter().map(Interpreted::kernel).collect()
     }
 }

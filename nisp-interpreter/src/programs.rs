@@ -2,10 +2,8 @@
 
 use nisp_compiler::plan::{GroupPlan, RowKind};
 use nisp_compiler::program::{Program, Slot};
-use nisp_runtime::kernel::Programs;
-use nisp_runtime::real::Real;
-use nisp_runtime::residual::Points;
-use nisp_runtime::simd::{Isa, Kernel, Simd, dispatch};
+use nisp_runtime::residual::{Points, Programs};
+use nisp_runtime::simd::{Element, Isa, Kernel, Simd, dispatch};
 
 use crate::block::{Run, load, vectors};
 use crate::tape::Tape;
@@ -42,7 +40,7 @@ impl InterpretedPrograms {
     }
 }
 
-impl<E: Real> Programs<E> for InterpretedPrograms {
+impl<E: Element> Programs<E> for InterpretedPrograms {
     fn residual(&self, isa: Isa, points: Points<'_, E>, rows: &mut [E]) {
         dispatch(isa, OverPoints { isa, tape: &self.residual, points, out: rows });
     }
@@ -92,7 +90,7 @@ struct OverPoints<'a, E> {
     out: &'a mut [E],
 }
 
-impl<E: Real> Kernel<E> for OverPoints<'_, E> {
+impl<E: Element> Kernel<E> for OverPoints<'_, E> {
     type Output = ();
 
     #[inline(always)]

@@ -9,12 +9,11 @@ use faer::{Accum, MatMut, MatRef, Par};
 use nisp_runtime::aligned::AlignedVec;
 use nisp_runtime::gemm::{Left, Packed, Right, Shape, Write, gemm};
 use nisp_runtime::peak::fma_peak;
-use nisp_runtime::real::Real;
-use nisp_runtime::simd::Isa;
+use nisp_runtime::simd::{Element, Isa};
 use std::time::{Duration, Instant};
 
 /// The other libraries' products, which are not generic over the element type in the same way.
-trait Rival: Real {
+trait Rival: Element {
     /// `C = A B` or, if `add`, `C += A B` by faer.
     fn faer(c: MatMut<Self>, add: bool, a: MatRef<Self>, b: MatRef<Self>);
     /// The same by matrixmultiply.

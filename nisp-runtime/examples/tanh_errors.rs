@@ -2,8 +2,7 @@
 //!
 //! `cargo run --release -p nisp-runtime --example tanh_errors [stride]`; the full run (stride 1) takes a minute.
 
-use nisp_runtime::real::Real;
-use nisp_runtime::simd::{Isa, Kernel, Simd, dispatch};
+use nisp_runtime::simd::{Element, Isa, Kernel, Simd, dispatch};
 use nisp_runtime::tanh::{derivatives, tanh_and_slope};
 use std::time::Instant;
 
@@ -19,7 +18,7 @@ struct Evaluate<'a, E> {
     higher: bool,
 }
 
-impl<E: Real> Kernel<E> for Evaluate<'_, E> {
+impl<E: Element> Kernel<E> for Evaluate<'_, E> {
     type Output = ();
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
@@ -90,7 +89,7 @@ fn errors(isa: Isa, stride: usize) {
     );
 }
 
-fn cost<E: Real>(isa: Isa) {
+fn cost<E: Element>(isa: Isa) {
     let a: Vec<E> = (0..PIECE).map(|i| E::from_f64(i as f64 * 5e-3 - 2.5)).collect();
     let (mut t, mut s) = (a.clone(), a.clone());
     let mut nanoseconds = [false, true].map(|higher| {

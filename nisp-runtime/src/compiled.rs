@@ -3,16 +3,14 @@
 
 use std::marker::PhantomData;
 
-use crate::features::{Features, FeaturesKernel};
-use crate::kernel::{Layers, Programs, Residuals, Rules};
 use crate::layer::{
-    Affine, AffineAdjoint, AffineAdjointKernel, AffineKernel, Ending, EndingAdjoint, Gate, GateAdjoint,
-    GateAdjointKernel, GateKernel, Gated, GatedAdjoint, Layer, LayerAdjoint, LayerAdjointKernel, LayerKernel,
-    takes_values,
+    Affine, AffineAdjoint, AffineAdjointKernel, AffineKernel, Ending, EndingAdjoint, Features, FeaturesKernel, Gate,
+    GateAdjoint, GateAdjointKernel, GateKernel, Gated, GatedAdjoint, Layer, LayerAdjoint, LayerAdjointKernel,
+    LayerKernel, Layers, takes_values,
 };
-use crate::real::Real;
-use crate::residual::{Lane, Points, Sink};
-use crate::simd::{Isa, Kernel, Simd, dispatch, plain};
+use crate::residual::{Lane, Points, Programs, Residuals, Sink};
+use crate::rules::Rules;
+use crate::simd::{Element, Isa, Kernel, Simd, dispatch, plain};
 
 /// Layers with hidden rules `H`, of which the last has rules `L`.
 #[derive(Debug)]
@@ -22,14 +20,14 @@ impl<H: Rules<K, D, S>, L: Rules<K, D, S>, const K: usize, const D: usize, const
     CompiledLayers<H, L, K, D, S>
 {
     /// The layers without their type.
-    pub fn erased<E: Real>() -> &'static dyn Layers<E> {
+    pub fn erased<E: Element>() -> &'static dyn Layers<E> {
         &Self(PhantomData)
     }
 }
 
 impl<E, H, L, const K: usize, const D: usize, const S: usize> Layers<E> for CompiledLayers<H, L, K, D, S>
 where
-    E: Real,
+    E: Element,
     H: Rules<K, D, S>,
     L: Rules<K, D, S>,
 {
@@ -80,7 +78,7 @@ where
 
 fn forward<E, G, C, P, const K: usize, const D: usize, const S: usize>(isa: Isa, layer: Layer<'_, E>, gate: G)
 where
-    E: Real,
+    E: Element,
     G: Ending<E>,
     C: Rules<K, D, S>,
     P: Rules<K, D, S>,
@@ -90,7 +88,7 @@ where
 
 fn backward<E, G, C, P, const K: usize, const D: usize, const S: usize>(isa: Isa, layer: LayerAdjoint<'_, E>, gate: G)
 where
-    E: Real,
+    E: Element,
     G: EndingAdjoint<E>,
     C: Rules<K, D, S>,
     P: Rules<K, D, S>,
@@ -104,12 +102,12 @@ pub struct CompiledPrograms<R>(PhantomData<fn() -> R>);
 
 impl<R: Residuals> CompiledPrograms<R> {
     /// The programs without their type.
-    pub fn erased<E: Real>() -> &'static dyn Programs<E> {
+    pub fn erased<E: Element>() -> &'static dyn Programs<E> {
         &Self(PhantomData)
     }
 }
 
-impl<E: Real, R: Residuals> Programs<E> for CompiledPrograms<R> {
+impl<E: Element, R: Residuals> Programs<E> for CompiledPrograms<R> {
     fn residual(&self, isa: Isa, points: Points<'_, E>, rows: &mut [E]) {
         dispatch(isa, Program::<E, R, RESIDUAL> { points, out: rows, program: PhantomData });
     }
@@ -142,7 +140,7 @@ struct Program<'a, E, R, const PROGRAM: u8> {
     program: PhantomData<R>,
 }
 
-impl<E: Real, R: Residuals, const PROGRAM: u8> Kernel<E> for Program<'_, E, R, PROGRAM> {
+impl<E: Element, R: Residuals, const PROGRAM: u8> Kernel<E> for Program<'_, E, R, PROGRAM> {
     type Output = ();
 
     #[inline(always)]

@@ -1,7 +1,9 @@
 //! What an answer says at the points of a group, and what its programs make of it.
 
-use crate::kernel::Programs;
+use nalgebra::Vector3;
+
 use crate::residual::Points;
+use crate::residual::Programs;
 use crate::schema;
 use crate::simd::Isa;
 
@@ -103,6 +105,37 @@ pub(crate) struct CloudFacts {
     pub(crate) resolution: f64,
 }
 
+/// Something that a problem takes for known.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Known {
+    /// The value of a given scalar, by its slot.
+    Scalar(usize),
+    /// Where a cloud is, along an axis.
+    Place { cloud: usize, axis: usize },
+    /// How a cloud is turned about an axis through its middle.
+    Direction { cloud: usize, axis: usize },
+    /// How large a cloud is.
+    Size { cloud: usize },
+}
+
+/// What would come of it if something known were unknown, by Rao's score test.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Score {
+    pub(crate) known: Known,
+    /// What the loss would be less.
+    pub(crate) gain: f64,
+    /// By how much it would be otherwise: a share of a value, of a cloud's size or of its radius, or an angle.
+    pub(crate) change: f64,
+}
+
+/// The middle of a cloud, and its radius: the root mean square of the distances from there.
+pub(crate) fn spread(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone) -> (Vector3<f64>, f64) {
+    let count = points.len().max(1) as f64;
+    let middle = points.clone().sum::<Vector3<f64>>() / count;
+    let square = points.map(|point| (point - middle).norm_squared()).sum::<f64>() / count;
+    (middle, square.sqrt())
+}
+
 /// What a carrier says of its answer, in the engine's units.
 #[derive(Clone)]
 pub(crate) struct Answer {
@@ -111,4 +144,6 @@ pub(crate) struct Answer {
     pub(crate) clouds: Vec<CloudFacts>,
     /// Scalars that programs read, learned ones at their found values.
     pub(crate) scalars: Vec<f64>,
+    /// What is known, doubted; empty where the carrier does not tell.
+    pub(crate) scores: Vec<Score>,
 }

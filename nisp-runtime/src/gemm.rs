@@ -17,8 +17,7 @@ mod block;
 mod pack;
 mod sweep;
 
-use crate::real::Real;
-use crate::simd::{Isa, Simd};
+use crate::simd::{Element, Isa, Simd, dispatch};
 pub use pack::Packed;
 pub use sweep::RUN;
 
@@ -58,7 +57,7 @@ impl<'a, E> Left<'a, E> {
 
 /// The right factor.
 #[derive(Clone, Copy, Debug)]
-pub enum Right<'a, E: Real> {
+pub enum Right<'a, E: Element> {
     /// Rows as they lie: element (k, j) is `elements[k * stride + j]`.
     Rows {
         /// Where the elements live.
@@ -87,7 +86,7 @@ pub enum Write {
 /// # Panics
 /// If a factor or C is too short for the shape, if the number of columns is not a multiple of the lanes of `isa`, or if
 /// the right factor was packed for another shape or instruction set.
-pub fn gemm<E: Real>(isa: Isa, shape: Shape, a: Left<E>, b: Right<E>, c: &mut [E], stride: usize, write: Write) {
+pub fn gemm<E: Element>(isa: Isa, shape: Shape, a: Left<E>, b: Right<E>, c: &mut [E], stride: usize, write: Write) {
     let Shape { rows, columns, inner } = shape;
     assert!(columns.is_multiple_of(isa.lanes::<E>()), "{columns} columns are no multiple of a vector");
     assert!(covers(c.len(), [rows, stride], [columns, 1]), "C is too short for {shape:?}");
@@ -115,8 +114,9 @@ pub fn gemm<E: Real>(isa: Isa, shape: Shape, a: Left<E>, b: Right<E>, c: &mut [E
         add: write == Write::Add,
         summed: if write == Write::SetFromShortSums { E::SUMMED } else { usize::MAX },
     };
-    // SAFETY: the assertions above cover every element that the shape reaches.
-    unsafe { E::multiply(isa, task) };
+    // SAFETY: the assertions above cover every element that the shape reaches; a number of four bytes is an f32, one of eight
+    // an f64.
+    unsafe { if size_of::<E>() == size_of::<f32>() { single(isa, task.of()) } else { double(isa, task.of()) } };
 }
 
 /// Whether `len` elements hold index (i, j) at `i * stride_i + j * stride_j` for all i, j below their counts.
@@ -130,7 +130,7 @@ fn covers(len: usize, [rows, row]: [usize; 2], [columns, column]: [usize; 2]) ->
 }
 
 /// A product whose extents have been checked.
-pub(crate) struct Task<E> {
+struct Task<E> {
     shape: Shape,
     a: *const E,
     a_row: usize,
@@ -145,27 +145,30 @@ pub(crate) struct Task<E> {
     summed: usize,
 }
 
-/// Compiles the products here, once per element type, and not in every crate that calls them.
-pub(crate) trait Multiply: Sized {
-    /// Does the task.
-    ///
-    /// # Safety
-    /// Every element that the task's shape reaches must exist, and those of C be exclusively the task's.
-    unsafe fn multiply(isa: Isa, task: Task<Self>);
+impl<E> Task<E> {
+    /// The same task of another element type, which the caller knows `E` to be.
+    fn of<F>(self) -> Task<F> {
+        let Self { shape, a, a_row, a_column, b, b_row, c, c_row, add, summed } = self;
+        Task { shape, a: a.cast(), a_row, a_column, b: b.cast(), b_row, c: c.cast(), c_row, add, summed }
+    }
 }
 
-macro_rules! impl_multiply {
-    ($elem:ident) => {
-        impl Multiply for $elem {
-            unsafe fn multiply(isa: Isa, task: Task<Self>) {
-                crate::simd::dispatch(isa, sweep::Sweep(task));
-            }
-        }
-    };
+/// Does a task in single precision. Neither this nor [`double`] is generic, so that products are compiled here and not in
+/// every crate that calls them.
+///
+/// # Safety
+/// Every element that the task's shape reaches must exist, and those of C be exclusively the task's.
+unsafe fn single(isa: Isa, task: Task<f32>) {
+    dispatch(isa, sweep::Sweep(task));
 }
 
-impl_multiply!(f32);
-impl_multiply!(f64);
+/// Does a task in double precision.
+///
+/// # Safety
+/// As of [`single`].
+unsafe fn double(isa: Isa, task: Task<f64>) {
+    dispatch(isa, sweep::Sweep(task));
+}
 
 /// Columns of one panel: two vectors.
 const fn panel<V: Simd>() -> usize {

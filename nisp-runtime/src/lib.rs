@@ -4,10 +4,10 @@
 
 pub mod aligned;
 mod bytes;
+pub mod carrier;
 pub mod compiled;
 pub mod engine;
 mod facts;
-pub mod features;
 pub mod functions;
 pub mod gemm;
 pub mod kernel;
@@ -23,6 +23,7 @@ pub mod real;
 pub mod recover;
 pub mod residual;
 mod rhythm;
+pub mod rules;
 pub mod saved;
 pub mod schema;
 pub mod simd;

@@ -1,7 +1,6 @@
 //! The machine's ceiling, measured: what shares of the peak are shares of.
 
-use crate::real::Real;
-use crate::simd::{Isa, Kernel, Simd, dispatch};
+use crate::simd::{Element, Isa, Kernel, Simd, dispatch};
 use std::time::{Duration, Instant};
 
 /// Independent multiply-add chains: enough to hide the latency of two units, few enough for sixteen registers.
@@ -16,7 +15,7 @@ const BUDGET: Duration = Duration::from_millis(60);
 ///
 /// # Panics
 /// If `threads` is zero.
-pub fn fma_peak<E: Real>(isa: Isa, threads: usize) -> f64 {
+pub fn fma_peak<E: Element>(isa: Isa, threads: usize) -> f64 {
     assert!(threads > 0, "a rate needs a thread");
     std::thread::scope(|scope| {
         let workers: Vec<_> = (0..threads).map(|_| scope.spawn(move || best_rate::<E>(isa))).collect();
@@ -24,7 +23,7 @@ pub fn fma_peak<E: Real>(isa: Isa, threads: usize) -> f64 {
     })
 }
 
-fn best_rate<E: Real>(isa: Isa) -> f64 {
+fn best_rate<E: Element>(isa: Isa) -> f64 {
     let operations = (2 * CHAINS * ROUNDS * isa.lanes::<E>()) as f64;
     let begin = Instant::now();
     let mut best = f64::INFINITY;
@@ -38,7 +37,7 @@ fn best_rate<E: Real>(isa: Isa) -> f64 {
 
 struct Chains;
 
-impl<E: Real> Kernel<E> for Chains {
+impl<E: Element> Kernel<E> for Chains {
     type Output = E;
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) -> E {

@@ -1,18 +1,9 @@
 //! The two element types, `f32` and `f64`.
 
-use crate::gemm::Multiply;
-use crate::simd::Dispatch;
-use crate::values::Precompiled;
-
-/// A floating-point element type of the engine: `f32` or `f64`, no other can exist.
-#[expect(private_bounds, reason = "seals the trait and ties vectors and products to it")]
+/// A floating-point number: `f32` or `f64`, no other can exist.
+#[expect(private_bounds, reason = "seals the trait")]
 pub trait Real:
-    Dispatch
-    + Multiply
-    + Precompiled<1>
-    + Precompiled<2>
-    + Precompiled<3>
-    + Precompiled<4>
+    Sealed
     + Copy
     + Send
     + Sync
@@ -57,8 +48,13 @@ pub trait Real:
     fn is_finite(self) -> bool;
 }
 
+/// What only this module implements.
+trait Sealed {}
+
 macro_rules! real {
     ($type:ident, $summed:expr, $orders:expr) => {
+        impl Sealed for $type {}
+
         impl Real for $type {
             const ZERO: Self = 0.0;
             const ONE: Self = 1.0;

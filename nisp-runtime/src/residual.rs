@@ -1,7 +1,7 @@
-//! Residual programs on a tile of points: what they read, where they write.
+//! Residual programs on a tile of points: what they read, what they do, where they write.
 
 use crate::real::Real;
-use crate::simd::Simd;
+use crate::simd::{Isa, Simd};
 
 /// Everything a residual program reads, for a tile of points, each quantity contiguous over the points.
 #[derive(Clone, Copy, Debug)]
@@ -35,6 +35,34 @@ pub struct Sink<'a, E> {
     values: &'a mut [E],
     stride: usize,
     first: usize,
+}
+
+/// Residual program of one group of one scene, for as many points as a vector has lanes.
+pub trait Residuals: Send + Sync + 'static {
+    /// Writes the rows of all terms.
+    fn residual<V: Simd>(at: &Lane<'_, V>, rows: &mut Sink<'_, V::Elem>);
+    /// Writes the adjoint of every jet, then of every learned scalar.
+    fn adjoint<V: Simd>(at: &Lane<'_, V>, bars: &mut Sink<'_, V::Elem>);
+    /// Writes the rows with every sum replaced by the sum of magnitudes; run once, when a scene is bound.
+    fn magnitude<V: Simd>(at: &Lane<'_, V>, rows: &mut Sink<'_, V::Elem>);
+    /// Targets of integral terms, from scalars alone; `rows` is indexed like the group's rows.
+    fn target(scalars: &[f64], rows: &mut [f64]);
+    /// Their derivatives by the learned scalars, `[row][learned scalar]`; rows of other terms are left alone.
+    fn target_slopes(scalars: &[f64], rows: &mut [f64]);
+}
+
+/// The residual programs of a group, erased: each method works on a tile.
+pub trait Programs<E: Real>: Send + Sync {
+    /// Residual rows of a tile, `[row][point]`.
+    fn residual(&self, isa: Isa, points: Points<'_, E>, rows: &mut [E]);
+    /// Adjoints of jets, then of learned scalars, `[jet or scalar][point]`.
+    fn adjoint(&self, isa: Isa, points: Points<'_, E>, bars: &mut [E]);
+    /// Magnitude rows, `[row][point]`.
+    fn magnitude(&self, points: Points<'_, f64>, rows: &mut [f64]);
+    /// Targets of integral terms.
+    fn target(&self, scalars: &[f64], rows: &mut [f64]);
+    /// Derivatives of the targets of integral terms by the learned scalars, `[row][learned scalar]`.
+    fn target_slopes(&self, scalars: &[f64], rows: &mut [f64]);
 }
 
 #[inline(always)]

@@ -2,12 +2,9 @@
 //! network, and most observe and prescribe values.
 
 use crate::compiled::CompiledLayers;
-use crate::kernel::{Layers, Rules};
-use crate::real::Real;
-use crate::simd::Simd;
-
-/// Coordinates that there are layers of values over, at most.
-pub(crate) const MOST_COORDINATES: usize = 4;
+use crate::layer::{Layers, MOST_COORDINATES};
+use crate::rules::Rules;
+use crate::simd::{Element, Simd};
 
 /// Rules for values alone.
 #[derive(Debug)]
@@ -41,40 +38,32 @@ impl<const S: usize> Rules<1, 2, S> for Values {
     }
 }
 
-/// Element types whose layers of values over `S` coordinates are compiled in this crate.
-pub trait Precompiled<const S: usize>: Sized {
-    /// The layers.
-    fn values() -> &'static dyn Layers<Self>;
+/// Element types whose layers of values are compiled in this crate.
+pub trait Precompiled: Element {
+    /// The layers of values over so many coordinates.
+    ///
+    /// # Panics
+    /// Over no coordinate, or over more than four.
+    fn values(coordinates: usize) -> &'static dyn Layers<Self>;
 }
 
 macro_rules! precompiled {
-    ($($elem:ident over $($coordinates:literal)*;)*) => {
-        $($(
+    ($($elem:ident)*) => {
+        $(
             // Not generic, so that the code belongs to this crate.
-            impl Precompiled<$coordinates> for $elem {
-                fn values() -> &'static dyn Layers<Self> {
-                    CompiledLayers::<Values, Values, 1, 2, $coordinates>::erased()
+            impl Precompiled for $elem {
+                fn values(coordinates: usize) -> &'static dyn Layers<Self> {
+                    match coordinates {
+                        1 => CompiledLayers::<Values, Values, 1, 2, 1>::erased(),
+                        2 => CompiledLayers::<Values, Values, 1, 2, 2>::erased(),
+                        3 => CompiledLayers::<Values, Values, 1, 2, 3>::erased(),
+                        MOST_COORDINATES => CompiledLayers::<Values, Values, 1, 2, MOST_COORDINATES>::erased(),
+                        _ => panic!("layers of values are compiled over one to four coordinates"),
+                    }
                 }
             }
-        )*)*
+        )*
     };
 }
 
-precompiled! {
-    f32 over 1 2 3 4;
-    f64 over 1 2 3 4;
-}
-
-/// The layers of values over so many coordinates, at most four.
-///
-/// # Panics
-/// Over no coordinate, or over more than four.
-pub fn precompiled<E: Real>(coordinates: usize) -> &'static dyn Layers<E> {
-    match coordinates {
-        1 => <E as Precompiled<1>>::values(),
-        2 => <E as Precompiled<2>>::values(),
-        3 => <E as Precompiled<3>>::values(),
-        4 => <E as Precompiled<4>>::values(),
-        _ => panic!("layers of values are compiled over one to four coordinates"),
-    }
-}
+precompiled!(f32 f64);

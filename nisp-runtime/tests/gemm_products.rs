@@ -2,10 +2,10 @@
 
 use nisp_runtime::gemm::{Left, Packed, RUN, Right, Shape, Write, gemm};
 use nisp_runtime::real::Real;
-use nisp_runtime::simd::Isa;
+use nisp_runtime::simd::{Element, Isa};
 
 /// Numbers between -1 and 1 without a pattern that sums could hide in.
-fn noise<E: Real>(count: usize, seed: u64) -> Vec<E> {
+fn noise<E: Element>(count: usize, seed: u64) -> Vec<E> {
     let mut state = seed.wrapping_mul(0x9e37_79b9_7f4a_7c15) | 1;
     (0..count)
         .map(|_| {
@@ -25,7 +25,7 @@ struct Layout {
 }
 
 /// One product by `gemm`; columns beyond the shape in the rows of C hold a mark that must survive.
-fn product<E: Real>(isa: Isa, shape: Shape, layout: Layout) -> (Vec<E>, usize) {
+fn product<E: Element>(isa: Isa, shape: Shape, layout: Layout) -> (Vec<E>, usize) {
     let Shape { rows, columns, inner } = shape;
     let (a_rows, a_columns) = if layout.transposed { (inner, rows) } else { (rows, inner) };
     let a_stride = a_columns + layout.pad;
@@ -47,7 +47,7 @@ fn product<E: Real>(isa: Isa, shape: Shape, layout: Layout) -> (Vec<E>, usize) {
 }
 
 /// The same by definition.
-fn plain<E: Real>(shape: Shape, layout: Layout) -> Vec<f64> {
+fn plain<E: Element>(shape: Shape, layout: Layout) -> Vec<f64> {
     let Shape { rows, columns, inner } = shape;
     let (a_rows, a_columns) = if layout.transposed { (inner, rows) } else { (rows, inner) };
     let (a_stride, b_stride, c_stride) = (a_columns + layout.pad, columns + layout.pad, columns + layout.pad);
@@ -64,7 +64,7 @@ fn plain<E: Real>(shape: Shape, layout: Layout) -> Vec<f64> {
     c
 }
 
-fn compare<E: Real>(isa: Isa, shape: Shape, layout: Layout) {
+fn compare<E: Element>(isa: Isa, shape: Shape, layout: Layout) {
     let (got, stride) = product::<E>(isa, shape, layout);
     let want = plain::<E>(shape, layout);
     let bound = E::EPSILON.to_f64() * (shape.inner as f64 + 4.0);
@@ -89,7 +89,7 @@ fn every_layout() -> Vec<Layout> {
     all
 }
 
-fn every_shape<E: Real>() {
+fn every_shape<E: Element>() {
     for isa in Isa::available() {
         let lanes = isa.lanes::<E>();
         // Every height of a block, several blocks, odd and even numbers of vectors, and more than one run.

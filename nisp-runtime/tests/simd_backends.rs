@@ -1,10 +1,10 @@
 //! Every instruction set of this machine computes what plain arithmetic computes, lane by lane.
 
 use nisp_runtime::real::Real;
-use nisp_runtime::simd::{Isa, Kernel, Simd, dispatch};
+use nisp_runtime::simd::{Element, Isa, Kernel, Simd, dispatch};
 
 /// Inputs with every sign, some equal, and numbers that are not finite.
-fn samples<E: Real>() -> Vec<E> {
+fn samples<E: Element>() -> Vec<E> {
     let special = [0.0, -0.0, 1.0, -1.0, 2.5, -2.5, 3.5, f64::INFINITY, f64::NEG_INFINITY, f64::NAN, 1e-30, -7.25];
     let plain = (0..116).map(|i| f64::from(i * i % 89 - 40) * 0.37);
     special.into_iter().chain(plain).map(E::from_f64).collect()
@@ -13,7 +13,7 @@ fn samples<E: Real>() -> Vec<E> {
 struct Check;
 
 /// Equal, or both NaN, within `ulps` rounding errors.
-fn same<E: Real>(got: E, want: f64, ulps: f64, what: &str) {
+fn same<E: Element>(got: E, want: f64, ulps: f64, what: &str) {
     let (got, bound) = (got.to_f64(), ulps * E::EPSILON.to_f64() * want.abs());
     let equal = got == E::from_f64(want).to_f64() || (got.is_nan() && want.is_nan()) || (got - want).abs() <= bound;
     assert!(equal, "{what}: {got} instead of {want}");
@@ -42,7 +42,7 @@ fn lanes<V: Simd>(
     }
 }
 
-impl<E: Real> Kernel<E> for Check {
+impl<E: Element> Kernel<E> for Check {
     type Output = ();
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
@@ -123,7 +123,7 @@ fn every_instruction_set_agrees_with_plain_arithmetic() {
 
 struct FusedIsFused;
 
-impl<E: Real> Kernel<E> for FusedIsFused {
+impl<E: Element> Kernel<E> for FusedIsFused {
     type Output = ();
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
@@ -149,7 +149,7 @@ fn multiply_add_rounds_as_it_says() {
 #[test]
 fn scale2_reaches_below_the_normal_numbers() {
     struct Denormal;
-    impl<E: Real> Kernel<E> for Denormal {
+    impl<E: Element> Kernel<E> for Denormal {
         type Output = f64;
         #[inline(always)]
         fn run<V: Simd<Elem = E>>(self) -> f64 {

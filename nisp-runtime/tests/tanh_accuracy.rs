@@ -5,7 +5,7 @@ mod tanh_errors;
 
 use double_double::Dd;
 use nisp_runtime::real::Real;
-use nisp_runtime::simd::{Isa, dispatch};
+use nisp_runtime::simd::{Element, Isa, dispatch};
 use tanh_errors::{D, Rows, Worst, largest_ratios, reference_double, reference_single};
 
 fn check(worst: &Worst, isa: Isa, elem: &str, tanh: f64) {
@@ -57,7 +57,7 @@ fn double_precision_over_all_magnitudes() {
     }
 }
 
-fn special_values<E: Real>() {
+fn special_values<E: Element>() {
     let inputs = [0.0, -0.0, 1e300, -1e300, f64::INFINITY, f64::NEG_INFINITY, f64::NAN].map(E::from_f64);
     for isa in Isa::available() {
         let rows: Vec<[f64; D]> = dispatch(isa, Rows(&inputs)).iter().map(|row| row.map(Real::to_f64)).collect();

@@ -8,11 +8,10 @@ use serde::{Deserialize, Serialize};
 
 use super::Pose;
 use super::deviation::Deviation;
-use super::inflated::Membrane;
 use crate::PrepareError;
 
 /// What the scenes that calibrate are called; the rest of their names is that of the law that they take.
-pub(super) const CALIBRATES: &str = "calibrate";
+pub(crate) const CALIBRATES: &str = "calibrate";
 
 /// A sensor as its free frames show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,6 +48,36 @@ pub struct Quality {
     pub noise_m: f64,
 }
 
+/// Material and size of a membrane, in the keys of samples and calibrations and in SI units.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Membrane {
+    /// Semi-axis of the rim along `alpha`.
+    pub a_m: Option<f64>,
+    /// Semi-axis of the rim along `beta`.
+    pub b_m: Option<f64>,
+    /// Thickness.
+    pub thickness_m: Option<f64>,
+    /// Young's modulus.
+    #[serde(rename = "young_Pa")]
+    pub young: Option<f64>,
+    /// Poisson's ratio.
+    pub poisson: Option<f64>,
+    /// Gauge pressure.
+    #[serde(rename = "gauge_pressure_Pa")]
+    pub pressure: Option<f64>,
+}
+
+/// Frames of a sensor that nothing touches, and what they were bound with.
+#[derive(Clone, Debug)]
+pub struct References {
+    /// How many frames.
+    pub frames: usize,
+    /// All their points, in metres.
+    pub cloud: Cloud,
+    /// What was known before.
+    pub given: Membrane,
+}
+
 impl Calibration {
     /// Reads a file of [`Calibration::text`].
     ///
@@ -76,13 +105,13 @@ impl Calibration {
     }
 
     /// The scene of the same law that does what this one does.
-    pub(super) fn scene_for(&self, scene: &str) -> String {
+    pub(crate) fn scene_for(&self, scene: &str) -> String {
         let law = self.scene.strip_prefix(CALIBRATES).unwrap_or_default();
         if scene.ends_with(law) { scene.into() } else { format!("{scene}{law}") }
     }
 
     /// Takes a cloud into the frame of the rim, and the deviation off.
-    pub(super) fn correct(&self, cloud: &mut Cloud) {
+    pub(crate) fn correct(&self, cloud: &mut Cloud) {
         for point in &mut cloud.points {
             let inside = self.pose.inward(*point);
             let off = self.deviation.at([inside[0], inside[1]]);

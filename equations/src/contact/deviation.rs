@@ -21,13 +21,13 @@ pub struct Deviation {
 }
 
 /// A point of a cloud in the frame of the rim, and how far it is from the theory's surface.
-pub(super) struct Off {
+pub(crate) struct Off {
     /// Its place over the plane of the rim, in metres.
-    pub(super) place: [f64; 2],
+    pub(crate) place: [f64; 2],
     /// Its distance along the surface's normal, in metres.
-    pub(super) distance: f64,
+    pub(crate) distance: f64,
     /// The normal, of unit length.
-    pub(super) normal: [f64; 3],
+    pub(crate) normal: [f64; 3],
 }
 
 impl Deviation {
@@ -35,7 +35,7 @@ impl Deviation {
     ///
     /// # Errors
     /// No points, or some that are not finite.
-    pub(super) fn fit(points: &[Off], half: [f64; 2]) -> Result<Self, DataError> {
+    pub(crate) fn fit(points: &[Off], half: [f64; 2]) -> Result<Self, DataError> {
         let places: Vec<[f64; 2]> = points.iter().map(|point| point.place).collect();
         let tree = Nearest::new(&places)?;
         let spacing = 2.0 * half[0].max(half[1]) / (NODES - 1) as f64;
@@ -57,7 +57,7 @@ impl Deviation {
     }
 
     /// The deviation at a place, linear between nodes and constant beyond the last.
-    pub(super) fn at(&self, [x, y]: [f64; 2]) -> [f64; 3] {
+    pub(crate) fn at(&self, [x, y]: [f64; 2]) -> [f64; 3] {
         let rows = self.vectors_m.len();
         let columns = self.vectors_m.first().map_or(0, Vec::len);
         if rows < 2 || columns < 2 {
@@ -91,7 +91,7 @@ impl Deviation {
     }
 
     /// Whether the grid is one.
-    pub(super) fn is_whole(&self) -> bool {
+    pub(crate) fn is_whole(&self) -> bool {
         let columns = self.vectors_m.first().map_or(0, Vec::len);
         self.vectors_m.iter().all(|row| row.len() == columns) && self.x_m[0] < self.x_m[1] && self.y_m[0] < self.y_m[1]
     }

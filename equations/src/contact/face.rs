@@ -41,7 +41,7 @@ impl Face {
 
     /// The area vector that every point stands for where the points are at `places`: a third of those of its triangles,
     /// so that a sum over points integrates what is linear between them.
-    pub(super) fn area_vectors(&self, places: &[[f64; 3]]) -> Vec<[f64; 3]> {
+    pub(crate) fn area_vectors(&self, places: &[[f64; 3]]) -> Vec<[f64; 3]> {
         let mut vectors = vec![[0.0; 3]; places.len()];
         for corners in &self.triangles {
             let [p, q, r] = corners.map(|corner| places[corner]);
@@ -75,7 +75,7 @@ impl Face {
 }
 
 /// The length of a vector.
-pub(super) fn length(vector: [f64; 3]) -> f64 {
+pub(crate) fn length(vector: [f64; 3]) -> f64 {
     vector.iter().map(|x| x * x).sum::<f64>().sqrt()
 }
 
@@ -88,7 +88,7 @@ pub(super) fn weighted_sum(weights: &[f64], vectors: &[[f64; 3]]) -> [f64; 3] {
     sum
 }
 
-pub(super) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] - b[axis])
 }
 

@@ -1,40 +1,29 @@
-//! Contact from point clouds: a body's shape, what it is bound to, and how well its contact was found.
+//! Contact of a body: its shape, where the pressure acts on it, and how well that was found.
 //!
-//! `inflated` binds the scenes of `membrane` and `bubble`, `sponge` those of its own; `observed` reads samples and clouds,
-//! `given` settles parameters; [`Contact`] says where the pressure acts, [`Face`] integrates it, [`metrics`] and
-//! [`ContactScore`] judge it.
+//! [`Contact`] says where the pressure acts, [`Face`] integrates it, [`metrics`] and [`ContactScore`] judge it; a
+//! [`Calibration`] says what a sensor's free frames told of it.
 
-mod bubble;
-mod calibrate;
 mod calibration;
 mod deviation;
 mod face;
-mod given;
-mod inflated;
-mod membrane;
 pub mod metrics;
-mod observed;
 mod patches;
 mod pose;
 mod score;
-mod sponge;
 
-pub(crate) use bubble::prepare as prepare_bubble;
-pub use calibrate::References;
-pub use calibration::{Calibration, Quality};
+pub(crate) use calibration::CALIBRATES;
+pub use calibration::{Calibration, Membrane, Quality, References};
 pub use deviation::Deviation;
+pub(crate) use deviation::Off;
 pub use face::{Face, Load};
-pub use inflated::Membrane;
-pub(crate) use membrane::prepare as prepare_membrane;
+pub(crate) use face::{length, minus};
 pub use metrics::Rule;
 pub use patches::Patch;
 pub use pose::Pose;
 pub use score::{Against, ContactScore, TrueContact, Values};
-pub(crate) use sponge::prepare as prepare_sponge;
 
-use nisp::schema::{Scene, TermKind};
-use nisp::{BindError, Problem};
-use nisp_data::{Cloud, DataError, Table};
+use nisp::schema::Scene;
+use nisp_data::{DataError, Table};
 
 use crate::truth::{Headers, Truth};
 
@@ -122,7 +111,7 @@ impl Contact {
     }
 
     /// The true contact, where a truth is given and the scene has a pressure.
-    fn true_contact(
+    pub(crate) fn true_contact(
         &self,
         scene: &Scene,
         truth: Option<(&Table, &Truth)>,
@@ -139,15 +128,4 @@ impl Contact {
         }
         TrueContact::read(table, truth, headers, self, pressure).map(Some)
     }
-}
-
-/// Gives every Chamfer term of a problem the cloud, in the term's unit.
-fn bind_cloud(problem: &mut Problem, cloud: &Cloud) -> Result<(), BindError> {
-    for group in problem.scene().schema.groups {
-        for term in group.terms.iter().filter(|term| matches!(term.kind, TermKind::Chamfer { .. })) {
-            let inward = |metres: &f64| metres / term.unit.factor;
-            problem.set_cloud(group.name, term.name, cloud.points.iter().flatten().map(inward).collect())?;
-        }
-    }
-    Ok(())
 }

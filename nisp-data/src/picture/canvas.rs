@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use super::Picture;
 use super::style::{FONT, INK};
-use super::text;
+use super::text::{self, num};
 
 /// An SVG document under construction.
 pub(super) struct Canvas {
@@ -216,11 +216,4 @@ fn path(points: &[[f64; 2]], closed: bool) -> String {
         d.push('Z');
     }
     d
-}
-
-/// Two decimals are finer than any screen.
-pub(super) fn num(value: f64) -> String {
-    let text = format!("{value:.2}");
-    let text = text.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" { "0".into() } else { text.into() }
 }

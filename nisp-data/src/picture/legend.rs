@@ -1,7 +1,7 @@
 //! Legends stand outside the data: in rows above a plot.
 
 use super::canvas::{Anchor, Canvas, Frame, Stroke};
-use super::style::{GAP, TICK};
+use super::style::{BAND_OPACITY, GAP, TICK};
 use super::text;
 
 /// What a legend shows beside a name.
@@ -72,7 +72,7 @@ fn draw_swatch(canvas: &mut Canvas, [x, y]: [f64; 2], swatch: &Swatch<'_>) {
         Swatch::BandLine(stroke) => {
             let band = Frame { left: x, top: y - 6.0, width: SWATCH, height: 12.0 };
             let corners = [[x, y - 6.0], [band.right(), y - 6.0], [band.right(), y + 6.0], [x, y + 6.0]];
-            canvas.polygon(&corners, stroke.colour, super::line_plot::BAND_OPACITY);
+            canvas.polygon(&corners, stroke.colour, BAND_OPACITY);
             canvas.line(ends.0, ends.1, stroke);
         }
         Swatch::Dot { colour, radius } => canvas.dots(&[[x + 0.5 * SWATCH, y]], radius, colour),

@@ -3,7 +3,7 @@
 use super::axis::{Panel, Scale, x_axis_height, y_axis_width};
 use super::canvas::{Anchor, Canvas, Frame, Stroke};
 use super::legend::{self, Swatch};
-use super::style::{ESTIMATE, GAP, MARGIN, MEASURED, PALETTE, QUIET, TICK, TRUTH, WIDTH};
+use super::style::{BAND_OPACITY, ESTIMATE, GAP, MARGIN, MEASURED, PALETTE, QUIET, TICK, TRUTH, WIDTH};
 use super::{Picture, Quantity, decimate, heading};
 use crate::DataError;
 
@@ -75,7 +75,6 @@ impl LinePanel {
     }
 }
 
-pub(super) const BAND_OPACITY: f64 = 0.22;
 const FIRST_HEIGHT: f64 = 220.0;
 const OTHER_HEIGHT: f64 = 130.0;
 const ESTIMATE_STROKE: Stroke<'_> = Stroke { colour: ESTIMATE, width: 2.4, dash: "" };

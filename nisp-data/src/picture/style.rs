@@ -26,5 +26,8 @@ pub(super) const MEASURED: &str = "#9aa2ab";
 pub(super) const TRUTH: &str = "#1f2328";
 pub(super) const ESTIMATE: &str = "#0072b2";
 
+/// How much of a band is seen through what lies behind it.
+pub(super) const BAND_OPACITY: f64 = 0.22;
+
 /// Okabe and Ito's palette (distinct for colour-blind readers), estimate's blue first and a violet for its yellow.
 pub(super) const PALETTE: [&str; 7] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#6b4fa0"];

@@ -1,4 +1,11 @@
-//! Labels: Greek names, raised and lowered parts, and an estimate of how wide they are.
+//! Numbers and labels: Greek names, raised and lowered parts, and an estimate of how wide they are.
+
+/// Two decimals are finer than any screen.
+pub(super) fn num(value: f64) -> String {
+    let text = format!("{value:.2}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { "0".into() } else { text.into() }
+}
 
 /// `&`, `<` and friends.
 pub(super) fn escape(text: &str) -> String {
@@ -41,13 +48,13 @@ pub(super) fn spans(content: &str, size: f64) -> String {
     for (shift, run) in runs(content) {
         // Browsers disagree about `baseline-shift`; moving by hand works everywhere.
         let wanted = size * [0.2, 0.0, -0.36][usize::from((shift + 1).unsigned_abs())];
-        let step = super::canvas::num(wanted - level);
+        let step = num(wanted - level);
         let run = escape(&run);
         match shift {
             0 if step == "0" => out.push_str(&run),
             0 => out.push_str(&format!("<tspan dy=\"{step}\">{run}</tspan>")),
             _ => {
-                let small = super::canvas::num(0.72 * size);
+                let small = num(0.72 * size);
                 out.push_str(&format!("<tspan dy=\"{step}\" font-size=\"{small}\">{run}</tspan>"));
             }
         }

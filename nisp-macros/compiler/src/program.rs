@@ -101,7 +101,7 @@ impl Program {
                 Op::NegMulAdd(a, b, c) => (-values[a]).mul_add(values[b], values[c]),
                 Op::Min(a, b) => values[a].min(values[b]),
                 Op::Max(a, b) => values[a].max(values[b]),
-                Op::Call(function, a) => crate::symbolic::function::value(function, values[a]),
+                Op::Call(function, a) => value(function, values[a]),
             };
             values.push(value);
         }
@@ -139,5 +139,34 @@ impl Program {
     fn arithmetic(&self) -> impl Iterator<Item = &Op> {
         let varying = self.ops.iter().zip(self.uniform()).filter(|(_, uniform)| !uniform);
         varying.map(|(op, _)| op).filter(|op| !matches!(op, Op::Input(..) | Op::Constant(_)))
+    }
+}
+
+/// The function's value.
+pub fn value(function: Function, x: f64) -> f64 {
+    use Function::*;
+    match function {
+        Sin => x.sin(),
+        Cos => x.cos(),
+        Tan => x.tan(),
+        Asin => x.asin(),
+        Acos => x.acos(),
+        Atan => x.atan(),
+        Sinh => x.sinh(),
+        Cosh => x.cosh(),
+        Tanh => x.tanh(),
+        Exp => x.exp(),
+        Ln => x.ln(),
+        Sqrt => x.sqrt(),
+        Abs => x.abs(),
+        Sign if x == 0.0 => 0.0,
+        Sign => x.signum(),
+        Step => f64::from(x > 0.0),
+        // max(x, 0) + ln(1 + exp(-|x|)) neither overflows nor cancels.
+        Softplus => x.max(0.0) + (-x.abs()).exp().ln_1p(),
+        Sigmoid => {
+            let e = (-x.abs()).exp();
+            if x >= 0.0 { 1.0 / (1.0 + e) } else { e / (1.0 + e) }
+        }
     }
 }

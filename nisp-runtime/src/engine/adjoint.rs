@@ -3,14 +3,14 @@
 use super::buffers::Buffers;
 use super::heads::{HeadsRowsAdjoint, HeadsWeightsAdjoint};
 use super::tile::{Network, Tile};
+use crate::kernel::Precision;
 use crate::layer::{Gate, GateAdjoint, GatedAdjoint, LayerAdjoint, Shape};
 use crate::network::ProductAdjoint;
-use crate::real::Real;
 use crate::residual::Points;
 use crate::simd::dispatch;
 use crate::wide::subtract;
 
-impl<E: Real> Network<'_, E> {
+impl<E: Precision> Network<'_, E> {
     /// From the adjoints of a tile's rows (`buffers.seeds`) to the padded gradient, added to `gradient`: summed over
     /// the points, or one gradient per point, `padded_len` apart.
     pub(crate) fn adjoint(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>, gradient: &mut [E], per_point: bool) {

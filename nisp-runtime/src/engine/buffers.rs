@@ -3,14 +3,16 @@
 use std::sync::Mutex;
 
 use super::group::BoundGroup;
-use super::tile::POINT_LANES;
 use crate::aligned::AlignedVec;
-use crate::layer::row_distance;
+use crate::kernel::Precision;
+use crate::layer::{Shape, row_distance};
 use crate::network::Layout;
-use crate::real::Real;
+
+/// Points of a tile are padded to a multiple of this, so that every vector length divides it.
+pub(crate) const POINT_LANES: usize = 16;
 
 /// Scratch of one worker, large enough for a tile of any group.
-pub(crate) struct Buffers<E: Real> {
+pub(crate) struct Buffers<E: Precision> {
     pub(super) coordinates: AlignedVec<E>,
     /// What features of the coordinates are made of, and their channels, if there are any.
     pub(super) table: AlignedVec<E>,
@@ -57,7 +59,7 @@ pub(crate) struct Extent {
 }
 
 impl Extent {
-    pub(crate) fn of<'a, E: Real>(groups: impl Iterator<Item = &'a BoundGroup<E>>) -> Self {
+    pub(crate) fn of<'a, E: Precision>(groups: impl Iterator<Item = &'a BoundGroup<E>>) -> Self {
         groups.fold(Self::default(), |extent, group| {
             let tiles = [&group.reading, group.ahead()].map(|reading| (reading.tile * group.sites(), reading));
             Self {
@@ -79,7 +81,7 @@ impl Extent {
     }
 }
 
-impl<E: Real> Buffers<E> {
+impl<E: Precision> Buffers<E> {
     pub(crate) fn new(layout: &Layout, extent: Extent) -> Self {
         let ld = row_distance(layout.width);
         let stride = extent.points.next_multiple_of(POINT_LANES);
@@ -117,10 +119,20 @@ impl<E: Real> Buffers<E> {
 }
 
 /// Lends a worker's buffers.
-pub(super) fn with_buffers<E: Real, T>(buffers: &[Mutex<Buffers<E>>], work: impl FnOnce(&mut Buffers<E>) -> T) -> T {
+pub(super) fn with_buffers<E: Precision, T>(
+    buffers: &[Mutex<Buffers<E>>],
+    work: impl FnOnce(&mut Buffers<E>) -> T,
+) -> T {
     let worker = rayon::current_thread_index().map_or(buffers.len() - 1, |at| at % buffers.len());
     // A panic in another worker leaves scratch behind, nothing that could be torn: values in double precision that a tile had
     // taken out are gone, and the next tile that needs them panics instead of reading old ones.
     let mut own = buffers[worker].lock().unwrap_or_else(std::sync::PoisonError::into_inner);
     work(&mut own)
+}
+
+/// Rounds the row of each point into rows of which every `distance`-th is one's own.
+pub(super) fn round_rows<E: Precision>(shape: Shape, from: &[f64], to: &mut [E], distance: usize) {
+    for (from, to) in from.chunks_exact(shape.ld).zip(to.chunks_exact_mut(distance * shape.ld)).take(shape.points) {
+        to[..shape.width].iter_mut().zip(from).for_each(|(to, from)| *to = E::from_f64(*from));
+    }
 }

@@ -14,8 +14,8 @@
 use std::ops::Range;
 
 use super::fit::{Fit, Measure, fit};
+use crate::kernel::Precision;
 use crate::loss::Loss;
-use crate::real::Real;
 use crate::schema::{self, TermKind};
 
 /// A Chamfer term's cloud and, as last assigned, its rows.
@@ -34,7 +34,7 @@ pub(crate) struct Chamfer<E> {
     scatter: f64,
 }
 
-impl<E: Real> Chamfer<E> {
+impl<E: Precision> Chamfer<E> {
     /// The rows of a term at so many points; `cloud` is flat and point by point. Nothing unless the term is a Chamfer
     /// distance in two to four dimensions and the cloud has a point.
     pub(crate) fn new(cloud: &[f64], (term, loss): (&schema::Term, Loss), points: usize) -> Option<Self> {

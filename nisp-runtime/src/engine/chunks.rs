@@ -2,9 +2,9 @@
 
 use super::group::BoundGroup;
 use crate::aligned::AlignedVec;
+use crate::kernel::Precision;
 use crate::layer::row_distance;
 use crate::network::Layout;
-use crate::real::Real;
 use crate::wide::add_rows;
 
 /// Most chunks that a step is cut into; more threads than this find no work.
@@ -17,7 +17,7 @@ const CHUNK_ROWS: usize = 400;
 const TILE_BYTES: usize = 640 << 10;
 
 /// A share of a step: consecutive tiles, their gradient and their part of every term.
-pub(super) struct Chunk<E: Real> {
+pub(super) struct Chunk<E: Precision> {
     pub(super) tiles: Vec<TileRange>,
     pub(super) gradient: AlignedVec<E>,
     pub(super) shares: Vec<f64>,
@@ -32,7 +32,7 @@ pub(super) struct TileRange {
 }
 
 /// Points of a tile: as many as keep its rows in cache, and enough tiles to share out.
-pub(super) fn tile_points<E: Real>(layout: &Layout, channels: usize, points: usize) -> usize {
+pub(super) fn tile_points<E: Precision>(layout: &Layout, channels: usize, points: usize) -> usize {
     let buffers = layout.affine.len() + layout.hidden.len() + 6;
     let bytes = channels * row_distance(layout.width) * size_of::<E>() * buffers;
     let fit = (TILE_BYTES / bytes).clamp(4, 64);
@@ -42,7 +42,7 @@ pub(super) fn tile_points<E: Real>(layout: &Layout, channels: usize, points: usi
 
 /// Does the work of all chunks, of which there is at least one, and adds their gradients up in the first: in a fixed tree,
 /// whatever the threads, and each sum as soon as both of its parts are there.
-pub(super) fn add_up<E: Real>(chunks: &mut [Chunk<E>], work: &(impl Fn(&mut Chunk<E>) + Sync)) {
+pub(super) fn add_up<E: Precision>(chunks: &mut [Chunk<E>], work: &(impl Fn(&mut Chunk<E>) + Sync)) {
     if let [chunk] = chunks {
         return work(chunk);
     }
@@ -53,7 +53,7 @@ pub(super) fn add_up<E: Real>(chunks: &mut [Chunk<E>], work: &(impl Fn(&mut Chun
 }
 
 /// Cuts all tiles of all groups into chunks of about equal work.
-pub(super) fn cut<E: Real>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
+pub(super) fn cut<E: Precision>(groups: &[BoundGroup<E>]) -> Vec<Vec<TileRange>> {
     let tiles: Vec<(TileRange, usize)> = groups
         .iter()
         .enumerate()

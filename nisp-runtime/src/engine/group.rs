@@ -1,16 +1,21 @@
 //! A point group bound to its points and data.
 
+use std::sync::Arc;
+
 use super::chamfer::Chamfer;
 use super::reading::Reading;
+use super::scaling::Scaling;
 use super::sites::Sites;
-use crate::kernel::{GroupKernel, Programs};
+use crate::kernel::{GroupKernel, Precision};
 use crate::loss::Loss;
-use crate::problem::powers::Powers;
-use crate::real::Real;
+use crate::residual::Programs;
 use crate::schema::{self, TermKind};
 
+/// A power for each learned scalar, by which a term's size goes with it; empty where it goes with none.
+pub(crate) type Powers = Arc<[f64]>;
+
 /// A group, its points and how its rows count. All quantities are in the engine's own units.
-pub struct BoundGroup<E: Real> {
+pub struct BoundGroup<E: Precision> {
     pub(crate) programs: &'static dyn Programs<E>,
     pub(crate) schema: &'static schema::Group,
     /// Number of points.
@@ -54,20 +59,7 @@ pub(crate) struct BoundTerm<E> {
     pub(crate) chamfer: Option<Chamfer<E>>,
 }
 
-/// Affine maps from network outputs to the engine's units, and the coordinates' scales.
-#[derive(Clone, Debug)]
-pub struct Scaling {
-    /// For each coordinate, the middle of its domain in the engine's units.
-    pub centre: Vec<f64>,
-    /// For each coordinate, half the extent of its domain in the engine's units (shared within a scale group).
-    pub half: Vec<f64>,
-    /// For each head, what a network output of zero stands for.
-    pub offset: Vec<f64>,
-    /// For each head, what a change of one in the network's output stands for.
-    pub scale: Vec<f64>,
-}
-
-impl<E: Real> BoundGroup<E> {
+impl<E: Precision> BoundGroup<E> {
     /// Binds a group to its points (engine units, `[point][coordinate]`), their partners (likewise; none unless the
     /// group is paired) and columns (`[column][point]`).
     pub(crate) fn new(
@@ -133,7 +125,7 @@ impl<E: Real> BoundGroup<E> {
     }
 }
 
-impl<E: Real> BoundTerm<E> {
+impl<E: Precision> BoundTerm<E> {
     /// Number of rows that solvers see, for a group of so many points.
     pub(crate) fn row_count(&self, points: usize) -> usize {
         match self.schema.kind {

@@ -2,9 +2,9 @@
 
 use super::group::BoundTerm;
 use super::{Engine, Learned};
-use crate::real::Real;
+use crate::kernel::Precision;
 
-impl<E: Real> BoundTerm<E> {
+impl<E: Precision> BoundTerm<E> {
     /// Takes over learned scalars' parameters.
     pub(super) fn grow(&mut self, learned: &[Learned], theta: &[E]) {
         let Self { powers, grown, growth, .. } = self;
@@ -25,7 +25,7 @@ impl<E: Real> BoundTerm<E> {
     }
 }
 
-impl<E: Real> Engine<E> {
+impl<E: Precision> Engine<E> {
     /// The same of the whole loss, whose shares are known: half the squares of rows that all shrink.
     pub(super) fn shrink_shares(&mut self) {
         let by_learned = &mut self.chunks[0].gradient[self.layout.learned_at..];

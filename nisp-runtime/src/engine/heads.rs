@@ -1,8 +1,8 @@
 //! The linear heads on a tile: dot products of last-layer channels with each head's weights, and their adjoint.
 
 use super::reading::Output;
+use crate::kernel::Precision;
 use crate::layer::Shape;
-use crate::real::Real;
 use crate::simd::{Kernel, Simd};
 
 /// `out[output][point] = weights[head] . rows[point][channel]`, without biases.
@@ -19,7 +19,7 @@ pub(crate) struct Heads<'a, E> {
     pub(crate) stride: usize,
 }
 
-impl<E: Real> Kernel<E> for Heads<'_, E> {
+impl<E: Precision> Kernel<E> for Heads<'_, E> {
     type Output = ();
 
     #[inline(always)]
@@ -57,7 +57,7 @@ pub(crate) struct HeadsRowsAdjoint<'a, E> {
     pub(crate) rows_bar: &'a mut [E],
 }
 
-impl<E: Real> Kernel<E> for HeadsRowsAdjoint<'_, E> {
+impl<E: Precision> Kernel<E> for HeadsRowsAdjoint<'_, E> {
     type Output = ();
 
     #[inline(always)]
@@ -99,7 +99,7 @@ pub(crate) struct HeadsWeightsAdjoint<'a, E> {
     pub(crate) weights_bar: &'a mut [E],
 }
 
-impl<E: Real> Kernel<E> for HeadsWeightsAdjoint<'_, E> {
+impl<E: Precision> Kernel<E> for HeadsWeightsAdjoint<'_, E> {
     type Output = ();
 
     #[inline(always)]

@@ -9,7 +9,7 @@ use super::buffers::Buffers;
 use super::group::{BoundGroup, BoundTerm};
 use super::tile::{Network, Tile};
 use super::{Engine, TileRange, with_buffers};
-use crate::real::Real;
+use crate::kernel::Precision;
 use crate::residual::Points;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
@@ -40,7 +40,7 @@ pub(super) struct Integrals {
 }
 
 impl Integrals {
-    pub(super) fn new<E: Real>(groups: &[BoundGroup<E>], scalars: usize, learned: usize) -> Self {
+    pub(super) fn new<E: Precision>(groups: &[BoundGroup<E>], scalars: usize, learned: usize) -> Self {
         let mut rows = Vec::new();
         for (group, bound) in groups.iter().enumerate() {
             for (term, t) in bound.terms.iter().enumerate().filter(|(_, t)| t.schema.kind == TermKind::Integral) {
@@ -70,7 +70,7 @@ impl Integrals {
     }
 }
 
-impl<E: Real> Engine<E> {
+impl<E: Precision> Engine<E> {
     /// Sums integral terms over their groups, ahead of the pass that needs their misfits.
     pub(super) fn integrate(&mut self) -> Result<(), Fault> {
         let network = Network { isa: self.isa, layout: &self.layout, weights: &self.weights, scalars: &self.scalars };
@@ -111,7 +111,7 @@ impl<E: Real> Engine<E> {
 }
 
 /// A tile's part of every integral of its group.
-fn sum_tile<E: Real>(
+fn sum_tile<E: Precision>(
     network: &Network<'_, E>,
     tile: &Tile<'_, E>,
     group: usize,
@@ -139,7 +139,7 @@ pub(super) fn covers<E>(term: &BoundTerm<E>, row: usize) -> bool {
 }
 
 /// Seeds of integral rows: the integral's adjoint times each point's weight.
-pub(super) fn seed_integrals<E: Real>(
+pub(super) fn seed_integrals<E: Precision>(
     integrals: &[Integral],
     group: usize,
     tile: &Tile<'_, E>,

@@ -4,7 +4,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use std::num::NonZero;
 
 use super::Engine;
-use super::tile::POINT_LANES;
+use super::buffers::POINT_LANES;
 use crate::facts::{Answer, CloudFacts, Facts};
 use crate::schema::TermKind;
 
@@ -22,7 +22,7 @@ impl Engine<f64> {
                 }
             }
         }
-        Answer { facts, clouds: seen, scalars: self.scalars.clone() }
+        Answer { facts, clouds: seen, scalars: self.scalars.clone(), scores: Vec::new() }
     }
 
     /// Values and derivatives at the points of a group.

@@ -4,17 +4,14 @@
 //! features of the coordinates they are ordinary layers; the features themselves are fixed and need no adjoint.
 
 use super::adjoint::Parts;
-use super::buffers::Buffers;
-use super::doubled::round_rows;
+use super::buffers::{Buffers, round_rows};
 use super::tile::{Network, Tile};
-use crate::features::Features;
 use crate::gemm::Write;
-use crate::kernel::Layers;
-use crate::layer::{Affine, AffineAdjoint, Layer, LayerAdjoint, Shape};
+use crate::kernel::Precision;
+use crate::layer::{Affine, AffineAdjoint, Features, Layer, LayerAdjoint, Layers, Shape};
 use crate::network::{Matrix, ProductAdjoint, multiply};
-use crate::real::Real;
 
-impl<E: Real> Network<'_, E> {
+impl<E: Precision> Network<'_, E> {
     /// Channels of the first layer and the gates, in `buffers.lifted`.
     pub(super) fn lift(
         &self,

@@ -9,6 +9,7 @@ mod buffers;
 mod chamfer;
 mod chunks;
 mod doubled;
+pub(crate) mod factors;
 mod fit;
 mod form;
 mod group;
@@ -23,6 +24,7 @@ mod objective;
 mod predict;
 mod reading;
 mod resample;
+mod scaling;
 mod sites;
 mod tile;
 mod weigh;
@@ -34,24 +36,27 @@ use rayon::prelude::*;
 use buffers::{Buffers, Extent, with_buffers};
 pub(crate) use chamfer::Chamfer;
 use chunks::{Chunk, TileRange, add_up, cut, tile_points};
-pub use group::{BoundGroup, Scaling};
+pub use group::BoundGroup;
+pub(crate) use group::Powers;
 use integral::{Integral, Integrals, covers, seed_integrals};
 pub(crate) use learned::{Learned, LearnedMap};
 use resample::Resampler;
+pub use resample::Resampling;
 pub(crate) use resample::is_exchangeable;
+pub use scaling::Scaling;
 use tile::{Network, Tile};
 use weigh::weigh;
 
 use crate::aligned::AlignedVec;
+use crate::kernel::Precision;
 use crate::network::{Layout, Weights};
-use crate::real::Real;
 use crate::simd::Isa;
 use crate::solve::fault::Fault;
 use crate::solve::objective::Block;
 use crate::solve::vector;
 
 /// A scene bound to points and data, ready to be evaluated at any parameters.
-pub struct Engine<E: Real> {
+pub struct Engine<E: Precision> {
     isa: Isa,
     pub(crate) layout: Layout,
     pub(crate) groups: Vec<BoundGroup<E>>,
@@ -75,7 +80,7 @@ pub struct Engine<E: Real> {
     resampler: Option<Box<Resampler<E>>>,
 }
 
-impl<E: Real> Engine<E> {
+impl<E: Precision> Engine<E> {
     /// An engine for `groups`, whose kernels, points and data are bound; the layout is padded for `isa`. `scalars` are in the
     /// engine's units.
     pub(crate) fn new(
@@ -276,7 +281,7 @@ impl<E: Real> Engine<E> {
 }
 
 /// First term of each group, counted over all groups.
-fn first_terms<E: Real>(groups: &[BoundGroup<E>]) -> Vec<usize> {
+fn first_terms<E: Precision>(groups: &[BoundGroup<E>]) -> Vec<usize> {
     groups
         .iter()
         .scan(0, |next, group| {

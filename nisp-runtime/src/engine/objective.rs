@@ -1,8 +1,8 @@
 //! The engine as solvers see it.
 
 use super::{Engine, LearnedMap};
+use crate::kernel::Precision;
 use crate::loss::deviation_of_clean;
-use crate::real::Real;
 use crate::schema::TermKind;
 use crate::solve::evidence::is_free;
 use crate::solve::fault::Fault;
@@ -11,7 +11,7 @@ use crate::solve::objective::{Block, BlockKind, LeastSquares, Objective};
 /// Misfits beside the declared noise, up to which a network is taken to follow the data.
 const FOLLOWED: f64 = 3.0;
 
-impl<E: Real> Objective<E> for Engine<E> {
+impl<E: Precision> Objective<E> for Engine<E> {
     fn len(&self) -> usize {
         self.layout.len
     }
@@ -100,7 +100,7 @@ impl LeastSquares for Engine<f64> {
     }
 }
 
-impl<E: Real> Engine<E> {
+impl<E: Precision> Engine<E> {
     /// The rows by term, for solvers and reports.
     pub(super) fn make_blocks(&self) -> Vec<Block> {
         let mut blocks = Vec::new();

@@ -5,11 +5,11 @@ use rayon::prelude::*;
 use super::buffers::Buffers;
 use super::tile::{Network, Tile};
 use super::{Chamfer, Engine, with_buffers};
-use crate::real::Real;
+use crate::kernel::Precision;
 use crate::residual::Points;
 use crate::schema::TermKind;
 
-impl<E: Real> Engine<E> {
+impl<E: Precision> Engine<E> {
     /// Runs `work` on every tile of a group, in order, with the raw rows of its residuals.
     pub(super) fn each_tile(&self, group: usize, mut work: impl FnMut(&Tile<'_, E>, &Buffers<E>)) {
         let bound = &self.groups[group];
@@ -101,7 +101,7 @@ impl<E: Real> Engine<E> {
 }
 
 /// A tile forward to the raw rows of its residuals.
-fn residuals<E: Real>(network: &Network<'_, E>, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
+fn residuals<E: Precision>(network: &Network<'_, E>, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
     network.forward(tile, buffers);
     let Buffers { jets, points, columns, rows, .. } = buffers;
     let inputs = Points {

@@ -1,13 +1,12 @@
 //! What a pass over a group reads of the network.
 
-use super::group::Scaling;
-use crate::kernel::Layers;
-use crate::real::Real;
+use super::scaling::Scaling;
+use crate::kernel::Precision;
+use crate::layer::{Layers, MOST_COORDINATES};
 use crate::schema::{self, TermKind};
-use crate::values::Precompiled;
 
 /// From coordinates to jets: through which layers, and what is read of the last.
-pub(crate) struct Reading<E: Real> {
+pub(crate) struct Reading<E: Precision> {
     pub(crate) layers: &'static dyn Layers<E>,
     /// Head channels to evaluate, sorted by channel.
     pub(crate) outputs: Vec<Output>,
@@ -33,7 +32,7 @@ pub(crate) struct JetMap<E> {
     pub(crate) parts: Vec<(usize, E)>,
 }
 
-impl<E: Real> Reading<E> {
+impl<E: Precision> Reading<E> {
     /// All jets of a group, by its own layers.
     pub(super) fn whole(layers: &'static dyn Layers<E>, group: &schema::Group, scaling: &Scaling) -> Self {
         Self::of(layers, group, scaling, &(0..group.jets.len()).collect::<Vec<usize>>())
@@ -45,9 +44,9 @@ impl<E: Real> Reading<E> {
         let is_ahead = |term: &&schema::Term| matches!(term.kind, TermKind::Chamfer { .. } | TermKind::Integral);
         let jets: Vec<usize> = group.terms.iter().filter(is_ahead).flat_map(|term| term.jets).copied().collect();
         let suffice = jets.iter().all(|&at| is_value(&group.jets[at]));
-        let layers =
-            values(scaling.half.len()).filter(|_| suffice && group.terms.iter().any(|term| is_ahead(&term)))?;
-        Some(Self::of(layers, group, scaling, &jets))
+        let inputs = scaling.half.len();
+        let is_there = suffice && inputs <= MOST_COORDINATES && group.terms.iter().any(|term| is_ahead(&term));
+        is_there.then(|| Self::of(E::values(inputs), group, scaling, &jets))
     }
 
     fn of(layers: &'static dyn Layers<E>, group: &schema::Group, scaling: &Scaling, read: &[usize]) -> Self {
@@ -76,22 +75,11 @@ impl<E: Real> Reading<E> {
     }
 }
 
-/// Layers of values over so many coordinates.
-pub(super) fn values<E: Real>(coordinates: usize) -> Option<&'static dyn Layers<E>> {
-    Some(match coordinates {
-        1 => <E as Precompiled<1>>::values(),
-        2 => <E as Precompiled<2>>::values(),
-        3 => <E as Precompiled<3>>::values(),
-        4 => <E as Precompiled<4>>::values(),
-        _ => return None,
-    })
-}
-
 fn is_value(jet: &schema::Jet) -> bool {
     jet.degree.iter().all(|&n| n == 0)
 }
 
-impl<E: Real> JetMap<E> {
+impl<E: Precision> JetMap<E> {
     fn new(jet: &schema::Jet, outputs: &[Output], scaling: &Scaling) -> Self {
         let shrink: f64 = jet.degree.iter().zip(&scaling.half).map(|(&n, half)| half.powi(i32::from(n))).product();
         let scale = scaling.scale[jet.head] / shrink;

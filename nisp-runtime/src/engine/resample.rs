@@ -4,12 +4,31 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
 use super::{BoundGroup, Engine};
-use crate::real::Real;
-use crate::recover::Resampling;
+use crate::kernel::Precision;
 use crate::schema::{self, TermKind};
 
+/// How points of equations are drawn from all that were bound: with a chance of `r^power / mean(r^power) + floor`, `r` being
+/// the residual at a point over its natural size (Wu et al. 2023). Only groups that hold equations and no data take part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Resampling {
+    /// Share of the points that a step sees.
+    pub share: f64,
+    /// Accepted steps between draws.
+    pub every: u64,
+    /// How strongly large residuals are preferred.
+    pub power: f64,
+    /// What keeps the other points in the draw.
+    pub floor: f64,
+}
+
+impl Default for Resampling {
+    fn default() -> Self {
+        Self { share: 1.0 / 3.0, every: 100, power: 1.0, floor: 1.0 }
+    }
+}
+
 /// All points that were bound, and the turns of drawing from them.
-pub(super) struct Resampler<E: Real> {
+pub(super) struct Resampler<E: Precision> {
     settings: Resampling,
     pool: Engine<E>,
     accepted: u64,
@@ -21,7 +40,7 @@ pub(crate) fn is_exchangeable(group: &schema::Group) -> bool {
     !group.paired && group.terms.iter().all(|term| term.kind == TermKind::Residual)
 }
 
-impl<E: Real> Engine<E> {
+impl<E: Precision> Engine<E> {
     /// Exchanges the points of this engine for others of `pool`, which has them all, now and then.
     pub(crate) fn resample_from(&mut self, pool: Engine<E>, settings: Resampling, seed: u64) {
         let random = StdRng::seed_from_u64(seed);
@@ -47,7 +66,7 @@ impl<E: Real> Engine<E> {
     }
 }
 
-impl<E: Real> Resampler<E> {
+impl<E: Precision> Resampler<E> {
     /// As many points of the pool as a group has, without repetition: each with a chance that rises with its residual.
     fn draw(&mut self, group: usize, own: &BoundGroup<E>, theta: &[E]) -> Vec<usize> {
         let rows = self.pool.raw_rows(group, theta);
@@ -72,7 +91,7 @@ impl<E: Real> Resampler<E> {
     }
 }
 
-impl<E: Real> BoundGroup<E> {
+impl<E: Precision> BoundGroup<E> {
     /// Takes over the chosen points of a group that has more of them.
     fn take(&mut self, pool: &Self, chosen: &[usize]) {
         self.network.take(&pool.network, pool.points, chosen);

@@ -1,19 +1,17 @@
 //! Where the network is evaluated for a group.
 
-use super::buffers::Buffers;
-use super::tile::Tile;
+use crate::kernel::Precision;
 use crate::network::Mapping;
-use crate::real::Real;
 
 /// The points of a group, then their partners if they have any.
-pub(crate) struct Sites<E: Real> {
+pub(crate) struct Sites<E: Precision> {
     /// Network coordinates, `[site][point][coordinate]`.
     coordinates: Vec<E>,
     /// What features of them are made of, `[site][point][2][feature]`, if there are any: the same in every step.
     table: Vec<E>,
 }
 
-impl<E: Real> Sites<E> {
+impl<E: Precision> Sites<E> {
     pub(super) fn new(coordinates: impl Iterator<Item = f64>) -> Self {
         Self { coordinates: coordinates.map(E::from_f64).collect(), table: Vec::new() }
     }
@@ -33,14 +31,21 @@ impl<E: Real> Sites<E> {
         }
     }
 
-    /// Copies what belongs to a tile: its points, then their partners.
-    pub(super) fn load(&self, tile: &Tile<'_, impl Real>, buffers: &mut Buffers<E>) {
-        let (sites, points) = (tile.group.sites(), tile.group.points);
-        for (from, to) in [(&self.coordinates, &mut buffers.coordinates), (&self.table, &mut buffers.table)] {
+    /// Copies what belongs to a tile of `count` points from `first` on, of `points` in all with `sites` each: coordinates and
+    /// features of its points, then of their partners.
+    pub(super) fn load(
+        &self,
+        tile: (usize, usize),
+        (points, sites): (usize, usize),
+        coordinates: &mut [E],
+        table: &mut [E],
+    ) {
+        let (first, count) = tile;
+        for (from, to) in [(&self.coordinates, coordinates), (&self.table, table)] {
             let length = from.len() / (sites * points);
             for site in 0..sites {
-                let from = &from[(site * points + tile.first) * length..][..tile.count * length];
-                to[site * tile.count * length..][..from.len()].copy_from_slice(from);
+                let from = &from[(site * points + first) * length..][..count * length];
+                to[site * count * length..][..from.len()].copy_from_slice(from);
             }
         }
     }

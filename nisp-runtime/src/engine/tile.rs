@@ -2,25 +2,21 @@
 //!
 //! A tile is so small that its channels stay in the second-level cache from the coordinates to the gradient.
 
-use super::buffers::Buffers;
-use super::doubled::round_rows;
+use super::buffers::{Buffers, POINT_LANES, round_rows};
 use super::group::BoundGroup;
 use super::heads::Heads;
 use super::reading::Reading;
+use super::sites::Sites;
 use crate::aligned::AlignedVec;
-use crate::kernel::Layers;
-use crate::layer::{Gate, Gated, Layer, Shape, row_distance};
+use crate::kernel::Precision;
+use crate::layer::{Gate, Gated, Layer, Layers, Shape, row_distance};
 use crate::network::{Layout, Weights};
-use crate::real::Real;
 use crate::simd::{Isa, dispatch};
 use crate::wide::subtract;
 
-/// Points of a tile are padded to a multiple of this, so that every vector length divides it.
-pub(crate) const POINT_LANES: usize = 16;
-
 /// The network as a tile sees it.
 #[derive(Clone, Copy)]
-pub(crate) struct Network<'a, E: Real> {
+pub(crate) struct Network<'a, E: Precision> {
     pub(crate) isa: Isa,
     pub(crate) layout: &'a Layout,
     pub(crate) weights: &'a Weights<E>,
@@ -29,14 +25,14 @@ pub(crate) struct Network<'a, E: Real> {
 
 /// A tile: `count` points of a group from `first` on.
 #[derive(Clone, Copy)]
-pub(crate) struct Tile<'a, E: Real> {
+pub(crate) struct Tile<'a, E: Precision> {
     pub(crate) group: &'a BoundGroup<E>,
     pub(crate) reading: &'a Reading<E>,
     pub(crate) first: usize,
     pub(crate) count: usize,
 }
 
-impl<'a, E: Real> Tile<'a, E> {
+impl<'a, E: Precision> Tile<'a, E> {
     /// A tile of which all is read that its group's programs read.
     pub(crate) fn new(group: &'a BoundGroup<E>, first: usize, count: usize) -> Self {
         Self { group, reading: &group.reading, first, count }
@@ -45,6 +41,12 @@ impl<'a, E: Real> Tile<'a, E> {
     /// A tile of which is read what has to be known ahead of a step's pass.
     pub(crate) fn ahead(group: &'a BoundGroup<E>, first: usize, count: usize) -> Self {
         Self { group, reading: group.ahead(), first, count }
+    }
+
+    /// Copies where the network is evaluated for it, in either precision.
+    pub(super) fn load_sites<F: Precision>(&self, sites: &Sites<F>, buffers: &mut Buffers<F>) {
+        let all = (self.group.points, self.group.sites());
+        sites.load((self.first, self.count), all, &mut buffers.coordinates, &mut buffers.table);
     }
 
     pub(super) fn shape(&self, layout: &Layout) -> Shape {
@@ -62,7 +64,7 @@ impl<'a, E: Real> Tile<'a, E> {
     }
 }
 
-impl<E: Real> Network<'_, E> {
+impl<E: Precision> Network<'_, E> {
     /// From the points of a tile to the jets that its group reads.
     pub(crate) fn forward(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
         self.load(tile, buffers);
@@ -112,7 +114,7 @@ impl<E: Real> Network<'_, E> {
     /// Copies a tile's points and data; lanes past the last point repeat it, so that programs stay finite there.
     fn load(&self, tile: &Tile<'_, E>, buffers: &mut Buffers<E>) {
         let group = tile.group;
-        group.network.load(tile, buffers);
+        tile.load_sites(&group.network, buffers);
         for (from, to) in [(&group.coordinates, &mut buffers.points), (&group.columns, &mut buffers.columns)] {
             for (from, to) in from.chunks_exact(group.points).zip(to.chunks_exact_mut(tile.stride())) {
                 let values = &from[tile.first..][..tile.count];
@@ -157,7 +159,7 @@ impl<E: Real> Network<'_, E> {
 }
 
 /// The first layer's channels, and the gates as difference and floor: `c` is replaced by `c - d` in place.
-fn split_gates<E: Real>(lifted: &mut [AlignedVec<E>], len: usize) -> (&mut [E], Option<Gate<'_, E>>) {
+fn split_gates<E: Precision>(lifted: &mut [AlignedVec<E>], len: usize) -> (&mut [E], Option<Gate<'_, E>>) {
     match lifted {
         [first, c, d] => {
             subtract(&mut c[..len], &d[..len]);

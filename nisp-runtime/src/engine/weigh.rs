@@ -3,12 +3,12 @@
 use super::buffers::Buffers;
 use super::group::BoundTerm;
 use super::tile::{Network, Tile};
-use crate::real::Real;
+use crate::kernel::Precision;
 use crate::residual::Points;
 use crate::schema::TermKind;
 
 /// Rows of a tile, their shares of the loss, and the seeds of the adjoint. Gives the first row that is not finite.
-pub(super) fn weigh<E: Real>(
+pub(super) fn weigh<E: Precision>(
     network: &Network<'_, E>,
     tile: &Tile<'_, E>,
     buffers: &mut Buffers<E>,
@@ -54,7 +54,7 @@ pub(super) fn weigh<E: Real>(
     fault
 }
 
-impl<E: Real> BoundTerm<E> {
+impl<E: Precision> BoundTerm<E> {
     /// Replaces the raw rows of a tile by what counts, and gives half the sum of their squares.
     fn weigh(&self, first: usize, count: usize, values: &mut [E], seeds: &mut [E], slopes: &mut [E]) -> f64 {
         let mut sum = 0.0;

@@ -2,13 +2,12 @@
 
 use super::{Left, panel};
 use crate::aligned::AlignedVec;
-use crate::real::Real;
-use crate::simd::{Isa, Kernel, Simd, dispatch};
+use crate::simd::{Element, Isa, Kernel, Simd, dispatch};
 
 /// A right factor as panels of two vectors' columns, each panel row by row; the last panel has one vector if their
 /// number is odd.
 #[derive(Clone, Debug)]
-pub struct Packed<E: Real> {
+pub struct Packed<E: Element> {
     isa: Isa,
     /// Columns of a full panel.
     panel: usize,
@@ -17,7 +16,7 @@ pub struct Packed<E: Real> {
     elements: AlignedVec<E>,
 }
 
-impl<E: Real> Packed<E> {
+impl<E: Element> Packed<E> {
     /// Room for `inner` rows and `columns` columns, all zero; columns are rounded up to whole vectors of `isa`.
     pub fn zeros(isa: Isa, inner: usize, columns: usize) -> Self {
         let columns = columns.next_multiple_of(isa.lanes::<E>());
@@ -84,7 +83,7 @@ impl<E: Real> Packed<E> {
 
 struct Panel;
 
-impl<E: Real> Kernel<E> for Panel {
+impl<E: Element> Kernel<E> for Panel {
     type Output = usize;
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) -> usize {

@@ -2,8 +2,7 @@
 
 use super::block::{Block, block, most_rows};
 use super::{Shape, Task, panel};
-use crate::real::Real;
-use crate::simd::{Kernel, Simd};
+use crate::simd::{Element, Kernel, Simd};
 
 /// Longest run of the inner index that is summed in registers. A panel of that many rows, 32 KB, leaves room in a cache
 /// of 48 KB for the rows of A that meet it.
@@ -12,7 +11,7 @@ pub const RUN: usize = 256;
 /// Sweeps over all blocks of a product.
 pub(super) struct Sweep<E>(pub(super) Task<E>);
 
-impl<E: Real> Kernel<E> for Sweep<E> {
+impl<E: Element> Kernel<E> for Sweep<E> {
     type Output = ();
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {

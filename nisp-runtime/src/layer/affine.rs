@@ -3,8 +3,8 @@
 use std::marker::PhantomData;
 
 use super::{Shape, load_channels, takes_values};
-use crate::kernel::Rules;
 use crate::real::Real;
+use crate::rules::Rules;
 use crate::simd::{Kernel, Simd};
 use crate::tanh;
 

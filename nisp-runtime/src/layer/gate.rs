@@ -3,8 +3,8 @@
 use std::marker::PhantomData;
 
 use super::{Shape, load_channels, load_read, store_read};
-use crate::kernel::Rules;
 use crate::real::Real;
+use crate::rules::Rules;
 use crate::simd::{Kernel, Simd};
 
 /// Channels of the gates `c` and `d`, as `g = c - d` and `d`: the layer puts out `d + g * z'`.

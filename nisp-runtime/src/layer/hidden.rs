@@ -4,8 +4,8 @@ use std::marker::PhantomData;
 
 use super::gate::{Ending, EndingAdjoint};
 use super::{Shape, load_channels, load_read, store_read, takes_values};
-use crate::kernel::Rules;
 use crate::real::Real;
+use crate::rules::Rules;
 use crate::simd::{Kernel, Simd};
 use crate::tanh;
 

@@ -4,9 +4,10 @@ use super::heads::Heads;
 use super::normal::Factor;
 use super::phase::{CONVEX_STEPS, Phase, WARM_STEPS};
 use super::place::{Place, State};
-use super::solver::Solver;
+use super::solver::{LEAST_DAMPING, Solver};
 use super::surface::Surface;
-use super::{LocalError, Progress, Stage};
+use super::{LocalError, Stage};
+use crate::carrier::Progress;
 use crate::loss::deviation_of_clean;
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
@@ -33,9 +34,7 @@ const RESTING: f64 = 1e-3;
 /// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
 const ROUGHLY: f64 = 0.1;
 const COARSE_STEPS: u64 = 4;
-/// Stiffness against a step of every field's coefficient, in tolerances over natural sizes: the least, at which what rows tell
-/// is hardly slowed, and the most.
-pub(super) const LEAST_DAMPING: f64 = 0.1;
+/// Most stiffness against a step of every field's coefficient, in tolerances over natural sizes.
 const MOST_DAMPING: f64 = 1e4;
 /// What damping is multiplied by when a step fails, and divided by when one does not.
 const STRONGER: f64 = 10.0;

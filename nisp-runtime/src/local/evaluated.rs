@@ -5,19 +5,10 @@ use rayon::prelude::*;
 use super::group::Group;
 use super::heads::Heads;
 use super::lattice::Exponents;
+use super::rows::Evaluated;
 use super::sites::Sites;
-use super::testing::Test;
 use crate::residual::Points;
 use crate::simd::Isa;
-
-/// Values of all rows at all points, and their derivatives.
-pub(super) struct Evaluated {
-    stride: usize,
-    /// `[row][point]`
-    pub(super) rows: Vec<f64>,
-    /// By row: `[jet or learned scalar][point]`.
-    bars: Vec<Vec<f64>>,
-}
 
 impl Group {
     /// Jets at points, `[jet][point]`; of values of bounded heads, by jet and point, the derivative of what a program reads by
@@ -115,23 +106,6 @@ impl Group {
     /// Rows of the group at its own points, and their derivatives if `slopes`.
     pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
         self.evaluate_at(&self.sites, heads, theta, scalars, slopes)
-    }
-}
-
-impl Evaluated {
-    /// Mean of a row over a test's points.
-    pub(super) fn mean(&self, test: &Test, row: usize) -> f64 {
-        test.points.iter().map(|&(p, share)| share * self.row(row, p as usize)).sum()
-    }
-
-    /// Value of a row at a point.
-    pub(super) fn row(&self, row: usize, p: usize) -> f64 {
-        self.rows[row * self.stride + p]
-    }
-
-    /// Derivative of a row at a point by a jet or learned scalar.
-    pub(super) fn bar(&self, row: usize, bar: usize, p: usize) -> f64 {
-        self.bars[row][bar * self.stride + p]
     }
 }
 

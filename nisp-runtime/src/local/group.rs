@@ -8,9 +8,9 @@
 use rayon::prelude::*;
 
 use super::block::{Block, Layout};
-use super::evaluated::Evaluated;
 use super::heads::Heads;
 use super::lattice::{Exponents, Lattice, Span};
+use super::rows::Evaluated;
 use super::sites::Sites;
 use super::testing::{Test, tests};
 use crate::kernel::GroupKernel;
@@ -182,6 +182,30 @@ impl Group {
         let (weights, excess): (Vec<f64>, Vec<f64>) = majorants.unzip();
         block.divide(weights.into_iter().map(|weight| weight.sqrt().recip()));
         block.excess = excess.into_iter().sum();
+    }
+
+    /// Rows over their tolerances, in the order of [`Group::blocks`].
+    pub(super) fn over_tolerances(&self, evaluated: &Evaluated) -> Vec<f64> {
+        let rows = self.own_rows();
+        let at =
+            |value: &dyn Fn(usize) -> f64| rows.iter().map(|&row| value(row) / self.sigma[row]).collect::<Vec<_>>();
+        match self.weights.is_empty() {
+            true => (0..self.sites.count).flat_map(|p| at(&|row| evaluated.row(row, p))).collect(),
+            false => self.tests.iter().flat_map(|test| at(&|row| test.weight * evaluated.mean(test, row))).collect(),
+        }
+    }
+
+    /// Roots of what squares of [`Group::over_tolerances`] are multiplied by where losses are robust.
+    pub(super) fn root_weights(&self, over: &[f64]) -> Vec<f64> {
+        let losses = self.own_rows().into_iter().map(|row| self.losses[row]).cycle();
+        losses.zip(over).map(|((loss, times), over)| loss.weight(over / times.sqrt()).sqrt()).collect()
+    }
+
+    /// What an integral's misfit is divided by.
+    pub(super) fn integral_tolerance(&self, number: usize) -> f64 {
+        let terms = self.schema.terms.iter().filter(|term| term.kind == TermKind::Integral);
+        let mut rows = terms.flat_map(|term| term.first..term.first + term.rows);
+        rows.nth(number).map_or(1.0, |row| self.sigma[row])
     }
 
     /// What the misfit of a row costs.

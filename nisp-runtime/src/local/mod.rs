@@ -27,6 +27,8 @@ mod place;
 mod prior;
 mod refuse;
 mod resolved;
+mod rows;
+mod scores;
 mod sites;
 mod solver;
 mod sorted;
@@ -37,6 +39,7 @@ use std::time::{Duration, Instant};
 
 use thiserror::Error;
 
+use crate::carrier::Progress;
 use crate::facts::Answer;
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status, Warning};
@@ -112,18 +115,6 @@ pub(crate) struct LocalSolution {
     pub(crate) misfits: Vec<Vec<misfits::Misfits>>,
 }
 
-/// What the caller sees after every step.
-pub(crate) struct Progress<'a> {
-    /// Steps so far, on all lattices.
-    pub(crate) iteration: u64,
-    /// Seconds so far.
-    pub(crate) elapsed_s: f64,
-    /// The loss before the step.
-    pub(crate) loss: f64,
-    /// Gives the state before the step, which whoever goes on from it repeats.
-    pub(crate) checkpoint: &'a dyn Fn() -> State,
-}
-
 /// Name of the method in saved states.
 const METHOD: &str = "local functions";
 
@@ -167,7 +158,11 @@ pub(crate) fn solve(
     if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
         end.warnings.extend(solver.unresolved(&end.state, settings.cells));
     }
-    let answer = solver.answer(&end.state);
+    let mut answer = solver.answer(&end.state);
+    // An answer that nothing says against is asked what it rests on.
+    if solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest)) {
+        answer.scores = solver.scores(&end.state).unwrap_or_default();
+    }
     let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     Ok(LocalSolution {

@@ -24,7 +24,7 @@ pub(super) struct Normal {
     /// Rows that all coefficients share: learned scalars first, then integrals.
     border: Vec<Vec<f64>>,
     corner: DMatrix<f64>,
-    border_gradient: Vec<f64>,
+    pub(super) border_gradient: Vec<f64>,
     learned: usize,
     /// Right-hand sides whose solutions spread as the posterior does, while they are wanted.
     pub(super) draws: Option<Draws>,
@@ -247,14 +247,14 @@ impl Normal {
 }
 
 impl Factor {
-    /// Solves the bordered system.
+    /// Solves the bordered system: the coefficients, then the learned scalars and the multipliers of integrals.
     pub(super) fn solve(&self, right: &[f64], below: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let mut step = solve(&self.factor, right);
         let shared = self.share(&mut step, below)?;
         Some((step, shared))
     }
 
-    /// From a solution without the border to one with it; returns the learned scalars.
+    /// From a solution without the border to one with it; returns the unknowns of the border.
     fn share(&self, step: &mut [f64], below: &[f64]) -> Option<Vec<f64>> {
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let rest = DVector::from_iterator(
@@ -265,7 +265,7 @@ impl Factor {
         for (solved, shared) in self.solved.iter().zip(shared.iter()) {
             step.iter_mut().zip(solved).for_each(|(step, solved)| *step -= solved * shared);
         }
-        Some(shared.iter().take(self.learned).copied().collect())
+        Some(shared.iter().copied().collect())
     }
 
     /// Solutions for all right-hand sides, drawn from the posterior.
@@ -276,7 +276,9 @@ impl Factor {
             let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
             let mut below = draws.below(draw);
             below.resize(self.border.len(), 0.0);
-            deviations.learned.push(self.share(&mut coefficients, &below)?);
+            let mut shared = self.share(&mut coefficients, &below)?;
+            shared.truncate(self.learned);
+            deviations.learned.push(shared);
             deviations.coefficients.push(coefficients);
         }
         Some(deviations)

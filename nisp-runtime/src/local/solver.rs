@@ -1,6 +1,5 @@
 //! A problem on its lattices: what is set up once, before any step.
 
-use super::course::LEAST_DAMPING;
 use super::group::Group;
 use super::heads::Heads;
 use super::lattice::Lattice;
@@ -16,6 +15,10 @@ use crate::schema::TermKind;
 /// How far equations may be off, as a share of their natural size: about the error of splines on their lattice. Held to less,
 /// they would take that error for a load.
 const TOLERANCE: f64 = 1e-2;
+
+/// Least stiffness against a step of every field's coefficient, in tolerances over natural sizes: what rows tell is hardly
+/// slowed by it.
+pub(super) const LEAST_DAMPING: f64 = 0.1;
 
 /// A problem on its lattices.
 pub(super) struct Solver<'a> {

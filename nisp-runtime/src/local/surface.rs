@@ -11,6 +11,7 @@ use nalgebra::{DMatrix, Matrix3, Vector3};
 use super::block::Block;
 use super::group::Group;
 use super::heads::Heads;
+use crate::facts::spread;
 use crate::loss::Loss;
 use crate::schema;
 
@@ -163,6 +164,27 @@ impl Surface {
         self.misfits().map(|misfit| weight * loss.rho(misfit / sigma)).sum()
     }
 
+    /// Where the surface has the feet of all points.
+    pub(super) fn images(&self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Vector3<f64>> {
+        self.positions(group, heads, theta, scalars, &self.feet)
+    }
+
+    /// How far every point goes that is moved by `by` its arm about the middle of the cloud, and the cloud's radius.
+    pub(super) fn moved(&self, by: impl Fn(&Vector3<f64>, f64) -> Vector3<f64>) -> Vec<Vector3<f64>> {
+        let (middle, radius) = spread(self.cloud.iter().copied());
+        self.cloud.iter().map(|point| by(&(point - middle), radius)).collect()
+    }
+
+    /// By how much the rows of [`Surface::blocks`] change where the surface at every foot goes so far.
+    pub(super) fn across(&self, moved: &[Vector3<f64>], sigma: f64) -> Vec<f64> {
+        let kept = (0..self.cloud.len()).filter(|&i| self.found[i]);
+        kept.map(|i| self.normals[i].dot(&moved[i]) * self.root_weight(i, sigma) / sigma).collect()
+    }
+
+    fn root_weight(&self, i: usize, sigma: f64) -> f64 {
+        (self.counting.weight * self.counting.loss.weight(self.misfits[i] / sigma)).sqrt()
+    }
+
     /// Positions of places, given flat.
     fn positions(
         &self,
@@ -278,8 +300,7 @@ impl Surface {
         kept.map(|i| {
             let seed = |bar| (0..3).map(|c| self.normals[i][c] * evaluated.bar(self.first + c, bar, i)).sum();
             let mut block = group.at_point(heads, (&sites, i), learned, self.misfits[i], seed);
-            let weight = self.counting.weight * self.counting.loss.weight(self.misfits[i] / sigma);
-            block.divide(std::iter::once(sigma / weight.sqrt()));
+            block.divide(std::iter::once(sigma / self.root_weight(i, sigma)));
             block
         })
         .collect()

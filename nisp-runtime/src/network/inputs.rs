@@ -3,6 +3,7 @@
 use rand::{SeedableRng, rngs::StdRng};
 
 use super::init::normal;
+use crate::layer::Function;
 
 /// What the network is a function of. Coordinates are scaled to [-1, 1] beforehand.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -44,18 +45,6 @@ impl Fourier {
         let mut random = StdRng::seed_from_u64(0);
         (0..self.frequencies * coordinates).map(|_| self.deviation * normal(&mut random)).collect()
     }
-}
-
-/// A function of one variable that features are made with.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Function {
-    /// `sin a`
-    Sine,
-    /// `scale ln a`
-    Logarithm {
-        /// Factor.
-        scale: f64,
-    },
 }
 
 /// A feature `function(projection . x + phase) + linear . x + offset`.

@@ -3,7 +3,7 @@
 use std::ops::Range;
 
 use super::Architecture;
-use crate::real::Real;
+use crate::simd::Element;
 use crate::solve::prior::{PriorGroup, WeightPrior};
 
 /// Positions of all parameters in the compact vector `theta` and in the padded working vector.
@@ -140,7 +140,7 @@ impl Layout {
     }
 
     /// From `theta` to the padded vector (padding is left as it is: zero).
-    pub fn pad<E: Real>(&self, theta: &[E], padded: &mut [E]) {
+    pub fn pad<E: Element>(&self, theta: &[E], padded: &mut [E]) {
         for m in self.matrices() {
             for i in 0..m.rows {
                 let (scale, weights) = (m.scale(theta, i), &theta[m.row(i)]);
@@ -153,7 +153,7 @@ impl Layout {
     }
 
     /// Adjoint of [`Layout::pad`]: from the padded gradient to the gradient by `theta`.
-    pub fn pad_adjoint<E: Real>(&self, theta: &[E], padded: &[E], gradient: &mut [E]) {
+    pub fn pad_adjoint<E: Element>(&self, theta: &[E], padded: &[E], gradient: &mut [E]) {
         for m in self.matrices() {
             for i in 0..m.rows {
                 let (scale, bars) = (m.scale(theta, i), &mut gradient[m.row(i)]);
@@ -184,7 +184,7 @@ impl Matrix {
     }
 
     #[inline(always)]
-    fn scale<E: Real>(&self, theta: &[E], row: usize) -> E {
+    fn scale<E: Element>(&self, theta: &[E], row: usize) -> E {
         match self.scales {
             None => E::ONE,
             Some(scales) => E::from_f64(theta[scales + row].to_f64().exp()),

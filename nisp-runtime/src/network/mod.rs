@@ -8,7 +8,7 @@ mod weights;
 
 pub use cost::Cost;
 pub use init::initialise;
-pub use inputs::{Fourier, Function, Inputs, Stretched};
+pub use inputs::{Fourier, Inputs, Stretched};
 
 pub(crate) use init::normal;
 pub use layout::{Layout, Matrix};

@@ -1,18 +1,16 @@
 //! The working form of the weights: materialised and packed once per step, for all tiles.
 
-use super::inputs::{Feature, Function};
+use super::inputs::Feature;
 use super::{Layout, Matrix};
 use crate::aligned::AlignedVec;
-use crate::features::tabulate;
 use crate::gemm::{self, Left, Packed, Right, Write, gemm};
-use crate::layer::{Shape, row_distance};
-use crate::real::Real;
-use crate::simd::Isa;
+use crate::layer::{Function, Shape, row_distance, tabulate};
+use crate::simd::{Element, Isa};
 use crate::wide::add_rows;
 
 /// Padded weights, and hidden matrices packed for both directions.
 #[derive(Debug)]
-pub struct Weights<E: Real> {
+pub struct Weights<E: Element> {
     padded: AlignedVec<E>,
     pub(crate) hidden: Vec<Hidden<E>>,
     pub(crate) features: Option<Mapping<E>>,
@@ -28,7 +26,7 @@ struct Doubled {
 
 /// Features of the coordinates, and the matrices on them.
 #[derive(Debug)]
-pub(crate) struct Mapping<E: Real> {
+pub(crate) struct Mapping<E: Element> {
     /// Features in the place of units, no points.
     pub(crate) shape: Shape,
     pub(crate) function: Function,
@@ -42,7 +40,7 @@ pub(crate) struct Mapping<E: Real> {
     pub(crate) matrices: Vec<Packed<E>>,
 }
 
-impl<E: Real> Mapping<E> {
+impl<E: Element> Mapping<E> {
     fn new(isa: Isa, layout: &Layout, (function, features): (Function, Vec<Feature>)) -> Self {
         let width = features.len().next_multiple_of(isa.lanes::<E>());
         let by_feature = |value: &dyn Fn(&Feature) -> f64| {
@@ -84,14 +82,14 @@ impl<E: Real> Mapping<E> {
 
 /// A hidden weight matrix `W`, packed for both directions.
 #[derive(Debug)]
-pub(crate) struct Hidden<E: Real> {
+pub(crate) struct Hidden<E: Element> {
     /// `W^T`
     forward: Packed<E>,
     /// `W`
     backward: Packed<E>,
 }
 
-impl<E: Real> Weights<E> {
+impl<E: Element> Weights<E> {
     /// Weights of a network of this layout, all zero; in double precision too if values are needed in it.
     pub fn new(isa: Isa, layout: &Layout, doubled: bool) -> Self {
         let pack = || Packed::zeros(isa, layout.width, layout.width);
@@ -152,7 +150,7 @@ impl<E: Real> Weights<E> {
     }
 }
 
-impl<E: Real> Hidden<E> {
+impl<E: Element> Hidden<E> {
     /// `out = rows W^T`
     pub(crate) fn forward(&self, isa: Isa, rows: usize, ld: usize, input: &[E], out: &mut [E]) {
         multiply(isa, rows, input, &self.forward, out, [ld; 2], Write::SetFromShortSums);
@@ -165,7 +163,7 @@ impl<E: Real> Hidden<E> {
 }
 
 /// `out = input matrix`, rows of both as far apart as `lds` says.
-pub(crate) fn multiply<E: Real>(
+pub(crate) fn multiply<E: Element>(
     isa: Isa,
     rows: usize,
     input: &[E],
@@ -190,7 +188,7 @@ pub(crate) struct ProductAdjoint<'a, E> {
     pub(crate) input_ld: usize,
 }
 
-impl<E: Real> ProductAdjoint<'_, E> {
+impl<E: Element> ProductAdjoint<'_, E> {
     /// `weights += bar^T input`, or the transpose of that where weights lie so, and the biases the sum of the values'
     /// adjoints, in a padded gradient.
     pub(crate) fn add(&self, isa: Isa, matrix: &Matrix, gradient: &mut [E]) {

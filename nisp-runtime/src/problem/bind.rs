@@ -3,10 +3,10 @@
 use thiserror::Error;
 
 use super::frame::inward_points;
-use super::powers::{Powers, powers};
+use super::powers::powers;
 use super::scale::{Data, Scales, scales};
 use super::{Binding, Frame, Problem, UnitSystem};
-use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Scaling, is_exchangeable};
+use crate::engine::{BoundGroup, Chamfer, Engine, Learned, LearnedMap, Powers, Scaling, is_exchangeable};
 use crate::kernel::Precision;
 use crate::loss::Loss;
 use crate::network::{Architecture, Inputs, Layout};

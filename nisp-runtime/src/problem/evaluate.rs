@@ -1,10 +1,9 @@
 //! A bound problem as a function of the network's parameters, for those who bring a method of their own.
 
 use super::{BindError, Problem};
-use crate::engine::{Engine, Scaling};
+use crate::engine::{Engine, Scaling, factors};
 use crate::kernel::Precision;
 use crate::network::{Architecture, Inputs};
-use crate::recover::weigh;
 use crate::simd::Isa;
 
 impl Problem {
@@ -17,7 +16,7 @@ impl Problem {
     /// A problem that is not fully or not sensibly bound, or a network that cannot be.
     pub fn engine<E: Precision>(&self, isa: Isa, architecture: Architecture) -> Result<Engine<E>, BindError> {
         let mut engine = self.bound(architecture.inputs)?.engine_on(isa, architecture)?;
-        weigh::by_size(&mut engine);
+        factors::by_size(&mut engine);
         Ok(engine)
     }
 

@@ -4,7 +4,7 @@ mod beliefs;
 mod bind;
 mod evaluate;
 mod frame;
-pub(crate) mod powers;
+mod powers;
 mod scale;
 mod system;
 mod units;

@@ -5,16 +5,11 @@
 //! better and better where data leave both open. So the size goes with powers of the learned scalars, those that it has
 //! where learning starts; together they are its degree in what is learned, exactly, where scalars scale together.
 
-use std::sync::Arc;
-
 use super::scale::{Data, scales};
-use crate::engine::Learned;
+use crate::engine::{Learned, Powers};
 use crate::kernel::SceneRef;
 use crate::network::Inputs;
 use crate::schema::{Loss, Term, TermKind};
-
-/// A power for each learned scalar, by which a term's size goes with it; empty where it goes with none.
-pub(crate) type Powers = Arc<[f64]>;
 
 /// Change of a scalar, relative to it, that sizes are compared over.
 const STEP: f64 = 1e-4;

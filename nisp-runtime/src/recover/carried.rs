@@ -1,20 +1,36 @@
-//! What every carrier says of its answer, whatever carries the heads.
+//! What every carrier does, whatever carries the heads: it solves a problem, and its answer is read.
 
-use super::bars::Distrust;
-use crate::engine::Engine;
+use super::course::Course;
+use super::{Optimizer, RecoverError, Settings, Width};
+use crate::carrier::Kept;
 use crate::facts::Answer;
-use crate::local::LocalSolution;
-use crate::network::Architecture;
 use crate::problem::Bound;
-use crate::saved::{Kept, KeptNetwork};
-use crate::solve::curvature::Curvature;
-use crate::solve::posterior::posterior;
-use crate::solve::prior::WeightPrior;
-use crate::solve::root::Root;
-use crate::splines::SplineSolution;
+use crate::solve::driver::{Status, Warning};
+use crate::solve::state::State;
 
-/// Numbers of a block of error bars' derivatives: some megabytes.
-const TOGETHER: usize = 1 << 22;
+/// Something that can carry the heads of a scene.
+pub(super) trait Carrier: Send {
+    /// Its name for users.
+    fn name(&self) -> &'static str;
+    /// Solves a problem within the limits of a course, from the start or from the state that the course goes on from.
+    fn solve(&self, bound: &Bound, settings: &Settings, course: Course<'_, '_>) -> Result<Solved, RecoverError>;
+}
+
+/// A problem as its carrier has solved it.
+pub(super) struct Solved {
+    pub(super) status: Status,
+    pub(super) loss: f64,
+    pub(super) iterations: u64,
+    pub(super) warnings: Vec<Warning>,
+    /// Where the solver stopped.
+    pub(super) state: State,
+    /// The method that was used, and its name for users.
+    pub(super) optimizer: Optimizer,
+    pub(super) method: &'static str,
+    /// Single precision and then double where it is [`Width::Auto`].
+    pub(super) precision: Width,
+    pub(super) carried: Box<dyn Carried>,
+}
 
 /// A head at some points, in the engine's units.
 #[derive(Clone)]
@@ -26,7 +42,7 @@ pub(super) struct Values {
 }
 
 impl Values {
-    fn plain(values: Vec<f64>) -> Self {
+    pub(super) fn plain(values: Vec<f64>) -> Self {
         Self { values, deviations: None, by_prior: None }
     }
 }
@@ -51,153 +67,16 @@ pub(super) trait Carried: Send {
     fn kept(&mut self, bars: bool) -> Box<dyn Kept>;
 }
 
-/// A trained network.
-pub(super) struct Network {
-    pub(super) architecture: Architecture,
-    pub(super) engine: Engine<f64>,
-    pub(super) theta: Vec<f64>,
-    /// None where there are no error bars.
-    pub(super) prior: Option<WeightPrior>,
-    pub(super) distrust: Distrust,
-}
-
-fn heads(bound: &Bound) -> usize {
+/// How many heads there are.
+pub(super) fn heads(bound: &Bound) -> usize {
     bound.problem.scene().schema.heads.len()
 }
 
-impl Carried for Network {
-    fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let mut readout: Engine<f64> = bound.frame().readout(self.architecture, &bound.inward(points));
-        let rows = readout.raw_rows(0, &self.theta);
-        let count = rows.len() / heads(bound).max(1);
-        (0..heads(bound)).map(|head| Values::plain(rows[head * count..][..count].to_vec())).collect()
-    }
-
-    fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let prior = self.prior.as_ref();
-        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
-        let Some(curvature) = curvature else { return self.values(bound, points) };
-        // Derivatives of a point's heads by all parameters are many numbers: so many points at once.
-        let inputs = bound.problem.scene().schema.coordinates.len();
-        let block = inputs * (TOGETHER / (self.theta.len() * heads(bound)).max(1)).max(1);
-        let empty = Values { values: Vec::new(), deviations: Some(Vec::new()), by_prior: Some(Vec::new()) };
-        let mut all = vec![empty; heads(bound)];
-        for some in bound.inward(points).chunks(block) {
-            let Some((rows, derivatives)) = bound.frame().sensitivities(self.architecture, &self.theta, some) else {
-                return self.values(bound, points);
-            };
-            let bars = self.distrust.bars(&posterior(&curvature, &derivatives));
-            let count = some.len() / inputs;
-            for (head, own) in all.iter_mut().enumerate() {
-                let part = head * count..(head + 1) * count;
-                own.values.extend_from_slice(&rows[part.clone()]);
-                own.deviations.iter_mut().for_each(|all| all.extend_from_slice(&bars.deviations[part.clone()]));
-                own.by_prior.iter_mut().for_each(|all| all.extend_from_slice(&bars.by_prior[part.clone()]));
-            }
-        }
-        all
-    }
-
-    fn learned(&mut self, _: &Bound) -> Vec<(f64, Option<f64>)> {
-        let prior = self.prior.as_ref();
-        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
-        let first = self.engine.layout().learned.start;
-        let values = self.engine.learned_values(&self.theta).into_iter().enumerate();
-        let deviation = |i: usize, slope: f64| {
-            let curvature = curvature.as_ref()?;
-            let mut direction = vec![0.0; self.theta.len()];
-            direction[first + i] = slope;
-            self.distrust.bars(&posterior(curvature, &direction)).deviations.first().copied()
-        };
-        values.map(|(i, (value, slope))| (value, deviation(i, slope))).collect()
-    }
-
-    fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
-        let noise = self.prior.is_some().then_some(self.engine.groups[group].terms[term].size);
-        (self.engine.misfits(group, term, &self.theta), noise)
-    }
-
-    fn answer(&mut self, bound: &Bound) -> Answer {
-        self.engine.answer(&self.theta, &bound.clouds)
-    }
-
-    fn kept(&mut self, bars: bool) -> Box<dyn Kept> {
-        let prior = self.prior.as_ref().filter(|_| bars);
-        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
-        let root = curvature.map(|curvature| Root::of(&curvature, self.distrust.factor()));
-        Box::new(KeptNetwork { architecture: self.architecture, theta: self.theta.clone(), root })
-    }
-}
-
 /// Values of learned scalars from their parameters, with deviations.
-fn learned(bound: &Bound, parameters: impl Iterator<Item = (f64, Option<f64>)>) -> Vec<(f64, Option<f64>)> {
+pub(super) fn learned(bound: &Bound, parameters: impl Iterator<Item = (f64, Option<f64>)>) -> Vec<(f64, Option<f64>)> {
     let of = |(learned, (parameter, deviation)): (&crate::engine::Learned, (f64, Option<f64>))| {
         let (value, slope) = learned.map.at(parameter);
         (value, deviation.map(|deviation| deviation * slope.abs()))
     };
     bound.learned.iter().zip(parameters).map(of).collect()
-}
-
-impl Carried for LocalSolution {
-    fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let points = bound.inward(points);
-        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, &points))).collect()
-    }
-
-    fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let inward = bound.inward(points);
-        let mut all = self.values(bound, points);
-        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, &inward));
-        all
-    }
-
-    fn deviation_of_sum(&self, bound: &Bound, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
-        self.kept.deviation_of_sum(head, &bound.inward(points), weights)
-    }
-
-    fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {
-        learned(bound, self.kept.learned.iter().enumerate().map(|(at, &x)| (x, self.learned_deviation(at))))
-    }
-
-    fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
-        self.misfits[group][term].clone()
-    }
-
-    fn answer(&mut self, _: &Bound) -> Answer {
-        self.answer.clone()
-    }
-
-    fn kept(&mut self, bars: bool) -> Box<dyn Kept> {
-        Box::new(if bars { self.kept.clone() } else { self.kept.without_bars() })
-    }
-}
-
-impl Carried for SplineSolution {
-    fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let points = bound.inward(points);
-        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, &points))).collect()
-    }
-
-    fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let inward = bound.inward(points);
-        let mut all = self.values(bound, points);
-        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, &inward));
-        all
-    }
-
-    fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {
-        learned(bound, self.kept.learned().into_iter())
-    }
-
-    fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
-        self.misfits[group][term].clone()
-    }
-
-    fn answer(&mut self, _: &Bound) -> Answer {
-        self.answer.clone()
-    }
-
-    fn kept(&mut self, bars: bool) -> Box<dyn Kept> {
-        Box::new(if bars { self.kept.clone() } else { self.kept.without_bars() })
-    }
 }

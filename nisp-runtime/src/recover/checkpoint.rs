@@ -43,10 +43,6 @@ pub enum CheckpointError {
 }
 
 impl Checkpoint {
-    pub(super) fn new(problem: &Problem, settings: &Settings, state: State) -> Self {
-        Self { fingerprint: fingerprint(problem, settings), state }
-    }
-
     /// Steps that were taken.
     pub fn iterations(&self) -> u64 {
         self.state.counter("iterations").unwrap_or(0)

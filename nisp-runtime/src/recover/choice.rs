@@ -1,5 +1,8 @@
 //! Which carrier a problem gets, and why: the one place that chooses.
 
+use super::carried;
+use super::network::Network;
+use super::on_splines::OnSplines;
 use super::settings::{Carrier, Optimizer, Settings};
 use crate::local::Local;
 use crate::problem::Bound;
@@ -9,29 +12,30 @@ use crate::splines;
 /// Rows from which on a network takes longer than anybody waits.
 const MANY: usize = 5000;
 
-/// A carrier.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Chosen {
+/// Which carrier: the only place that tells them apart.
+#[derive(Clone, Copy, PartialEq)]
+enum Chosen {
     Network,
     Splines,
     Local(Local),
 }
 
-impl Chosen {
-    pub(super) fn name(self) -> &'static str {
-        match self {
-            Self::Network => "network",
-            Self::Splines => "splines",
-            Self::Local(_) => "local functions",
-        }
-    }
-}
-
 /// A carrier and a start, and why in a sentence for the user.
 pub(super) struct Attempt {
-    pub(super) chosen: Chosen,
+    pub(super) carrier: Box<dyn carried::Carrier>,
     pub(super) seed: u64,
     pub(super) why: String,
+}
+
+impl Attempt {
+    fn new(chosen: Chosen, seed: u64, why: String) -> Self {
+        let carrier: Box<dyn carried::Carrier> = match chosen {
+            Chosen::Network => Box::new(Network),
+            Chosen::Splines => Box::new(OnSplines),
+            Chosen::Local(local) => Box::new(local),
+        };
+        Self { carrier, seed, why }
+    }
 }
 
 /// What a problem is solved with first, and what is tried where the answer is not sound and time is left. A saved run goes on
@@ -45,10 +49,10 @@ pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>)
         (false, chosen) => chosen,
     };
     if let Some(chosen) = from.map(saved) {
-        return (Attempt { chosen, seed, why }, Vec::new());
+        return (Attempt::new(chosen, seed, why), Vec::new());
     }
     let after = |what: &str| format!("what was tried first ended inconsistent; {what}");
-    let network = |seed: u64, what: &str| Attempt { chosen: Chosen::Network, seed, why: after(what) };
+    let network = |seed: u64, what: &str| Attempt::new(Chosen::Network, seed, after(what));
     let is_free = settings.carrier == Carrier::Auto && settings.optimizer == Optimizer::Auto;
     let can_splines = splines::refused(bound.problem.scene().schema).is_none();
     let others = match chosen {
@@ -57,11 +61,11 @@ pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>)
         Chosen::Splines if most_rows(bound) > MANY => Vec::new(),
         Chosen::Splines => vec![network(seed, "a network instead of splines")],
         Chosen::Network if can_splines => {
-            vec![Attempt { chosen: Chosen::Splines, seed, why: after("splines instead of a network") }]
+            vec![Attempt::new(Chosen::Splines, seed, after("splines instead of a network"))]
         }
         Chosen::Network => vec![network(seed.wrapping_add(1), "another seed")],
     };
-    (Attempt { chosen, seed, why }, others)
+    (Attempt::new(chosen, seed, why), others)
 }
 
 /// The carrier of a problem, and why.

@@ -2,8 +2,9 @@
 
 use super::checkpoint::{Checkpoint, CheckpointError};
 use super::{Monitor, RecoverError, Report};
+use crate::carrier;
 use crate::real::Real;
-use crate::solve::driver::{Limits, Outcome, Progress, Run};
+use crate::solve::driver::{Flow, Limits, Outcome, Progress, Run};
 use crate::solve::method::Method;
 use crate::solve::objective::Objective;
 use crate::solve::state::State;
@@ -19,7 +20,7 @@ pub(super) struct Course<'a, 'm> {
     /// Steps that are left, and the budget from the start on.
     pub(super) limits: Limits,
     /// Preparations and trials of methods count.
-    start: Instant,
+    pub(super) start: Instant,
     /// Where to go on from; else from the start.
     pub(super) from: Option<&'a State>,
     pub(super) monitor: &'a mut Monitor<'m>,
@@ -44,6 +45,17 @@ impl<'a, 'm> Course<'a, 'm> {
     pub(super) fn left(&self) -> Limits {
         let budget = self.limits.budget.map(|budget| budget.saturating_sub(self.start.elapsed()));
         Limits { budget, ..self.limits }
+    }
+
+    /// Shows a carrier's steps to the monitor.
+    pub(super) fn watch(&mut self, progress: carrier::Progress<'_>) -> Flow {
+        let fingerprint = self.fingerprint;
+        (self.monitor)(Report {
+            iteration: progress.iteration,
+            elapsed_s: progress.elapsed_s,
+            loss: progress.loss,
+            checkpoint: &|| Checkpoint { fingerprint, state: (progress.checkpoint)() },
+        })
     }
 
     /// The method whose state it goes on from.

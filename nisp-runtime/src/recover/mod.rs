@@ -10,6 +10,8 @@ mod choice;
 mod course;
 mod layers;
 mod network;
+mod on_lattice;
+mod on_splines;
 mod open;
 mod place;
 mod promotion;
@@ -17,8 +19,9 @@ mod resolution;
 mod settings;
 mod solution;
 mod spread;
+mod trained;
 mod undetermined;
-pub(crate) mod weigh;
+mod weigh;
 mod words;
 
 use std::time::Instant;
@@ -26,20 +29,18 @@ use std::time::Instant;
 use thiserror::Error;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
-pub use settings::{Carrier, Optimizer, Resampling, Settings, Width};
-pub use solution::{Estimate, LearnedValue, Solution, TermReport};
+pub use settings::{Carrier, Optimizer, Settings, Width};
+pub use solution::{LearnedValue, Solution, TermReport};
 
-use choice::Chosen;
 use course::Course;
 
-use crate::local::{self, Local, LocalError};
+use crate::local::LocalError;
 use crate::memory::Exceeded;
-use crate::noise;
-use crate::problem::{BindError, Bound, Problem};
+use crate::problem::{BindError, Problem};
 use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
-use crate::splines::{self, SplineError};
+use crate::splines::SplineError;
 
 /// What is believed of the precision of weights before any row is seen: a network whose heads change by a few times their
 /// natural size. Worth so few parameters, it matters only where the data say next to nothing.
@@ -180,12 +181,8 @@ fn solve(
         loop {
             let settings = &Settings { seed: attempt.seed, ..settings.clone() };
             let course = Course::new(fingerprint, limits, start, from, &mut *monitor);
-            let solved = match attempt.chosen {
-                Chosen::Local(local) => solve_local(bound.clone(), &local, settings, start, course),
-                Chosen::Splines => solve_on_splines(bound.clone(), settings, start, course),
-                Chosen::Network => network::solve(bound.clone(), settings, start, course),
-            };
-            let solution = solved?.carried_by(attempt.chosen.name(), attempt.why, fingerprint).judged();
+            let solved = attempt.carrier.solve(&bound, settings, course)?;
+            let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
             let is_over = solution.is_sound() || solution.status == Status::Interrupted;
             let solution = if is_over { solution } else { first.take().unwrap_or(solution) };
             match attempts.next().filter(|_| !is_over && has_time_again(settings, start)) {
@@ -200,48 +197,4 @@ fn solve(
 fn has_time_again(settings: &Settings, start: Instant) -> bool {
     let elapsed = start.elapsed();
     settings.iterations.is_none() && settings.budget.is_some_and(|budget| 2 * elapsed < budget)
-}
-
-fn solve_local(
-    bound: Bound,
-    local: &Local,
-    settings: &Settings,
-    start: Instant,
-    course: Course<'_, '_>,
-) -> Result<Solution, RecoverError> {
-    let limits = course.left();
-    let Course { fingerprint, from, monitor, .. } = course;
-    let mut found = local::solve(&bound, local, limits, from, &mut |progress| {
-        monitor(Report {
-            iteration: progress.iteration,
-            elapsed_s: progress.elapsed_s,
-            loss: progress.loss,
-            checkpoint: &|| Checkpoint { fingerprint, state: (progress.checkpoint)() },
-        })
-    })?;
-    found.warnings.extend(undetermined::of_local(&bound, &found));
-    Ok(Solution::of_local(bound, found, settings, start))
-}
-
-fn solve_on_splines(
-    bound: Bound,
-    settings: &Settings,
-    start: Instant,
-    course: Course<'_, '_>,
-) -> Result<Solution, RecoverError> {
-    if let Some(what) = splines::refused(bound.problem.scene().schema) {
-        return Err(RecoverError::Splines(what));
-    }
-    let limits = course.left();
-    let Course { fingerprint, from, monitor, .. } = course;
-    let noise = noise::estimate(&bound);
-    let found = splines::solve(&bound, &noise, limits, from, &mut |progress| {
-        monitor(Report {
-            iteration: progress.iteration,
-            elapsed_s: progress.elapsed_s,
-            loss: progress.loss,
-            checkpoint: &|| Checkpoint { fingerprint, state: (progress.checkpoint)() },
-        })
-    })?;
-    Ok(Solution::of_splines(bound, found, settings, start))
 }

@@ -3,18 +3,20 @@
 use std::time::Instant;
 
 use super::bars::Distrust;
+use super::carried::{Carrier, Solved};
 use super::course::Course;
 use super::promotion::Promotion;
-use super::settings::{Optimizer, Resampling, Settings, Width};
-use super::solution::Run;
+use super::settings::{Optimizer, Settings, Width};
+use super::trained::Trained;
 use super::undetermined::View;
-use super::{BELIEF, RecoverError, Solution, resolution, weigh};
-use crate::engine::Engine;
+use super::{BELIEF, RecoverError, resolution, weigh};
+use crate::engine::{Engine, Resampling, factors};
 use crate::kernel::Precision;
 use crate::memory;
 use crate::network::initialise;
 use crate::noise::{self, Noise};
 use crate::problem::{BindError, Bound};
+use crate::saved;
 use crate::solve::adam::{Adam, AdamSettings};
 use crate::solve::broyden::{Broyden, Update};
 use crate::solve::driver::{Outcome, Status, Warning, WarningKind};
@@ -30,9 +32,6 @@ use crate::solve::projection::{Projection, linear_parameters};
 /// Parameters up to which the curvature is factorised for error bars: a few seconds.
 const MOST_FOR_CURVATURE: usize = 4000;
 
-/// Steps that L-BFGS remembers.
-pub(super) const MEMORY: usize = 20;
-
 /// Estimated distance of the loss from its minimum, relative to the loss, at which noisy data count as
 /// fitted: some hundredths of a logarithm of probability, which move the answer by a tenth of an error bar.
 const NOISE_TOLERANCE: f64 = 1e-4;
@@ -40,14 +39,21 @@ const NOISE_TOLERANCE: f64 = 1e-4;
 /// Inner iterations of a Gauss-Newton step at most.
 const INNER: usize = 100;
 
-/// Fits a network.
-pub(super) fn solve(
-    bound: Bound,
-    settings: &Settings,
-    start: Instant,
-    mut course: Course<'_, '_>,
-) -> Result<Solution, RecoverError> {
-    let mut fit = Fit::new(&bound, settings)?;
+/// A network of the settings' shape.
+pub(super) struct Network;
+
+impl Carrier for Network {
+    fn name(&self) -> &'static str {
+        saved::NETWORK
+    }
+
+    fn solve(&self, bound: &Bound, settings: &Settings, course: Course<'_, '_>) -> Result<Solved, RecoverError> {
+        fitted(bound, settings, course)
+    }
+}
+
+fn fitted(bound: &Bound, settings: &Settings, mut course: Course<'_, '_>) -> Result<Solved, RecoverError> {
+    let mut fit = Fit::new(bound, settings)?;
     let optimizer = fit.choose(&course)?;
     if optimizer == Optimizer::Evidence {
         course.limits.tolerance = NOISE_TOLERANCE;
@@ -63,18 +69,18 @@ pub(super) fn solve(
     };
     let Fit { mut engine, noise, .. } = fit;
     let (parameters, rows) = (engine.parameters(), engine.row_count());
-    outcome.warnings.extend(resolution::warnings(&bound, &mut engine, &outcome.theta, &noise));
+    outcome.warnings.extend(resolution::warnings(bound, &mut engine, &outcome.theta, &noise));
     let has_bars = settings.precision != Width::F32
         && parameters <= MOST_FOR_CURVATURE
         && Optimizer::Evidence.fits(parameters, rows);
     let prior = has_bars.then_some(prior);
     if let Some(prior) = &prior {
         if !optimizer.counts_noise() {
-            weigh::by_noise(&mut engine, &bound, &noise);
+            weigh::by_noise(&mut engine, bound, &noise);
         }
         let architecture = settings.architecture;
-        let mut view = View { bound: &bound, engine: &mut engine, theta: &outcome.theta, prior, architecture };
-        if has_time_for_curvatures(view.curvatures(), settings, start, parameters, rows) {
+        let mut view = View { bound, engine: &mut engine, theta: &outcome.theta, prior, architecture };
+        if has_time_for_curvatures(view.curvatures(), settings, course.start, parameters, rows) {
             outcome.warnings.extend(view.warnings());
         } else {
             let message = "no time was left to look for what the data do not determine; give a larger budget".into();
@@ -89,8 +95,18 @@ pub(super) fn solve(
     // A prior that no evidence has weighed says nothing of what exact data leave open: the error is that of the solver.
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     let prior = prior.filter(|_| optimizer == Optimizer::Evidence || is_noisy);
-    let run = Run { optimizer, precision, start, prior, distrust: Distrust::under(&noise) };
-    Ok(Solution::new(bound, engine, outcome, settings, run))
+    let (architecture, theta, distrust) = (settings.architecture, outcome.theta, Distrust::under(&noise));
+    Ok(Solved {
+        status: outcome.status,
+        loss: outcome.loss,
+        iterations: outcome.iterations,
+        warnings: outcome.warnings,
+        state: outcome.state,
+        optimizer,
+        method: optimizer.name(),
+        precision,
+        carried: Box::new(Trained { architecture, engine, theta, prior, distrust }),
+    })
 }
 
 /// True where so many curvatures should keep the run within a twentieth of its budget.
@@ -153,7 +169,7 @@ impl<'a> Fit<'a> {
             for _ in 0..candidate.steps_of_a_trial() {
                 method.step(&mut self.engine)?;
             }
-            weigh::by_size(&mut self.engine);
+            factors::by_size(&mut self.engine);
             let loss = self.engine.loss(method.theta())?;
             if loss < best.0 {
                 best = (loss, candidate);
@@ -169,9 +185,9 @@ impl<'a> Fit<'a> {
             weigh::begin_wide(&mut self.engine, self.bound, &self.noise);
             return Ok(());
         }
-        weigh::by_size(&mut self.engine);
+        factors::by_size(&mut self.engine);
         if optimizer == Optimizer::Adam {
-            weigh::regress_first(&mut self.engine, &self.theta, self.settings.data_first)?;
+            factors::regress_first(&mut self.engine, &self.theta, self.settings.data_first)?;
         }
         Ok(())
     }
@@ -187,7 +203,7 @@ impl<'a> Fit<'a> {
             Optimizer::Marquardt | Optimizer::Projection => Box::new(Marquardt::new(theta, prior)),
             Optimizer::GaussNewton => Box::new(GaussNewton::new(theta, prior, INNER)),
             Optimizer::Broyden => Box::new(Broyden::new(theta, Update::SelfScaledBroyden)),
-            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, MEMORY)),
+            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, lbfgs::MEMORY)),
             Optimizer::Auto | Optimizer::Adam => Box::new(Adam::new(theta, AdamSettings::default())),
         }
     }
@@ -250,10 +266,10 @@ impl<'a> Fit<'a> {
     ) -> Result<Outcome<f64>, RecoverError> {
         let mut engine: Engine<f32> = engine(self.bound, self.settings)?;
         self.weigh(optimizer)?;
-        weigh::alike(&mut engine, &self.engine);
+        factors::alike(&mut engine, &self.engine);
         let theta: Vec<f32> = self.theta.iter().map(|&x| x as f32).collect();
         let mut method: Box<dyn Method<f32, Engine<f32>>> = match optimizer {
-            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, MEMORY)),
+            Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, lbfgs::MEMORY)),
             _ => Box::new(Adam::new(theta, AdamSettings::default())),
         };
         let outcome = match promotion {

@@ -4,10 +4,9 @@
 //! differences of large numbers, and the gradient drowns in their rounding, long before the loss stops falling for good.
 //! So now and then both are computed and compared.
 
-use crate::engine::Engine;
+use crate::engine::{Engine, factors};
 use crate::network::Architecture;
 use crate::problem::{BindError, Bound};
-use crate::recover::weigh;
 use crate::solve::objective::Objective;
 
 /// Steps before the first look, and the fewest between two; a look costs as much as three or four of them.
@@ -32,8 +31,8 @@ impl Promotion {
     pub(super) fn new(bound: &Bound, architecture: Architecture, engine: &Engine<f64>) -> Result<Self, BindError> {
         let (mut single, mut double): (Engine<f32>, Engine<f64>) =
             (bound.engine(architecture)?, bound.engine(architecture)?);
-        weigh::alike(&mut single, engine);
-        weigh::alike(&mut double, engine);
+        factors::alike(&mut single, engine);
+        factors::alike(&mut double, engine);
         let len = engine.parameters();
         Ok(Self { single, double, narrow: vec![0.0; len], wide: vec![0.0; len], theta: vec![0.0; len], due: false })
     }

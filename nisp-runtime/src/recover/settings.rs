@@ -2,11 +2,12 @@
 
 use std::time::Duration;
 
-use super::network::MEMORY;
+use crate::engine::Resampling;
 use crate::local::{Local, Patches};
 use crate::network::{Architecture, Inputs};
 use crate::noise::Noise;
 use crate::schema;
+use crate::solve::lbfgs;
 
 /// How a problem is solved.
 #[derive(Clone, Debug, PartialEq)]
@@ -71,26 +72,6 @@ impl Carrier {
             Self::Local(local) if local.source_dimensions == scene.coordinates.len() => local.patches,
             _ => None,
         }
-    }
-}
-
-/// How points of equations are drawn from all that were bound: with a chance of `r^power / mean(r^power) + floor`, `r` being
-/// the residual at a point over its natural size (Wu et al. 2023). Only groups that hold equations and no data take part.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Resampling {
-    /// Share of the points that a step sees.
-    pub share: f64,
-    /// Accepted steps between draws.
-    pub every: u64,
-    /// How strongly large residuals are preferred.
-    pub power: f64,
-    /// What keeps the other points in the draw.
-    pub floor: f64,
-}
-
-impl Default for Resampling {
-    fn default() -> Self {
-        Self { share: 1.0 / 3.0, every: 100, power: 1.0, floor: 1.0 }
     }
 }
 
@@ -216,7 +197,7 @@ impl Optimizer {
         let (parameters, rows) = (parameters as f64, rows as f64);
         let numbers = match self {
             Self::Adam | Self::GaussNewton => VECTORS * parameters,
-            Self::Auto | Self::Lbfgs => (VECTORS + 2.0 * MEMORY as f64) * parameters,
+            Self::Auto | Self::Lbfgs => (VECTORS + 2.0 * lbfgs::MEMORY as f64) * parameters,
             Self::Broyden => (VECTORS + parameters) * parameters,
             // The rows' derivatives, the normal matrix and its factor.
             Self::Marquardt | Self::Projection | Self::Evidence => (VECTORS + rows + 2.0 * parameters) * parameters,

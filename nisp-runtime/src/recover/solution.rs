@@ -2,19 +2,16 @@
 
 use std::time::Instant;
 
-use super::bars::Distrust;
-use super::carried::{Carried, Network, Values};
+use super::carried::{Carried, Solved, Values};
+use super::choice::Attempt;
 use super::{Checkpoint, Optimizer, Settings, Width};
-use crate::engine::Engine;
-use crate::local::LocalSolution;
+use crate::carrier::Estimate;
 use crate::noise::{self, Noise};
 use crate::problem::Bound;
 use crate::saved::{Extent, SavedAnswer, SavedError, save_frame};
 use crate::schema::{self, Origin, TermKind};
 use crate::simd::Isa;
-use crate::solve::driver::{Outcome, Status, Warning, WarningKind};
-use crate::solve::prior::WeightPrior;
-use crate::splines::SplineSolution;
+use crate::solve::driver::{Status, Warning, WarningKind};
 use crate::verdict::{Check, Verdict, determined, judge, patches};
 
 /// A solved problem.
@@ -49,23 +46,6 @@ pub struct Solution {
     carried: Box<dyn Carried>,
 }
 
-/// A head at some points.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Estimate {
-    /// Name of the head.
-    pub name: &'static str,
-    /// Its declared unit.
-    pub unit: schema::Unit,
-    /// True for a source.
-    pub source: bool,
-    /// Values in the declared unit, one per point.
-    pub values: Vec<f64>,
-    /// Standard deviations, one per point, where the method gives them.
-    pub deviations: Option<Vec<f64>>,
-    /// The part of each that is only the prior's word, so multiplied: smoothing that no measurement speaks for or against.
-    pub by_prior: Option<Vec<f64>>,
-}
-
 /// A learned scalar.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LearnedValue {
@@ -98,95 +78,38 @@ pub struct TermReport {
     pub observation: bool,
 }
 
-/// How a network was fitted.
-pub(super) struct Run {
-    pub(super) optimizer: Optimizer,
-    /// Single precision and then double where it is [`Width::Auto`].
-    pub(super) precision: Width,
-    pub(super) start: Instant,
-    pub(super) prior: Option<WeightPrior>,
-    pub(super) distrust: Distrust,
-}
-
 impl Solution {
-    pub(super) fn new(bound: Bound, engine: Engine<f64>, outcome: Outcome<f64>, settings: &Settings, run: Run) -> Self {
-        let Run { optimizer, precision, start, prior, distrust } = run;
-        Self {
-            status: outcome.status,
-            loss: outcome.loss,
-            iterations: outcome.iterations,
-            wall_s: start.elapsed().as_secs_f64(),
-            warnings: outcome.warnings,
-            optimizer,
-            precision,
-            settings: settings.clone(),
-            checkpoint: Checkpoint::new(&bound.problem, settings, outcome.state),
-            verdict: Verdict::default(),
-            carrier: "",
-            carrier_reason: String::new(),
-            is_met_exactly: false,
-            bound,
-            method: optimizer.name(),
-            carried: Box::new(Network {
-                architecture: settings.architecture,
-                engine,
-                theta: outcome.theta,
-                prior,
-                distrust,
-            }),
-        }
-    }
-
-    pub(super) fn of_local(bound: Bound, found: LocalSolution, settings: &Settings, start: Instant) -> Self {
-        Self {
+    /// What a carrier found, judged, under the fingerprint of problem and settings.
+    pub(super) fn new(
+        bound: Bound,
+        found: Solved,
+        (settings, start): (&Settings, Instant),
+        attempt: Attempt,
+        fingerprint: u64,
+    ) -> Self {
+        let solution = Self {
             status: found.status,
             loss: found.loss,
             iterations: found.iterations,
             wall_s: start.elapsed().as_secs_f64(),
-            warnings: found.warnings.clone(),
-            optimizer: Optimizer::Marquardt,
-            precision: Width::F64,
+            warnings: found.warnings,
+            optimizer: found.optimizer,
+            precision: found.precision,
             settings: settings.clone(),
-            checkpoint: Checkpoint::new(&bound.problem, settings, found.checkpoint.clone()),
+            checkpoint: Checkpoint { fingerprint, state: found.state },
             verdict: Verdict::default(),
-            carrier: "",
-            carrier_reason: String::new(),
+            carrier: attempt.carrier.name(),
+            carrier_reason: attempt.why,
             is_met_exactly: false,
             bound,
-            method: "gauss-newton",
-            carried: Box::new(found),
-        }
-    }
-
-    pub(super) fn of_splines(bound: Bound, found: SplineSolution, settings: &Settings, start: Instant) -> Self {
-        Self {
-            status: found.status,
-            loss: found.loss,
-            iterations: found.iterations,
-            wall_s: start.elapsed().as_secs_f64(),
-            warnings: found.warnings.clone(),
-            optimizer: Optimizer::Evidence,
-            precision: Width::F64,
-            settings: settings.clone(),
-            checkpoint: Checkpoint::new(&bound.problem, settings, found.checkpoint.clone()),
-            verdict: Verdict::default(),
-            carrier: "",
-            carrier_reason: String::new(),
-            is_met_exactly: false,
-            bound,
-            method: "gauss-newton",
-            carried: Box::new(found),
-        }
-    }
-
-    /// Says what carries it, and why, and whose checkpoint it has.
-    pub(super) fn carried_by(self, carrier: &'static str, carrier_reason: String, fingerprint: u64) -> Self {
-        let checkpoint = Checkpoint { fingerprint, ..self.checkpoint };
-        Self { carrier, carrier_reason, checkpoint, ..self }
+            method: found.method,
+            carried: found.carried,
+        };
+        solution.judged()
     }
 
     /// Judges the answer by what is left of the problem, and calls it by its name.
-    pub(super) fn judged(mut self) -> Self {
+    fn judged(mut self) -> Self {
         let noise = noise::estimate(&self.bound);
         let values = self.values_over_domain();
         let answer = self.carried.answer(&self.bound);

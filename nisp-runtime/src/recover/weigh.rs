@@ -1,12 +1,10 @@
-//! How much each term counts.
+//! How much each term counts by its noise.
 
 use crate::engine::Engine;
 use crate::noise::Noise;
 use crate::problem::Bound;
-use crate::real::Real;
 use crate::schema::TermKind;
 use crate::solve::evidence;
-use crate::solve::fault::Fault;
 use crate::solve::objective::LeastSquares;
 
 /// Tolerance of equations where data are noisy, as a share of the equation's natural size: so small that the equation
@@ -21,29 +19,6 @@ pub(super) const FEW_ROWS: usize = 8;
 
 /// Smallest noise that data are credited with, as a share of their natural size.
 const LEAST_NOISE: f64 = 1e-6;
-
-/// Noise that data count with beside beliefs where they are taken as exact, as a share of their natural size.
-const ASSUMED_NOISE: f64 = 1e-3;
-
-/// Mean squares of rows over their natural sizes, times the user's weights: for exact data.
-pub(crate) fn by_size<E: Real>(engine: &mut Engine<E>) {
-    let points = engine.groups.iter().map(|group| group.points).max().unwrap_or(1);
-    for group in &mut engine.groups {
-        if group.schema.is_beliefs() {
-            // A row over its spread stands beside rows over their noise, not beside mean squares.
-            group.terms.iter_mut().for_each(|term| term.factor = ASSUMED_NOISE / (points as f64).sqrt());
-            continue;
-        }
-        for term in &mut group.terms {
-            let count = match (&term.chamfer, term.schema.kind) {
-                (Some(chamfer), _) => chamfer.cloud_points(),
-                (None, TermKind::Integral) => 1,
-                (None, _) => group.points,
-            };
-            term.factor = (term.schema.weight / count as f64).sqrt();
-        }
-    }
-}
 
 /// Rows over their standard deviations: noise for data, a tolerance for equations.
 pub(super) fn by_noise(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise) {
@@ -77,58 +52,4 @@ pub(super) fn begin_wide(engine: &mut Engine<f64>, bound: &Bound, noise: &Noise)
             engine.set_sigma(block, sigma.max(spread));
         }
     }
-}
-
-/// The paper's rule: residuals are weighted so that at the start `ratio` times their gradient is no longer than the
-/// gradient of the regression terms. First the data are regressed, then the source is solved for (paper, section 3.2).
-pub(super) fn regress_first<E: Real>(engine: &mut Engine<E>, theta: &[E], ratio: f64) -> Result<(), Fault> {
-    let mut regression = 0.0;
-    let mut residual = 0.0;
-    for is_regression in [true, false] {
-        let length = gradient_of(engine, theta, is_regression)?;
-        *(if is_regression { &mut regression } else { &mut residual }) = length;
-    }
-    if regression > 0.0 && residual > 0.0 {
-        let weight = (regression / (ratio * residual)).min(1.0);
-        each_term(engine, |kind, factor| {
-            if !regresses(kind) {
-                *factor *= weight.sqrt();
-            }
-        });
-    }
-    Ok(())
-}
-
-/// Weights the rows of an engine as those of another of the same problem.
-pub(super) fn alike<E: Real, F: Real>(engine: &mut Engine<E>, other: &Engine<F>) {
-    let terms = engine.groups.iter_mut().flat_map(|group| &mut group.terms);
-    for (term, other) in terms.zip(other.groups.iter().flat_map(|group| &group.terms)) {
-        (term.size, term.factor) = (other.size, other.factor);
-    }
-}
-
-fn regresses(kind: TermKind) -> bool {
-    matches!(kind, TermKind::Observation | TermKind::Chamfer { .. })
-}
-
-fn each_term<E: Real>(engine: &mut Engine<E>, mut change: impl FnMut(TermKind, &mut f64)) {
-    for term in engine.groups.iter_mut().flat_map(|group| &mut group.terms) {
-        change(term.schema.kind, &mut term.factor);
-    }
-}
-
-/// Length of the gradient of the regression terms alone, or of the others.
-fn gradient_of<E: Real>(engine: &mut Engine<E>, theta: &[E], regression: bool) -> Result<f64, Fault> {
-    let kept: Vec<f64> = engine.groups.iter().flat_map(|g| &g.terms).map(|t| t.factor).collect();
-    each_term(engine, |kind, factor| {
-        if regresses(kind) != regression {
-            *factor = 0.0;
-        }
-    });
-    let mut gradient = vec![E::ZERO; theta.len()];
-    let result = engine.loss_and_gradient(theta, &mut gradient);
-    let mut kept = kept.into_iter();
-    each_term(engine, |_, factor| *factor = kept.next().unwrap_or(1.0));
-    result?;
-    Ok(gradient.iter().map(|g| g.to_f64() * g.to_f64()).sum::<f64>().sqrt())
 }

@@ -16,8 +16,7 @@ use crate::schema::Scene;
 use crate::solve::state::State;
 
 pub(crate) use extent::Extent;
-pub(crate) use kept::{Kept, Outputs};
-pub(crate) use network::KeptNetwork;
+pub(crate) use network::{CARRIER as NETWORK, KeptNetwork};
 pub use open::OpenAnswer;
 pub(crate) use open::save_frame;
 

@@ -1,6 +1,6 @@
 //! A network that was trained: its weights, and a root of their covariance.
 
-use super::kept::{Kept, Outputs};
+use crate::carrier::{Kept, Outputs};
 use crate::network::{Architecture, Fourier, Inputs, Kind, Layout, Stretched};
 use crate::problem::Frame;
 use crate::solve::fault::Fault;

@@ -1,12 +1,12 @@
 //! A saved answer with its scene: values and deviations anywhere, without the data.
 
 use super::extent::Extent;
-use super::kept::{Kept, Outputs, restored};
+use super::kept::restored;
 use super::{SavedAnswer, SavedError, fingerprint};
+use crate::carrier::{Estimate, Kept, Outputs};
 use crate::engine::{Learned, LearnedMap, Scaling};
 use crate::kernel::SceneRef;
 use crate::problem::{Frame, UnitSystem};
-use crate::recover::Estimate;
 use crate::schema::{self, Origin};
 use crate::solve::fault::Fault;
 use crate::solve::state::State;

@@ -1,15 +1,13 @@
-//! Which instruction set to use, and the trampolines into it.
+//! Which instruction set to use.
 
-use super::{Simd, scalar};
-use crate::real::Real;
 use std::sync::OnceLock;
 
 /// An instruction set that this machine has: there is no safe way to make any other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub struct Isa(Level);
+pub struct Isa(pub(super) Level);
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-enum Level {
+pub(super) enum Level {
     #[cfg(target_arch = "x86_64")]
     Avx512,
     #[cfg(target_arch = "x86_64")]
@@ -55,11 +53,6 @@ impl Isa {
             Level::Scalar => "scalar",
         }
     }
-
-    /// Number of elements in a vector.
-    pub fn lanes<E: Real>(self) -> usize {
-        dispatch::<E, _>(self, Lanes)
-    }
 }
 
 impl Level {
@@ -88,91 +81,5 @@ impl Level {
             Level::Neon => std::arch::is_aarch64_feature_detected!("neon"),
             Level::Scalar => true,
         }
-    }
-}
-
-/// Work to be done with the vectors of some instruction set.
-pub trait Kernel<E: Real> {
-    /// What the work returns.
-    type Output;
-    /// Does the work. Must be `#[inline(always)]`, and so must everything in it that handles vectors.
-    fn run<V: Simd<Elem = E>>(self) -> Self::Output;
-}
-
-/// Runs `kernel` one element at a time, on every machine: for work that no vector speeds up, compiled once.
-#[inline(always)]
-pub(crate) fn plain<E: Real, K: Kernel<E>>(kernel: K) -> K::Output {
-    E::plain(kernel)
-}
-
-/// Runs `kernel` with the vectors of `isa`, compiled for that instruction set whatever the crate is compiled for.
-#[inline(always)]
-pub fn dispatch<E: Real, K: Kernel<E>>(isa: Isa, kernel: K) -> K::Output {
-    E::dispatch(isa, kernel)
-}
-
-/// Ties an element type to its vector types, without which nobody outside can name (and misuse) those.
-pub(crate) trait Dispatch: Sized {
-    /// See the function [`dispatch`].
-    fn dispatch<K: Kernel<Self>>(isa: Isa, kernel: K) -> K::Output
-    where
-        Self: Real;
-
-    /// See the function [`plain`].
-    fn plain<K: Kernel<Self>>(kernel: K) -> K::Output
-    where
-        Self: Real;
-}
-
-macro_rules! impl_dispatch {
-    ($elem:ident, $avx512:ident, $avx2:ident, $neon:ident, $lanes:literal) => {
-        impl Dispatch for $elem {
-            #[inline(always)]
-            fn dispatch<K: Kernel<Self>>(isa: Isa, kernel: K) -> K::Output {
-                match isa.0 {
-                    // SAFETY: an Isa of this level exists only if the machine has the features.
-                    #[cfg(target_arch = "x86_64")]
-                    Level::Avx512 => unsafe { super::avx512::$avx512::enter(kernel) },
-                    // SAFETY: as above.
-                    #[cfg(target_arch = "x86_64")]
-                    Level::Avx2 => unsafe { super::avx2::$avx2::enter(kernel) },
-                    // SAFETY: as above.
-                    #[cfg(target_arch = "aarch64")]
-                    Level::Neon => unsafe { super::neon::$neon::enter(kernel) },
-                    // SAFETY: asks for no features.
-                    Level::Scalar => unsafe { scalar::Array::<$elem, $lanes>::enter(kernel) },
-                }
-            }
-
-            #[inline(always)]
-            fn plain<K: Kernel<Self>>(kernel: K) -> K::Output {
-                // SAFETY: asks for no features.
-                unsafe { scalar::Array::<$elem, 1>::enter(kernel) }
-            }
-        }
-    };
-}
-
-impl_dispatch!(f32, F32x16, F32x8, F32x4, 4);
-impl_dispatch!(f64, F64x8, F64x4, F64x2, 2);
-
-/// The trampoline into an instruction set. It is a method of the vector type, not a free function, because rustc cuts a
-/// crate into units of compilation by the modules of such types: an instruction set's kernels are compiled beside the
-/// others', not after them.
-pub(super) trait Enter: Simd {
-    /// Runs a kernel with vectors of this type.
-    ///
-    /// # Safety
-    /// The machine must have the instruction set.
-    unsafe fn enter<K: Kernel<Self::Elem>>(kernel: K) -> K::Output;
-}
-
-struct Lanes;
-
-impl<E: Real> Kernel<E> for Lanes {
-    type Output = usize;
-    #[inline(always)]
-    fn run<V: Simd<Elem = E>>(self) -> usize {
-        V::LANES
     }
 }

@@ -31,19 +31,23 @@
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod dispatch;
 mod isa;
 #[cfg(target_arch = "aarch64")]
 mod neon;
 mod scalar;
+mod trampoline;
 
 use crate::real::Real;
-pub(crate) use isa::{Dispatch, plain};
-pub use isa::{Isa, Kernel, dispatch};
+pub use dispatch::dispatch;
+pub(crate) use dispatch::plain;
+pub use isa::Isa;
+pub use trampoline::{Element, Kernel};
 
 /// A vector of `LANES` elements.
 pub trait Simd: Copy + Send + Sync + 'static {
     /// Element type.
-    type Elem: Real;
+    type Elem: Element;
     /// The outcome of a comparison, per lane.
     type Mask: Copy;
     /// Number of elements.
@@ -129,7 +133,7 @@ macro_rules! intrinsics {
 macro_rules! enter {
     ($features:literal: $($vector:ident),*) => {
         $(
-            impl $crate::simd::isa::Enter for $vector {
+            impl $crate::simd::trampoline::Enter for $vector {
                 #[target_feature(enable = $features)]
                 unsafe fn enter<K: $crate::simd::Kernel<Self::Elem>>(kernel: K) -> K::Output {
                     kernel.run::<Self>()

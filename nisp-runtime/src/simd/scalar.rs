@@ -1,7 +1,7 @@
 //! Arrays: for machines without one of our instruction sets, and as the plain reading of the others.
 
-use super::isa::Enter;
-use super::{Kernel, Simd};
+use super::Simd;
+use super::trampoline::{Element, Enter, Kernel};
 use crate::real::Real;
 
 /// `N` elements of type `E`: as wide as the vectors that any target's compiler makes of it (SSE2, WebAssembly).
@@ -10,7 +10,7 @@ use crate::real::Real;
 pub(super) struct Array<E, const N: usize>([E; N]);
 
 /// What has no common name in [`Real`].
-pub(super) trait Bits: Real {
+pub(super) trait Bits: Element {
     /// Magnitude of `self` with the sign of `sign`.
     fn copysign(self, sign: Self) -> Self;
     /// 2^n for integral n in the range of normal exponents.

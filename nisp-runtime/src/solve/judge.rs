@@ -1,8 +1,8 @@
 //! Judges from the steps of a run whether it has converged, or will not.
 
-use super::driver::{Limits, Warning, WarningKind};
 use super::fault::Fault;
 use super::method::{Step, Verdict};
+use super::outcome::{Limits, Warning, WarningKind};
 use super::state::State;
 
 /// What to do after a step; the numbers are those of saved states.

@@ -8,6 +8,9 @@ use super::state::State;
 use super::vector;
 use crate::real::Real;
 
+/// Steps that are worth remembering.
+pub(crate) const MEMORY: usize = 20;
+
 /// L-BFGS with a strong Wolfe line search.
 pub struct Lbfgs<E> {
     theta: Vec<E>,
@@ -28,7 +31,7 @@ pub struct Lbfgs<E> {
 }
 
 impl<E: Real> Lbfgs<E> {
-    /// Starts at `theta` and remembers the last `memory` steps (20 is a good number; at least one is kept).
+    /// Starts at `theta` and remembers the last `memory` steps (at least one is kept).
     pub fn new(theta: Vec<E>, memory: usize) -> Self {
         let zeros = || vec![E::ZERO; theta.len()];
         let memory = memory.max(1);

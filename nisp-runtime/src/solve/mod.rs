@@ -21,6 +21,7 @@ pub mod marquardt;
 pub mod method;
 mod normal;
 pub mod objective;
+pub mod outcome;
 pub mod posterior;
 pub mod prior;
 pub mod projection;

@@ -2,9 +2,9 @@
 
 use std::time::Duration;
 
-use super::driver::{Outcome, Status, Warning, WarningKind};
 use super::fault::{Fault, Kind};
 use super::method::{Step, Verdict};
+use super::outcome::{Outcome, Status, Warning, WarningKind};
 use super::state::State;
 use crate::real::Real;
 

@@ -4,9 +4,9 @@ use super::basis::HIGHEST_DEGREE;
 use super::group::Group;
 use super::heads::Heads;
 use super::triangle::{Covariance, Row};
+use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;
 use crate::problem::Frame;
-use crate::saved::{Kept, Outputs};
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
 

@@ -22,6 +22,7 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+use crate::carrier::Progress;
 use crate::facts::Answer;
 use crate::memory::{self, Exceeded};
 use crate::noise::Noise;
@@ -91,14 +92,6 @@ pub(crate) struct SplineSolution {
     pub(crate) answer: Answer,
     /// By group and term: how far rows are off, and the noise that the evidence found.
     pub(crate) misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
-}
-
-/// What the caller sees after every step.
-pub(crate) struct Progress<'a> {
-    pub(crate) iteration: u64,
-    pub(crate) elapsed_s: f64,
-    pub(crate) loss: f64,
-    pub(crate) checkpoint: &'a dyn Fn() -> state::State,
 }
 
 /// Where a run stands: which kind of smoothness is tried, from which iterate, and what came of those before.
@@ -190,7 +183,7 @@ pub(crate) fn solve(
     let misfits = solver.misfits(&place.state);
     let State { theta, learned, step: iterations, .. } = place.state;
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
-    let answer = Answer { facts, clouds: Vec::new(), scalars };
+    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new() };
     Ok(SplineSolution {
         kept: KeptSplines { heads, theta, learned, spreads },
         status,

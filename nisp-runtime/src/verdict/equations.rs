@@ -6,8 +6,8 @@
 
 use super::{Check, root_mean_square};
 use crate::facts::Facts;
-use crate::kernel::Programs;
 use crate::problem::Bound;
+use crate::residual::Programs;
 use crate::schema::{self, Jet, Term, TermKind};
 
 /// Residual of an equation over its source.

@@ -6,6 +6,7 @@
 
 mod clouds;
 mod equations;
+mod known;
 mod learned;
 mod observations;
 mod outliers;
@@ -21,7 +22,7 @@ use crate::problem::Bound;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`,
-    /// `outliers`, `outside`, `distance`, `seen`, `patch`, `determined` or `range`.
+    /// `outliers`, `outside`, `given`, `distance`, `seen`, `patch`, `determined` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars.
     pub group: &'static str,
@@ -68,7 +69,8 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
     let schema = bound.problem.scene().schema;
     let sizes = equations::Sizes::of(values);
     let kernels = bound.problem.scene().double();
-    let mut checks = Vec::new();
+    // What is given wrongly leaves its traces everywhere: the likely cause comes first.
+    let mut checks: Vec<Check> = known::check(bound, answer).into_iter().collect();
     for (at, (group, facts)) in schema.groups.iter().zip(&answer.facts).enumerate() {
         if group.is_beliefs() {
             continue;

@@ -6,7 +6,7 @@ use dashu_float::round::mode::HalfEven;
 
 use crate::double_double::{Dd, exponential};
 use crate::row::{Extent, Row};
-use crate::tanh::wanted_single;
+use crate::single::wanted_single;
 use crate::tanh_errors::{D, reference_double};
 
 type Many = FBig<HalfEven, 2>;

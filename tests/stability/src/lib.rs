@@ -19,6 +19,7 @@ mod report;
 mod row;
 mod saturation;
 mod scaling;
+mod single;
 mod soak;
 mod stopping;
 mod tangents;

@@ -4,8 +4,7 @@ use proc_macro2::{Ident, TokenStream};
 use quote::{format_ident, quote};
 
 use super::document::{comment, in_unit};
-use super::scene::public;
-use super::{data, ident, raw, unit_text};
+use super::{data, ident, public, raw, unit_text};
 use crate::model::{self, Model};
 use crate::plan::{GroupPlan, Scalar, ScenePlan};
 

@@ -1,8 +1,7 @@
 //! Documentation of a module and its scenes, so that it reads like a paper: quantities with units, shapes, bounds and what
 //! the user says of them, definitions, equations.
 
-use super::scene::public;
-use super::unit_text;
+use super::{public, unit_text};
 use crate::model::{Definition, Field, Model, Name, Parameter, Part, Role};
 use crate::plan::ScenePlan;
 use crate::unit::Unit;

@@ -27,7 +27,7 @@ use proc_macro2::{Ident, Span, TokenStream};
 use quote::{format_ident, quote};
 
 use crate::model::{Model, Name, Scene};
-use crate::plan::{GroupPlan, Plan};
+use crate::plan::{GroupPlan, Plan, ScenePlan};
 use crate::unit::Unit;
 
 /// Emits the module of a model that was read from this text.
@@ -88,6 +88,12 @@ fn warning(at: usize, message: &str, span: Span) -> TokenStream {
         const #declared: () = ();
         const _: () = #used;
     }
+}
+
+/// The groups that the user declared: those that the compiler adds come after them.
+fn public<'a>(model: &Model, scene: &'a ScenePlan) -> &'a [GroupPlan] {
+    let count = scene.groups.iter().take_while(|group| !model.groups[group.group].is_internal()).count();
+    &scene.groups[..count]
 }
 
 fn ident(name: &Name) -> Ident {

@@ -3,7 +3,7 @@
 use proc_macro2::TokenStream;
 use quote::{format_ident, quote};
 
-use super::{Names, bind, docs, document, ident, residuals_type, rules_type, schema};
+use super::{Names, bind, docs, document, ident, public, residuals_type, rules_type, schema};
 use crate::model::{self, Model};
 use crate::plan::{GroupPlan, Plan, ScenePlan};
 
@@ -25,7 +25,7 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
         #(#equations)*
         pub mod #name {
             use super::kernels;
-            use ::nisp::__private::{CompiledPrograms, GroupKernel, Real, schema};
+            use ::nisp::__private::{CompiledPrograms, GroupKernel, schema};
 
             /// This scene, as the engine takes it.
             #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -34,7 +34,7 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
             impl ::nisp::Scene for Scene {
                 const SCHEMA: &'static schema::Scene = &#schema;
                 const TEXT: &'static str = super::TEXT;
-                fn kernels<E: Real>() -> Vec<GroupKernel<E>> {
+                fn kernels<E: ::nisp::Precision>() -> Vec<GroupKernel<E>> {
                     vec![#(#kernels),*]
                 }
             }
@@ -50,7 +50,7 @@ fn layers(plan: &Plan, group: &GroupPlan) -> TokenStream {
     let set = &plan.sets[group.hidden].set;
     let (k, d, s) = (set.len(), set.order() as usize + 2, set.coordinates);
     if plan.sets[group.last].is_precompiled() {
-        return quote!(<E as ::nisp::__private::Precompiled<#s>>::values());
+        return quote!(<E as ::nisp::__private::Precompiled>::values(#s));
     }
     let [hidden, last] = [group.hidden, group.last].map(|at| match plan.sets[at].is_precompiled() {
         true => quote!(::nisp::__private::Values),
@@ -87,10 +87,4 @@ fn latex(model: &Model, scene: &ScenePlan) -> TokenStream {
         /// The equations and definitions of this scene as LaTeX.
         pub mod latex { #(#constants)* }
     }
-}
-
-/// The groups that the user declared: those that the compiler adds come after them.
-pub(super) fn public<'a>(model: &Model, scene: &'a ScenePlan) -> &'a [GroupPlan] {
-    let count = scene.groups.iter().take_while(|group| !model.groups[group.group].is_internal()).count();
-    &scene.groups[..count]
 }

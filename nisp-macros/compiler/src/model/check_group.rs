@@ -1,13 +1,13 @@
 //! Groups of points: their columns, definitions and terms.
 
 use super::check_term::TermInput;
-use super::declare::{add_components, components, part, shaped, unit_and_dim};
+use super::declare::{add_components, components, part, print_definition, shaped, unit_and_dim};
 use super::elaborate::Elaborator;
 use super::scope::{Meaning, Symbol};
 use super::value::{Extent, Reads, Scalar};
 use super::{Column, Definition, Field, Group, Node, Term};
 use crate::error::catalogue;
-use crate::syntax::{self, Declaration, Expr, ExprKind, GroupItem, Let, print_latex, print_text};
+use crate::syntax::{self, Declaration, GroupItem, Let, print_text};
 use crate::unit::Unit;
 
 /// A group's and its terms' names, those of broken ones too, for scenes to refer to.
@@ -107,11 +107,4 @@ pub(super) fn define(definition: &Let, elaborator: &mut Elaborator<'_>) -> Optio
     // A name that is taken was reported.
     let _ = elaborator.scope.declare(name, symbol, elaborator.errors);
     written
-}
-
-/// `name = value` as LaTeX.
-pub(super) fn print_definition(name: &str, value: &Expr, elaborator: &Elaborator<'_>) -> String {
-    let ordinary = elaborator.coordinates.len() == 1;
-    let name = Expr { kind: ExprKind::Name(name.into()), place: value.place };
-    format!("{} = {}", print_latex(&name, ordinary), print_latex(value, ordinary))
 }

@@ -1,14 +1,13 @@
 //! Declarations: coordinates, fields, sources, parameters and constants get their numbers and units.
 
 use super::build;
-use super::check_group::print_definition;
 use super::constant::{Constant, in_unit};
 use super::elaborate::Elaborator;
 use super::scope::{Meaning, Symbol};
 use super::value::{Dim, Extent, Reads, Scalar, Value};
 use super::{Coordinate, Definition, Field, Model, Name, Node, Parameter, Part, Role};
 use crate::error::{Checked, catalogue};
-use crate::syntax::{Declaration, Expr, Kind, Module, Shape, print_text};
+use crate::syntax::{Declaration, Expr, ExprKind, Kind, Module, Shape, print_latex, print_text};
 use crate::unit::{Dimension, Unit};
 
 /// Declares everything a module declares outside its groups.
@@ -274,4 +273,11 @@ fn add_symbol(
 ) -> Checked<()> {
     let symbol = Symbol { meaning, value: Some(value), span: name.span, index, parent: None, used: false };
     elaborator.scope.declare(name, symbol, elaborator.errors)
+}
+
+/// `name = value` as LaTeX.
+pub(super) fn print_definition(name: &str, value: &Expr, elaborator: &Elaborator<'_>) -> String {
+    let ordinary = elaborator.coordinates.len() == 1;
+    let name = Expr { kind: ExprKind::Name(name.into()), place: value.place };
+    format!("{} = {}", print_latex(&name, ordinary), print_latex(value, ordinary))
 }

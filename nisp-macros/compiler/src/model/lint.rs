@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::elaborate::Elaborator;
 use super::orders::{Orders, Walker, merge};
 use super::scope::Meaning;
-use super::{Expr, Model, Role, Scene, Term, TermKind, build, cancel, lint_scene};
+use super::{Model, Role, Scene, Term, TermKind, build, cancel, lint_scene};
 use crate::error::catalogue;
 
 /// What one term reads.
@@ -72,7 +72,7 @@ fn shadowed_derivatives(elaborator: &mut Elaborator<'_>) {
 
 fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
     let mut fields = BTreeMap::new();
-    let expressions = expressions(term);
+    let expressions = lint_scene::expressions(term);
     for expr in expressions {
         // What cancels is not read.
         for (part, _) in cancel::parts(expr) {
@@ -87,18 +87,6 @@ fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
         _ => 1,
     };
     Row { group, fields, measured, conditions }
-}
-
-/// All scalar expressions of a term.
-pub(super) fn expressions(term: &Term) -> Vec<&Expr> {
-    match &term.kind {
-        TermKind::Residual(rows) | TermKind::Observation { rows, .. } | TermKind::Inequality(rows) => {
-            rows.iter().collect()
-        }
-        TermKind::Complementarity { a, b, .. } => vec![a, b],
-        TermKind::Integral { integrand, target, .. } => integrand.iter().chain(target).collect(),
-        TermKind::Chamfer { point, .. } => point.iter().collect(),
-    }
 }
 
 fn sources_without_equation(elaborator: &mut Elaborator<'_>, model: &Model, rows: &[Vec<Row>]) {

@@ -77,7 +77,7 @@ struct Read {
 
 fn reads(terms: &[&Term]) -> Read {
     let mut read = Read::default();
-    terms.iter().flat_map(|term| super::lint::expressions(term)).for_each(|expr| read.walk(expr));
+    terms.iter().flat_map(|term| expressions(term)).for_each(|expr| read.walk(expr));
     read
 }
 
@@ -100,5 +100,17 @@ impl Read {
                 self.walk(inner);
             }
         }
+    }
+}
+
+/// All scalar expressions of a term.
+pub(super) fn expressions(term: &Term) -> Vec<&Expr> {
+    match &term.kind {
+        TermKind::Residual(rows) | TermKind::Observation { rows, .. } | TermKind::Inequality(rows) => {
+            rows.iter().collect()
+        }
+        TermKind::Complementarity { a, b, .. } => vec![a, b],
+        TermKind::Integral { integrand, target, .. } => integrand.iter().chain(target).collect(),
+        TermKind::Chamfer { point, .. } => point.iter().collect(),
     }
 }

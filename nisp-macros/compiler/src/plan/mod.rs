@@ -18,7 +18,7 @@ use crate::loss::Robust;
 use crate::model::Model;
 use crate::program::Program;
 use crate::rational::Rational;
-use crate::unit::Dimension;
+pub use crate::symbolic::lower::Scalar;
 
 /// The highest order of a derivative that a plan supports.
 pub const MAX_ORDER: u32 = 6;
@@ -101,20 +101,6 @@ pub struct ScenePlan {
     pub groups: Vec<GroupPlan>,
     /// What was left out and why, one line each, for people.
     pub skipped: Vec<String>,
-}
-
-/// A scalar input of group programs.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Scalar {
-    /// A parameter, by index in the model.
-    Parameter(usize),
-    /// A literal with a unit: SI value and dimension.
-    Literal(f64, Dimension),
-    /// The natural size of a bounded field, by index in the model: the unit of its softplus.
-    FieldScale(usize),
-    /// The natural size of one side of a complementarity, to make both sides comparable: dimension, then the
-    /// group (index in [`ScenePlan::groups`]) and term (index in [`GroupPlan::terms`]) it belongs to, and its side (0, 1).
-    SideScale(Dimension, usize, usize, usize),
 }
 
 /// A network output or one of its derivatives, as group programs read it.

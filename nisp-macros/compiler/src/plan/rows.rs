@@ -1,10 +1,10 @@
 //! Terms to rows: what every kind of term wants to be zero.
 
 use crate::model::{Expr, Term, TermKind};
-use crate::plan::Scalar;
 use crate::rational::ratio;
 use crate::symbolic::graph::{Id, ZERO};
 use crate::symbolic::lower::Lowering;
+use crate::symbolic::lower::Scalar;
 use crate::unit::Dimension;
 
 /// Keeps the Fischer-Burmeister root away from its kink; far below any misfit, representable in single precision.

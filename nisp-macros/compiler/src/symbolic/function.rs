@@ -1,84 +1,11 @@
-//! Elementary functions: values, exact values, parities and derivatives, one table each.
-
-use num_traits::{One, Signed, Zero};
+//! Derivatives of elementary functions.
 
 use super::graph::{Graph, Id};
 use crate::model::Function;
-use crate::rational::{Rational, ratio};
+use crate::rational::ratio;
 
 /// Below this, a square root counts as zero in its derivative; representable in single precision.
 pub const TINY_ROOT: f64 = 1e-30;
-
-/// How a function reacts to the sign of its argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Parity {
-    /// `f(-x) = f(x)`
-    Even,
-    /// `f(-x) = -f(x)`
-    Odd,
-    /// Neither.
-    None,
-}
-
-/// The function's parity.
-pub fn parity(function: Function) -> Parity {
-    use Function::*;
-    match function {
-        Cos | Cosh | Abs => Parity::Even,
-        Sin | Tan | Asin | Atan | Sinh | Tanh | Sign => Parity::Odd,
-        Acos | Exp | Ln | Sqrt | Step | Softplus | Sigmoid => Parity::None,
-    }
-}
-
-/// The function's value.
-pub fn value(function: Function, x: f64) -> f64 {
-    use Function::*;
-    match function {
-        Sin => x.sin(),
-        Cos => x.cos(),
-        Tan => x.tan(),
-        Asin => x.asin(),
-        Acos => x.acos(),
-        Atan => x.atan(),
-        Sinh => x.sinh(),
-        Cosh => x.cosh(),
-        Tanh => x.tanh(),
-        Exp => x.exp(),
-        Ln => x.ln(),
-        Sqrt => x.sqrt(),
-        Abs => x.abs(),
-        Sign if x == 0.0 => 0.0,
-        Sign => x.signum(),
-        Step => f64::from(x > 0.0),
-        // max(x, 0) + ln(1 + exp(-|x|)) neither overflows nor cancels.
-        Softplus => x.max(0.0) + (-x.abs()).exp().ln_1p(),
-        Sigmoid => {
-            let e = (-x.abs()).exp();
-            if x >= 0.0 { 1.0 / (1.0 + e) } else { e / (1.0 + e) }
-        }
-    }
-}
-
-/// The function's value at an exact number, where that is exact too.
-pub fn exact_value(function: Function, x: Rational) -> Option<Rational> {
-    use Function::*;
-    match function {
-        Sin | Tan | Asin | Atan | Sinh | Tanh if x.is_zero() => Some(x),
-        Cos | Cosh | Exp if x.is_zero() => Some(Rational::one()),
-        Ln | Acos if x.is_one() => Some(Rational::zero()),
-        Sigmoid if x.is_zero() => Some(ratio(1, 2)),
-        Abs => (*x.numer() != i128::MIN).then(|| x.abs()),
-        Sign => Some(x.signum()),
-        Step => Some(if x.is_positive() { Rational::one() } else { Rational::zero() }),
-        Sqrt => Some(Rational::new_raw(exact_root(*x.numer())?, exact_root(*x.denom())?)),
-        _ => None,
-    }
-}
-
-fn exact_root(n: i128) -> Option<i128> {
-    let root = (n as f64).sqrt() as i128;
-    (n >= 0 && root.checked_mul(root) == Some(n)).then_some(root)
-}
 
 /// The derivative of `function` at `x`, where `y` is its value there.
 ///

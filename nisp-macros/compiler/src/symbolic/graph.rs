@@ -8,11 +8,11 @@ use std::collections::{BTreeSet, HashMap};
 
 use num_traits::Zero;
 
+use super::elementary::{self, Parity};
 use super::exact;
-use super::function::{self, Parity};
 use super::polynomial::Polynomial;
 use crate::model::Function;
-use crate::program::Slot;
+use crate::program::{self, Slot};
 use crate::rational::Rational;
 
 /// Index of a node.
@@ -197,18 +197,18 @@ impl Graph {
     /// An elementary function of `x`.
     pub fn call(&mut self, function: Function, x: Id) -> Id {
         if let Some(value) = self.exact_constant(x)
-            && let Some(result) = function::exact_value(function, value)
+            && let Some(result) = elementary::exact_value(function, value)
         {
             return self.number(result);
         }
         if let Some(value) = self.constant(x) {
-            return self.real(function::value(function, value));
+            return self.real(program::value(function, value));
         }
         let flipped = match self.node(x) {
             Node::Sum(constant, terms) => constant.is_zero() && terms[0].1 < Rational::zero(),
             _ => false,
         };
-        match function::parity(function) {
+        match elementary::parity(function) {
             Parity::Even if flipped => {
                 let positive = self.negate(x);
                 self.call(function, positive)

@@ -8,13 +8,26 @@ use super::exact;
 use super::graph::{Fault, Graph, Id, Leaf, ZERO};
 use super::polynomial::Polynomial;
 use crate::model::{Expr, Function, Model, Node, Scene};
-use crate::plan::Scalar;
 use crate::program::Slot;
 use crate::rational::ratio;
 use crate::unit::Dimension;
 
 /// Deeper nesting than any sensible equation has; bounds the recursion.
 const DEPTH_LIMIT: usize = 500;
+
+/// A scalar input of group programs.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Scalar {
+    /// A parameter, by index in the model.
+    Parameter(usize),
+    /// A literal with a unit: SI value and dimension.
+    Literal(f64, Dimension),
+    /// The natural size of a bounded field, by index in the model: the unit of its softplus.
+    FieldScale(usize),
+    /// The natural size of one side of a complementarity, to make both sides comparable: dimension, then the group and term
+    /// (indices in the plan) it belongs to, and its side (0, 1).
+    SideScale(Dimension, usize, usize, usize),
+}
 
 /// The scalars of a scene, in order of first use.
 #[derive(Clone, Debug, Default)]

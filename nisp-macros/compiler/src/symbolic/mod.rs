@@ -5,6 +5,7 @@
 
 pub mod algebra;
 pub mod differentiate;
+mod elementary;
 pub mod exact;
 pub mod factor;
 pub mod function;

@@ -5,11 +5,22 @@
 
 use std::marker::PhantomData;
 
-use crate::kernel::Rules;
-use crate::layer::Shape;
-use crate::network::Function;
+use super::Shape;
 use crate::real::Real;
+use crate::rules::Rules;
 use crate::simd::{Kernel, Simd};
+
+/// A function of one variable that features are made with.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Function {
+    /// `sin a`
+    Sine,
+    /// `scale ln a`
+    Logarithm {
+        /// Factor.
+        scale: f64,
+    },
+}
 
 /// Features `phi(b . x + phase) + c . x + offset`.
 #[derive(Debug)]

@@ -8,7 +8,8 @@ use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
 use crate::PrepareError;
-use crate::catalogue::{Entry, Request};
+use crate::entry::Entry;
+use crate::request::Request;
 
 /// A sample that is part of the program.
 pub(super) struct Example {
@@ -102,7 +103,8 @@ impl Observed {
 
     /// Reads what is asked for; without data and sample, the example.
     pub(super) fn read(entry: &Entry, request: &Request, example: &Example) -> Result<Self, PrepareError> {
-        let (sample, data) = match (request.calibration.as_ref().or(request.sample.as_ref()), request.file(entry)?) {
+        let (sample, data) = match (request.calibration.as_ref().or(request.sample.as_ref()), request.file(entry.name)?)
+        {
             (None, Some(data)) => match sample_beside(data) {
                 Some(path) => (Some(path), None),
                 None => (None, Some(data)),

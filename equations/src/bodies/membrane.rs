@@ -5,11 +5,14 @@ use std::cell::OnceCell;
 use nisp_data::domain::Domain;
 
 use super::given::Given;
+use super::inflated;
 use super::inflated::{POINTS, Theory};
 use super::observed::{Example, Observed};
-use super::{ContactRival, Load, Rule, inflated};
 use crate::PrepareError;
-use crate::catalogue::{Entry, Prepared, Request};
+use crate::contact::{ContactRival, Load, Rule};
+use crate::entry::Entry;
+use crate::prepared::Prepared;
+use crate::request::Request;
 use crate::rivals::{CloudFit, inflated_tensions, pressure_by_operator};
 
 const THEORY: Theory = Theory {

@@ -3,14 +3,13 @@
 use nisp_data::nearest::Nearest;
 use nisp_data::{Cloud, DataError};
 
-use super::calibration::{CALIBRATES, Calibration, Quality};
-use super::deviation::{Deviation, Off};
-use super::face::{length, minus};
 use super::given::Given;
-use super::inflated::Membrane;
-use super::{Contact, Pose, Values};
 use crate::PrepareError;
-use crate::catalogue::{Entry, Request};
+use crate::contact::{
+    CALIBRATES, Calibration, Contact, Deviation, Membrane, Off, Pose, Quality, References, Values, length, minus,
+};
+use crate::entry::Entry;
+use crate::request::Request;
 
 /// Regions along the longer axis over which a theory's error is about the same.
 const REGIONS: f64 = 12.0;
@@ -25,17 +24,6 @@ impl Entry {
         let names = self.scenes.iter().map(|scene| scene.schema.name);
         names.filter(|name| name.starts_with(CALIBRATES)).collect()
     }
-}
-
-/// Frames of a sensor that nothing touches, and what they were bound with.
-#[derive(Clone, Debug)]
-pub struct References {
-    /// How many frames.
-    pub frames: usize,
-    /// All their points, in metres.
-    pub cloud: Cloud,
-    /// What was known before.
-    pub given: Membrane,
 }
 
 impl References {

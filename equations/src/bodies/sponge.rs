@@ -4,11 +4,14 @@ use nisp::local::{Local, Patches};
 use nisp_data::domain::{Domain, Points, Sampling};
 use serde::Deserialize;
 
+use super::bind_cloud;
 use super::given::{Given, Number, Positive, Size};
 use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
-use super::{Contact, ContactRival, Face, Load, Rule, Surface, bind_cloud};
 use crate::PrepareError;
-use crate::catalogue::{Entry, Prepared, Request};
+use crate::contact::{Contact, ContactRival, Face, Load, Rule, Surface};
+use crate::entry::Entry;
+use crate::prepared::Prepared;
+use crate::request::Request;
 use crate::rivals::LinearPressure;
 use crate::truth::{Headers, Truth};
 

@@ -3,14 +3,16 @@
 use nisp::local::{Local, Patches};
 use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
-use serde::{Deserialize, Serialize};
+use serde::Deserialize;
 
-use super::calibration::{CALIBRATES, Calibration};
+use super::bind_cloud;
 use super::given::{Given, Number, Positive, Size};
 use super::observed::{Example, Observed, POINTS_OF_A_CELL, Sample};
-use super::{Contact, ContactRival, Face, Load, References, Rule, Surface, bind_cloud};
 use crate::PrepareError;
-use crate::catalogue::{Entry, Prepared, Request};
+use crate::contact::{CALIBRATES, Calibration, Contact, ContactRival, Face, Load, Membrane, References, Rule, Surface};
+use crate::entry::Entry;
+use crate::prepared::Prepared;
+use crate::request::Request;
 use crate::truth::{Headers, Truth};
 
 /// What one theory of the membrane has of its own.
@@ -36,25 +38,6 @@ type Rival = fn(&Given<'_>, &Observed, [f64; 2]) -> Result<ContactRival, Prepare
 #[derive(Deserialize)]
 struct Tables {
     membrane: Membrane,
-}
-
-/// Material and size of a membrane, in the keys of samples and calibrations and in SI units.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Membrane {
-    /// Semi-axis of the rim along `alpha`.
-    pub a_m: Option<f64>,
-    /// Semi-axis of the rim along `beta`.
-    pub b_m: Option<f64>,
-    /// Thickness.
-    pub thickness_m: Option<f64>,
-    /// Young's modulus.
-    #[serde(rename = "young_Pa")]
-    pub young: Option<f64>,
-    /// Poisson's ratio.
-    pub poisson: Option<f64>,
-    /// Gauge pressure.
-    #[serde(rename = "gauge_pressure_Pa")]
-    pub pressure: Option<f64>,
 }
 
 /// Semi-axes of the paper's membrane.

@@ -1,10 +1,13 @@
 //! The bubble: an inflated membrane of large strains.
 
+use super::inflated;
 use super::inflated::Theory;
 use super::observed::Example;
-use super::{Load, Rule, inflated};
 use crate::PrepareError;
-use crate::catalogue::{Entry, Prepared, Request};
+use crate::contact::{Load, Rule};
+use crate::entry::Entry;
+use crate::prepared::Prepared;
+use crate::request::Request;
 
 const THEORY: Theory = Theory {
     pressed: PRESSED,

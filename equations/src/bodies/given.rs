@@ -6,7 +6,8 @@ use nisp::schema::{Origin, Scalar, Scene};
 use nisp::{BindError, Problem, SceneRef};
 
 use crate::PrepareError;
-use crate::catalogue::{Assumed, Request};
+use crate::prepared::Assumed;
+use crate::request::Request;
 
 /// A number of a sample, in SI units.
 pub(super) struct Number {

@@ -1,0 +1,96 @@
+//! An equation under its name, and how its scenes are bound to data.
+
+use std::time::Duration;
+
+use nisp::SceneRef;
+use nisp_data::nearest_name;
+
+use crate::error::PrepareError;
+use crate::prepared::Prepared;
+use crate::request::Request;
+use crate::rivals::System;
+
+/// An equation and how it is bound to data.
+#[derive(Clone, Debug)]
+pub struct Entry {
+    /// Name on the command line.
+    pub name: &'static str,
+    /// One line about it.
+    pub about: &'static str,
+    /// Its scenes; the first is the default.
+    pub scenes: Vec<SceneRef>,
+    /// Path of the example's data in the repository; empty if there are none.
+    pub data: &'static str,
+    /// How it is bound.
+    pub binding: Binding,
+}
+
+/// How an entry's scenes are bound to what a user asks for.
+#[derive(Clone, Copy, Debug)]
+pub enum Binding {
+    /// To tables over time, one of which is shipped.
+    Series(Series),
+    /// To tables of its user's own.
+    Tables,
+    /// In a way of its own.
+    Own(fn(&Entry, &Request) -> Result<Prepared, PrepareError>),
+    /// To a point cloud.
+    Cloud(fn(&Entry, &Request) -> Result<Prepared, PrepareError>),
+}
+
+/// What is given besides measurements.
+#[derive(Clone, Copy)]
+pub(crate) struct Given<'a> {
+    /// First time of the measurements.
+    pub(crate) start: f64,
+    /// A parameter's value in its declared unit.
+    pub(crate) parameter: &'a dyn Fn(&str) -> f64,
+}
+
+/// A scene over time: its example, its truths and its rivals.
+#[derive(Clone, Copy, Debug)]
+pub struct Series {
+    /// The example's measurements.
+    pub(crate) data: &'static [u8],
+    /// The example's truth.
+    pub(crate) truth: &'static [u8],
+    /// Columns of the example: name and header.
+    pub columns: &'static [(&'static str, &'static str)],
+    /// Paths of truths in the repository, from which fresh noisy copies can be made.
+    pub truths: &'static [&'static str],
+    /// Rows of a truth for each measurement.
+    pub every: usize,
+    /// The system that classical rivals solve for a scene of this name, where they know how.
+    pub(crate) rival: fn(&str, Given<'_>) -> Option<Box<dyn System>>,
+}
+
+impl Entry {
+    /// The scene of a name, or the default.
+    ///
+    /// # Errors
+    /// No such scene.
+    pub fn scene(&self, name: Option<&str>) -> Result<SceneRef, PrepareError> {
+        let Some(name) = name else { return Ok(self.scenes[0]) };
+        self.scenes.iter().find(|scene| scene.schema.name == name).copied().ok_or_else(|| {
+            let have: Vec<_> = self.scenes.iter().map(|scene| scene.schema.name).collect();
+            PrepareError::Scene { entry: self.name, scene: name.into(), hint: hint(name, &have), have: have.join(", ") }
+        })
+    }
+
+    /// The time within which its answers are usually there.
+    pub fn usual_budget(&self) -> Duration {
+        Duration::from_secs(if matches!(self.binding, Binding::Cloud(_)) { 30 } else { 10 })
+    }
+
+    /// How its scenes over time are bound to tables, if that is what they are.
+    pub fn series(&self) -> Option<&Series> {
+        match &self.binding {
+            Binding::Series(series) => Some(series),
+            Binding::Tables | Binding::Own(_) | Binding::Cloud(_) => None,
+        }
+    }
+}
+
+pub(crate) fn hint(name: &str, have: &[&str]) -> String {
+    nearest_name(name, have.iter().copied()).map_or_else(String::new, |near| format!(", did you mean `{near}`?"))
+}

@@ -1,0 +1,83 @@
+//! An equation bound to data, with what scores and draws its answer.
+
+use nisp::local::Local;
+use nisp::{Carrier, Problem, Settings};
+
+use crate::contact::{Contact, References};
+use crate::rivals::{Answer, Measurements, System, contest, noise_level};
+use crate::truth::Truth;
+
+/// A bound problem, what was measured, and what is true if that is known.
+pub struct Prepared {
+    /// The problem.
+    pub problem: Problem,
+    /// Where the answer is wanted, point by point, in declared units: times of measurements, places in a domain.
+    pub points: Vec<f64>,
+    /// The edge of a plane domain, for pictures; empty otherwise.
+    pub outline: Vec<[f64; 2]>,
+    /// Over three coordinates and more, the points of planes to draw, and what they are called; none otherwise.
+    pub planes: Vec<(String, Vec<f64>)>,
+    /// What was measured over one coordinate.
+    pub measured: Vec<Measured>,
+    /// Truth, for scoring only.
+    pub truth: Option<Truth>,
+    /// Where the data came from.
+    pub source: String,
+    /// What the user should know of the data. One line each.
+    pub warnings: Vec<String>,
+    /// What was taken as declared beside data of the user's own.
+    pub assumed: Vec<Assumed>,
+    /// What classical rivals solve, if they know this scene.
+    pub rival: Option<Box<dyn System>>,
+    /// Local functions, where they suit the scene better than a network.
+    pub local: Option<Local>,
+    /// The body whose surface was seen, where the data are a cloud.
+    pub contact: Option<Contact>,
+    /// What a calibration is made from, where the scene makes one.
+    pub references: Option<References>,
+}
+
+/// A measured column.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Measured {
+    /// Its name.
+    pub name: &'static str,
+    /// The places of its rows.
+    pub at: Vec<f64>,
+    /// Its values, NaN where nothing was measured.
+    pub values: Vec<f64>,
+}
+
+/// A parameter or size that nobody gave.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Assumed {
+    /// Its name.
+    pub name: &'static str,
+    /// Its declared value, in its declared unit.
+    pub value: f64,
+    /// The unit.
+    pub unit: &'static str,
+}
+
+impl Prepared {
+    /// Settings with what suits the scene.
+    pub fn suited(&self, settings: Settings) -> Settings {
+        match self.local {
+            Some(local) if settings.carrier == Carrier::Auto => Settings { carrier: Carrier::Local(local), ..settings },
+            _ => settings,
+        }
+    }
+
+    /// What the classical rivals answer at times `at`, where `truth` is true; nothing where none knows this scene. They
+    /// are given the noise that they find themselves.
+    pub fn contest(&self, at: &[f64], truth: &[f64]) -> Vec<Answer> {
+        let Some(system) = &self.rival else { return Vec::new() };
+        let states: Vec<&[f64]> = self.measured.iter().map(|measured| measured.values.as_slice()).collect();
+        let noise: Result<Vec<f64>, _> = states.iter().map(|values| noise_level(&self.points, values)).collect();
+        let answers = noise.and_then(|noise| {
+            contest(system.as_ref(), &Measurements { times: &self.points, states: &states, noise: &noise }, at, truth)
+        });
+        // Rivals that cannot answer have no row in a table.
+        answers.unwrap_or_default()
+    }
+}

@@ -1,0 +1,66 @@
+//! Local functions as a carrier.
+
+use super::carried::{Carried, Carrier, Solved, Values, heads, learned};
+use super::course::Course;
+use super::{Optimizer, RecoverError, Settings, Width, undetermined};
+use crate::carrier::Kept;
+use crate::facts::Answer;
+use crate::local::{self, Local, LocalSolution};
+use crate::problem::Bound;
+
+impl Carrier for Local {
+    fn name(&self) -> &'static str {
+        local::CARRIER
+    }
+
+    fn solve(&self, bound: &Bound, _: &Settings, mut course: Course<'_, '_>) -> Result<Solved, RecoverError> {
+        let found = local::solve(bound, self, course.left(), course.from, &mut |progress| course.watch(progress))?;
+        let mut warnings = found.warnings.clone();
+        warnings.extend(undetermined::of_local(bound, &found));
+        Ok(Solved {
+            status: found.status,
+            loss: found.loss,
+            iterations: found.iterations,
+            warnings,
+            state: found.checkpoint.clone(),
+            optimizer: Optimizer::Marquardt,
+            method: "gauss-newton",
+            precision: Width::F64,
+            carried: Box::new(found),
+        })
+    }
+}
+
+impl Carried for LocalSolution {
+    fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
+        let points = bound.inward(points);
+        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, &points))).collect()
+    }
+
+    fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
+        let inward = bound.inward(points);
+        let mut all = self.values(bound, points);
+        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, &inward));
+        all
+    }
+
+    fn deviation_of_sum(&self, bound: &Bound, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
+        self.kept.deviation_of_sum(head, &bound.inward(points), weights)
+    }
+
+    fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {
+        learned(bound, self.kept.learned.iter().enumerate().map(|(at, &x)| (x, self.learned_deviation(at))))
+    }
+
+    fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
+        self.misfits[group][term].clone()
+    }
+
+    fn answer(&mut self, _: &Bound) -> Answer {
+        self.answer.clone()
+    }
+
+    fn kept(&mut self, bars: bool) -> Box<dyn Kept> {
+        Box::new(if bars { self.kept.clone() } else { self.kept.without_bars() })
+    }
+}

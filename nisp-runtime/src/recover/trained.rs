@@ -1,0 +1,91 @@
+//! The answer of a trained network.
+
+use super::bars::Distrust;
+use super::carried::{Carried, Values, heads};
+use crate::carrier::Kept;
+use crate::engine::Engine;
+use crate::facts::Answer;
+use crate::network::Architecture;
+use crate::problem::Bound;
+use crate::saved::KeptNetwork;
+use crate::solve::curvature::Curvature;
+use crate::solve::posterior::posterior;
+use crate::solve::prior::WeightPrior;
+use crate::solve::root::Root;
+
+/// Numbers of a block of error bars' derivatives: some megabytes.
+const TOGETHER: usize = 1 << 22;
+
+/// A trained network.
+pub(super) struct Trained {
+    pub(super) architecture: Architecture,
+    pub(super) engine: Engine<f64>,
+    pub(super) theta: Vec<f64>,
+    /// None where there are no error bars.
+    pub(super) prior: Option<WeightPrior>,
+    pub(super) distrust: Distrust,
+}
+
+impl Carried for Trained {
+    fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
+        let mut readout: Engine<f64> = bound.frame().readout(self.architecture, &bound.inward(points));
+        let rows = readout.raw_rows(0, &self.theta);
+        let count = rows.len() / heads(bound).max(1);
+        (0..heads(bound)).map(|head| Values::plain(rows[head * count..][..count].to_vec())).collect()
+    }
+
+    fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
+        let prior = self.prior.as_ref();
+        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
+        let Some(curvature) = curvature else { return self.values(bound, points) };
+        // Derivatives of a point's heads by all parameters are many numbers: so many points at once.
+        let inputs = bound.problem.scene().schema.coordinates.len();
+        let block = inputs * (TOGETHER / (self.theta.len() * heads(bound)).max(1)).max(1);
+        let empty = Values { values: Vec::new(), deviations: Some(Vec::new()), by_prior: Some(Vec::new()) };
+        let mut all = vec![empty; heads(bound)];
+        for some in bound.inward(points).chunks(block) {
+            let Some((rows, derivatives)) = bound.frame().sensitivities(self.architecture, &self.theta, some) else {
+                return self.values(bound, points);
+            };
+            let bars = self.distrust.bars(&posterior(&curvature, &derivatives));
+            let count = some.len() / inputs;
+            for (head, own) in all.iter_mut().enumerate() {
+                let part = head * count..(head + 1) * count;
+                own.values.extend_from_slice(&rows[part.clone()]);
+                own.deviations.iter_mut().for_each(|all| all.extend_from_slice(&bars.deviations[part.clone()]));
+                own.by_prior.iter_mut().for_each(|all| all.extend_from_slice(&bars.by_prior[part.clone()]));
+            }
+        }
+        all
+    }
+
+    fn learned(&mut self, _: &Bound) -> Vec<(f64, Option<f64>)> {
+        let prior = self.prior.as_ref();
+        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
+        let first = self.engine.layout().learned.start;
+        let values = self.engine.learned_values(&self.theta).into_iter().enumerate();
+        let deviation = |i: usize, slope: f64| {
+            let curvature = curvature.as_ref()?;
+            let mut direction = vec![0.0; self.theta.len()];
+            direction[first + i] = slope;
+            self.distrust.bars(&posterior(curvature, &direction)).deviations.first().copied()
+        };
+        values.map(|(i, (value, slope))| (value, deviation(i, slope))).collect()
+    }
+
+    fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
+        let noise = self.prior.is_some().then_some(self.engine.groups[group].terms[term].size);
+        (self.engine.misfits(group, term, &self.theta), noise)
+    }
+
+    fn answer(&mut self, bound: &Bound) -> Answer {
+        self.engine.answer(&self.theta, &bound.clouds)
+    }
+
+    fn kept(&mut self, bars: bool) -> Box<dyn Kept> {
+        let prior = self.prior.as_ref().filter(|_| bars);
+        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
+        let root = curvature.map(|curvature| Root::of(&curvature, self.distrust.factor()));
+        Box::new(KeptNetwork { architecture: self.architecture, theta: self.theta.clone(), root })
+    }
+}

@@ -1,0 +1,110 @@
+//! When a run ends, how it ended, and what its user should know.
+
+use super::fault::Fault;
+use super::state::State;
+use std::time::Duration;
+
+/// When to stop.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limits {
+    /// Wall time; one step is taken even where it is spent.
+    pub budget: Option<Duration>,
+    /// Steps.
+    pub iterations: u64,
+    /// Estimated distance of the loss from its minimum, relative to the loss, at which the answer counts as converged.
+    pub tolerance: f64,
+    /// Loss at which the answer counts as converged, however far the minimum is: for exact data, whose minimum is zero.
+    pub floor: f64,
+    /// Steps without an improvement of the best loss by more than `tolerance` after which the method is given up; ten
+    /// times as many for methods without a model of curvature, and two periods of a schedule at least.
+    pub patience: u64,
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self { budget: None, iterations: u64::MAX, tolerance: 1e-6, floor: 0.0, patience: 100 }
+    }
+}
+
+/// Why a run ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// The loss is as close to its minimum as was asked for.
+    Converged,
+    /// Time or steps are spent.
+    Budget,
+    /// The method cannot go on; the warnings say why.
+    NotConverged,
+    /// The monitor said so.
+    Interrupted,
+    /// The method ended at a minimum, and what is left of the equations, conditions or data says that it is not the answer.
+    Inconsistent,
+}
+
+impl Status {
+    /// In files and for programs.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Converged => "converged",
+            Self::Budget => "budget",
+            Self::NotConverged => "not_converged",
+            Self::Interrupted => "interrupted",
+            Self::Inconsistent => "inconsistent",
+        }
+    }
+}
+
+/// The end of a run.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Outcome<E> {
+    /// Why it ended.
+    pub status: Status,
+    /// The iterate with the least loss.
+    pub theta: Vec<E>,
+    /// Its loss.
+    pub loss: f64,
+    /// Steps taken.
+    pub iterations: u64,
+    /// Evaluations of the objective.
+    pub evaluations: u64,
+    /// Seconds.
+    pub wall_s: f64,
+    /// What a user should know, each with a remedy.
+    pub warnings: Vec<Warning>,
+    /// Where the run stopped, for [`resume`](super::driver::resume).
+    pub state: State,
+}
+
+/// Something that a user should know.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Warning {
+    /// What it is about, for programs.
+    pub kind: WarningKind,
+    /// One sentence, and a remedy.
+    pub message: String,
+}
+
+impl std::fmt::Display for Warning {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(&self.message)
+    }
+}
+
+/// Kinds of [`Warning`].
+#[derive(Debug, Clone, PartialEq)]
+pub enum WarningKind {
+    /// A step was refused because of a fault; the run went on unless it is the last.
+    Fault(Fault),
+    /// The loss no longer falls, though the method expects it to.
+    Stagnation,
+    /// The accuracy of single precision is reached.
+    SinglePrecision,
+    /// Data or an equation that the network does not follow, or data that it follows into their noise.
+    Unresolved,
+    /// Something that was not looked at, because the budget was spent.
+    OutOfTime,
+    /// A direction of the answer that neither equations nor data determine.
+    Undetermined,
+    /// A condition that the answer rests on: the data alone would leave a direction open.
+    Settled,
+}

@@ -1,0 +1,70 @@
+//! What an answer rests on: given numbers, and the frame of every cloud.
+//!
+//! A source is free to take over what a wrong number leaves: a gas pressure ten per cent too high is a contact force of a few
+//! newtons more, and the surface fits. But sources are believed to be few and the rest of the body to be free, so that the answer
+//! would be likelier with the right number. Rao's score test says so without a second solve (`local/scores.rs`).
+
+use super::Check;
+use crate::facts::{Answer, Known, Score, spread};
+use crate::problem::Bound;
+
+/// What the loss may gain: five standard deviations.
+const GAIN: f64 = 12.5;
+/// Changes that are not told from what a prior for few sources gains by a smaller one: shares of a number, of a cloud's radius or
+/// size, and angles.
+const SLIGHT: f64 = 0.05;
+
+/// A check of what would gain most; none where nothing is known of that.
+pub(super) fn check(bound: &Bound, answer: &Answer) -> Option<Check> {
+    let matters = |score: &Score| if score.change.abs() > SLIGHT { score.gain } else { score.gain.min(GAIN) };
+    let mut scores: Vec<&Score> = answer.scores.iter().collect();
+    scores.sort_by(|a, b| matters(b).total_cmp(&matters(a)));
+    let (first, others) = scores.split_first()?;
+    // What gains half as much may be meant as well.
+    let others = others.iter().filter(|other| matters(other) > 0.5 * matters(first));
+    let others: Vec<String> = others.take(3).map(|other| said(bound, answer, other)).collect();
+    let or = if others.is_empty() { String::new() } else { format!(", or with {}", others.join(", or ")) };
+    let message = format!(
+        "the data fit clearly better with {}{or}: {:.0} in the logarithm of the probability; check what is given here, since the \
+         source takes over what is wrong with it",
+        said(bound, answer, first),
+        first.gain
+    );
+    let place = match first.known {
+        Known::Scalar(slot) => ("", bound.problem.scene().schema.scalars[slot].name),
+        Known::Place { cloud, .. } | Known::Direction { cloud, .. } | Known::Size { cloud } => {
+            let cloud = &answer.clouds[cloud];
+            (bound.problem.scene().schema.groups[cloud.group].name, cloud.term)
+        }
+    };
+    Some(Check::new("given", place, (matters(first), GAIN), message))
+}
+
+/// Something known as it should rather be.
+fn said(bound: &Bound, answer: &Answer, score: &Score) -> String {
+    let schema = bound.problem.scene().schema;
+    let term = |cloud: usize| {
+        let cloud = &answer.clouds[cloud];
+        let terms = schema.groups[cloud.group].terms.iter();
+        (cloud.term, terms.filter(|term| term.name == cloud.term).map(|term| term.unit).next())
+    };
+    let axis = |axis: usize| ["x", "y", "z"][axis];
+    match score.known {
+        Known::Scalar(slot) => {
+            let scalar = &schema.scalars[slot];
+            let now = answer.scalars[slot] * bound.system.outward(&scalar.unit);
+            let text = scalar.unit.text;
+            format!("`{}` about {:.3e} {text} instead of {now:.3e}", scalar.name, now * (1.0 + score.change))
+        }
+        Known::Place { cloud, axis: at } => {
+            let (name, unit) = term(cloud);
+            let (outward, text) = unit.map_or((1.0, ""), |unit| (bound.system.outward(&unit), unit.text));
+            let (_, radius) = spread(answer.clouds[cloud].points.iter().map(|&point| point.into()));
+            format!("`{name}` moved by {:.1e} {text} along {}", score.change * radius * outward, axis(at))
+        }
+        Known::Direction { cloud, axis: at } => {
+            format!("`{}` turned by {:.1} degrees about {}", term(cloud).0, score.change.to_degrees(), axis(at))
+        }
+        Known::Size { cloud } => format!("`{}` larger by {:.1} %", term(cloud).0, 100.0 * score.change),
+    }
+}
