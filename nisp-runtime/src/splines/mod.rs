@@ -45,6 +45,8 @@ const REGRESS: u64 = 12;
 const RESTING: f64 = 0.05;
 /// Change of a coefficient, in natural sizes, that no longer matters.
 const SETTLED: f64 = 1e-3;
+/// Change of a coefficient that says that steps lead nowhere.
+const WANDERING: f64 = 5e-3;
 /// Steps of a kind of smoothness at most.
 const MOST_STEPS: u64 = 60;
 /// The end of the error bars' steps at the latest, beside the budget.
@@ -252,7 +254,8 @@ impl Run<'_> {
                 }
                 Phase::Solve if is_tight && (resting && found.change < SETTLED || place.since >= MOST_STEPS) => {
                     place.since = 0;
-                    place.next(found.evidence);
+                    // An iterate that wanders about has no evidence.
+                    place.next(if found.change < WANDERING { found.evidence } else { f64::MIN });
                     if let Some(&kind) = place.kinds.first() {
                         solver.change_smoothness(KINDS[kind], &mut place.state);
                     }
