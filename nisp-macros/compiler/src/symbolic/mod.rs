@@ -14,3 +14,4 @@ pub mod lower;
 pub mod magnitude;
 pub mod polynomial;
 pub mod rewrite;
+pub mod site;
