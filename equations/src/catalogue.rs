@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use nisp::local::Local;
+use nisp::schema::TermKind;
 use nisp::{Carrier, Settings};
 use nisp::{Problem, SceneRef};
 use nisp_data::cloud::LengthUnit;
@@ -15,10 +16,13 @@ use crate::contact::{Contact, References};
 use crate::error::PrepareError;
 use crate::rivals::{Answer, Measurements, System, contest, noise_level};
 use crate::series::Series;
+use crate::tables;
 use crate::truth::Truth;
-use crate::{bubble, membrane, pendulum, plate, rlc, sponge, tables};
+#[cfg(feature = "shipped")]
+use crate::{bubble, membrane, pendulum, plate, rlc, sponge};
 
 /// The equations that are shipped.
+#[cfg(feature = "shipped")]
 // Inlined, the scenes would have every crate that asks compile all kernels again.
 #[inline(never)]
 pub fn catalogue() -> [Entry; 6] {
@@ -45,8 +49,8 @@ pub struct Entry {
 pub enum Binding {
     /// To tables over time, one of which is shipped.
     Series(Series),
-    /// To tables of its user's own.
-    Tables,
+    /// To tables of its user's own. Files that the equation names are looked for from this folder.
+    Tables(&'static Path),
     /// In a way of its own.
     Own(fn(&Entry, &Request) -> Result<Prepared, PrepareError>),
     /// To a point cloud.
@@ -54,6 +58,13 @@ pub enum Binding {
 }
 
 impl Entry {
+    /// An equation of a user's own, bound to tables; nothing if it has no scene.
+    pub fn own(scenes: Vec<SceneRef>) -> Option<Self> {
+        let schema = scenes.first()?.schema;
+        let about = schema.docs.lines().next().unwrap_or_default();
+        Some(Self { name: schema.module, about, scenes, data: "", binding: Binding::Tables(Path::new("")) })
+    }
+
     /// The scene of a name, or the default.
     ///
     /// # Errors
@@ -74,14 +85,14 @@ impl Entry {
         if !matches!(self.binding, Binding::Cloud(_)) {
             self.refuse_clouds(request)?;
         }
-        if let (Some(wanted), false) = (&request.wanted, matches!(self.binding, Binding::Tables)) {
+        if let (Some(wanted), false) = (&request.wanted, matches!(self.binding, Binding::Tables(_))) {
             let option = if matches!(wanted, Wanted::At(_)) { "at" } else { "grid" };
             let instead = "its answer is written where it was measured, or over its own domain";
             return Err(PrepareError::Option { entry: self.name, option, instead });
         }
         match &self.binding {
             Binding::Series(series) => series.prepare(self, request),
-            Binding::Tables => tables::prepare(self, request),
+            Binding::Tables(folder) => tables::prepare(self, folder, request),
             Binding::Own(prepare) | Binding::Cloud(prepare) => prepare(self, request),
         }
     }
@@ -95,8 +106,14 @@ impl Entry {
     pub fn series(&self) -> Option<&Series> {
         match &self.binding {
             Binding::Series(series) => Some(series),
-            Binding::Tables | Binding::Own(_) | Binding::Cloud(_) => None,
+            Binding::Tables(_) | Binding::Own(_) | Binding::Cloud(_) => None,
         }
+    }
+
+    /// True if one of its scenes is compared with a cloud.
+    fn sees(&self) -> bool {
+        let terms = self.scenes.iter().flat_map(|scene| scene.schema.groups).flat_map(|group| group.terms);
+        terms.into_iter().any(|term| matches!(term.kind, TermKind::Chamfer { .. }))
     }
 
     /// Options that are about clouds.
@@ -104,7 +121,7 @@ impl Entry {
         let given = [
             ("sample", request.sample.is_some()),
             ("cloud", request.cloud.is_some()),
-            ("unit", request.unit.is_some()),
+            ("unit", request.unit.is_some() && !self.sees()),
             ("calibration", request.calibration.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {
@@ -140,6 +157,8 @@ pub struct Request {
     pub network: bool,
     /// Names and the headers that hold them; the last word on a name counts.
     pub columns: Vec<(String, String)>,
+    /// About how many points groups shall have that lie in domains; the last word on a name counts.
+    pub points: Vec<(String, usize)>,
     /// Parameters in their declared units; the last word on a name counts.
     pub parameters: Vec<(String, f64)>,
 }

@@ -36,6 +36,18 @@ pub enum PrepareError {
         /// The names there are.
         have: String,
     },
+    /// A number of points for a group whose points are not drawn.
+    #[error(
+        "--points {group}=...: no points are drawn for `{group}`{hint}; points are drawn for groups in domains: {have}"
+    )]
+    Points {
+        /// The name given.
+        group: String,
+        /// The name that may have been meant.
+        hint: String,
+        /// The groups there are.
+        have: String,
+    },
     /// A file for a group that there is not.
     #[error("--data {group}={}: the scene has no group `{group}`{hint}; it has: {have}", .path.display())]
     Group {
@@ -56,6 +68,19 @@ pub enum PrepareError {
         /// Its columns.
         columns: String,
     },
+    /// A surface of which nobody gave a cloud.
+    #[error(
+        "`{term}` of `{group}` wants a cloud; give its file: --data {group}.{term}=FILE (PLY, PCD, NPY, NPZ, CSV or XYZ)"
+    )]
+    Unseen {
+        /// The group.
+        group: &'static str,
+        /// The term.
+        term: &'static str,
+    },
+    /// Several things at once, one a line.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Several(Vec<PrepareError>),
     /// A group whose points nobody gave.
     #[error(
         "nothing says where `{group}` lies; declare a domain in the equation and write `on {group} in DOMAIN`, or give its \
@@ -198,4 +223,20 @@ pub enum PrepareError {
         /// The headers there are.
         columns: String,
     },
+}
+
+impl PrepareError {
+    /// One error of several, each said once.
+    pub(crate) fn all(faults: Vec<PrepareError>) -> PrepareError {
+        let mut flat: Vec<PrepareError> = Vec::new();
+        for fault in faults {
+            let parts = if let PrepareError::Several(parts) = fault { parts } else { vec![fault] };
+            for part in parts {
+                if flat.iter().all(|known| known.to_string() != part.to_string()) {
+                    flat.push(part);
+                }
+            }
+        }
+        if flat.len() == 1 { flat.remove(0) } else { PrepareError::Several(flat) }
+    }
 }

@@ -9,6 +9,7 @@ mod checkpoint;
 mod choice;
 mod course;
 mod layers;
+mod misfits;
 mod network;
 mod open;
 mod place;
@@ -26,6 +27,7 @@ use std::time::Instant;
 use thiserror::Error;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use misfits::Misfits;
 pub use settings::{Carrier, Optimizer, Resampling, Settings, Width};
 pub use solution::{Estimate, LearnedValue, Solution, TermReport};
 

@@ -44,9 +44,9 @@ pub struct Solution {
     pub carrier_reason: String,
     /// Whether data are met to the digits that they are written with.
     is_met_exactly: bool,
-    bound: Bound,
+    pub(super) bound: Bound,
     method: &'static str,
-    carried: Box<dyn Carried>,
+    pub(super) carried: Box<dyn Carried>,
 }
 
 /// A head at some points.
