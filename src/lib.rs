@@ -8,11 +8,31 @@ pub mod language {}
 pub use nisp_macros::pde;
 pub use nisp_runtime::carrier::Estimate;
 pub use nisp_runtime::engine::Resampling;
+
+/// The `main` of a program that has the whole command line for equations of its own: `list`, `check`, `explain`, `solve`, `eval`.
+///
+/// ```text
+/// nisp::pde! { mod heat { /* ... */ } }
+/// nisp::main!(heat);
+/// ```
+///
+/// It names the modules that [`pde!`] made, with commas between them. The command line is the crate `nisp-cli`, which stands in
+/// the program's `Cargo.toml` beside `nisp`, so that libraries do not compile it: `nisp-cli = { version = "0.1",
+/// default-features = false }`. `nisp new heat --rust` writes such a program.
+#[macro_export]
+macro_rules! main {
+    ($($($equation:ident)::+),+ $(,)?) => {
+        fn main() -> ::std::process::ExitCode {
+            ::nisp_cli::Program::own(env!("CARGO_BIN_NAME"), [$($($equation)::+::scenes()),+]).run()
+        }
+    };
+}
+
 pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene, scene_in_both_precisions};
 pub use nisp_runtime::live::{FixedLagSmoother, LagSettings, LiveError, RowColumn, Smoothed};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
-    Carrier, Checkpoint, CheckpointError, LearnedValue, Optimizer, RecoverError, Report, Settings, Solution,
+    Carrier, Checkpoint, CheckpointError, LearnedValue, Misfits, Optimizer, RecoverError, Report, Settings, Solution,
     TermReport, Width, recover, resume,
 };
 pub use nisp_runtime::saved::{OpenAnswer, SavedAnswer, SavedError, SavedParameter};

@@ -6,9 +6,12 @@ use crate::entry::{Binding, Entry};
 use crate::error::PrepareError;
 use crate::prepared::Prepared;
 use crate::request::{Request, Wanted};
-use crate::{bubble, membrane, pendulum, plate, rlc, sponge, tables};
+use crate::tables;
+#[cfg(feature = "shipped")]
+use crate::{bubble, membrane, pendulum, plate, rlc, sponge};
 
 /// The equations that are shipped.
+#[cfg(feature = "shipped")]
 // Inlined, the scenes would have every crate that asks compile all kernels again.
 #[inline(never)]
 pub fn catalogue() -> [Entry; 6] {
@@ -24,14 +27,14 @@ impl Entry {
         if !matches!(self.binding, Binding::Cloud(_)) {
             self.refuse_clouds(request)?;
         }
-        if let (Some(wanted), false) = (&request.wanted, matches!(self.binding, Binding::Tables)) {
+        if let (Some(wanted), false) = (&request.wanted, matches!(self.binding, Binding::Tables(_))) {
             let option = if matches!(wanted, Wanted::At(_)) { "at" } else { "grid" };
             let instead = "its answer is written where it was measured, or over its own domain";
             return Err(PrepareError::Option { entry: self.name, option, instead });
         }
         match &self.binding {
             Binding::Series(series) => series.prepare(self, request),
-            Binding::Tables => tables::prepare(self, request),
+            Binding::Tables(folder) => tables::prepare(self, folder, request),
             Binding::Own(prepare) | Binding::Cloud(prepare) => prepare(self, request),
         }
     }
@@ -41,7 +44,7 @@ impl Entry {
         let given = [
             ("sample", request.sample.is_some()),
             ("cloud", request.cloud.is_some()),
-            ("unit", request.unit.is_some()),
+            ("unit", request.unit.is_some() && !self.sees()),
             ("calibration", request.calibration.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {

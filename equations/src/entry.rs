@@ -1,8 +1,10 @@
 //! An equation under its name, and how its scenes are bound to data.
 
+use std::path::Path;
 use std::time::Duration;
 
 use nisp::SceneRef;
+use nisp::schema::TermKind;
 use nisp_data::nearest_name;
 
 use crate::error::PrepareError;
@@ -30,8 +32,8 @@ pub struct Entry {
 pub enum Binding {
     /// To tables over time, one of which is shipped.
     Series(Series),
-    /// To tables of its user's own.
-    Tables,
+    /// To tables of its user's own. Files that the equation names are looked for from this folder.
+    Tables(&'static Path),
     /// In a way of its own.
     Own(fn(&Entry, &Request) -> Result<Prepared, PrepareError>),
     /// To a point cloud.
@@ -65,6 +67,13 @@ pub struct Series {
 }
 
 impl Entry {
+    /// An equation of a user's own, bound to tables; nothing if it has no scene.
+    pub fn own(scenes: Vec<SceneRef>) -> Option<Self> {
+        let schema = scenes.first()?.schema;
+        let about = schema.docs.lines().next().unwrap_or_default();
+        Some(Self { name: schema.module, about, scenes, data: "", binding: Binding::Tables(Path::new("")) })
+    }
+
     /// The scene of a name, or the default.
     ///
     /// # Errors
@@ -86,8 +95,14 @@ impl Entry {
     pub fn series(&self) -> Option<&Series> {
         match &self.binding {
             Binding::Series(series) => Some(series),
-            Binding::Tables | Binding::Own(_) | Binding::Cloud(_) => None,
+            Binding::Tables(_) | Binding::Own(_) | Binding::Cloud(_) => None,
         }
+    }
+
+    /// True if one of its scenes is compared with a cloud.
+    pub(crate) fn sees(&self) -> bool {
+        let terms = self.scenes.iter().flat_map(|scene| scene.schema.groups).flat_map(|group| group.terms);
+        terms.into_iter().any(|term| matches!(term.kind, TermKind::Chamfer { .. }))
     }
 }
 

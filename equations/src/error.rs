@@ -48,6 +48,18 @@ pub enum PrepareError {
         /// The names there are.
         have: String,
     },
+    /// A number of points for a group whose points are not drawn.
+    #[error(
+        "--points {group}=...: no points are drawn for `{group}`{hint}; points are drawn for groups in domains: {have}"
+    )]
+    Points {
+        /// The name given.
+        group: String,
+        /// The name that may have been meant.
+        hint: String,
+        /// The groups there are.
+        have: String,
+    },
     /// A file for a group that there is not.
     #[error("--data {group}={}: the scene has no group `{group}`{hint}; it has: {have}", .path.display())]
     Group {
@@ -68,6 +80,19 @@ pub enum PrepareError {
         /// Its columns.
         columns: String,
     },
+    /// A surface of which nobody gave a cloud.
+    #[error(
+        "`{term}` of `{group}` wants a cloud; give its file: --data {group}.{term}=FILE (PLY, PCD, NPY, NPZ, CSV or XYZ)"
+    )]
+    Unseen {
+        /// The group.
+        group: &'static str,
+        /// The term.
+        term: &'static str,
+    },
+    /// Several things at once, one a line.
+    #[error("{}", .0.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"))]
+    Several(Vec<PrepareError>),
     /// A group whose points nobody gave.
     #[error(
         "nothing says where `{group}` lies; declare a domain in the equation and write `on {group} in DOMAIN`, or give its \
@@ -216,5 +241,19 @@ impl PrepareError {
     /// True where the record of this name is at fault, so that another of the same body may do.
     pub fn is_of(&self, source: &Path) -> bool {
         matches!(self, Self::File { path, .. } | Self::Elsewhere { path, .. } if path == source)
+    }
+
+    /// One error of several, each said once.
+    pub(crate) fn all(faults: Vec<PrepareError>) -> PrepareError {
+        let mut flat: Vec<PrepareError> = Vec::new();
+        for fault in faults {
+            let parts = if let PrepareError::Several(parts) = fault { parts } else { vec![fault] };
+            for part in parts {
+                if flat.iter().all(|known| known.to_string() != part.to_string()) {
+                    flat.push(part);
+                }
+            }
+        }
+        if flat.len() == 1 { flat.remove(0) } else { PrepareError::Several(flat) }
     }
 }

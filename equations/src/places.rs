@@ -1,11 +1,14 @@
 //! Points of declared domains: products of regions over the coordinates in their order.
 
-use nisp::Points;
-use nisp::schema::{Portion, Region};
-use nisp_data::DataError;
-use nisp_data::domain::{Domain, Sampling};
+use std::path::Path;
 
-/// Points on a line, over an area and in a volume, or in more dimensions.
+use nisp::Points;
+use nisp::schema::{Coordinate, FileKind, Group, Place, Portion, Region};
+use nisp_data::cloud::Surface;
+use nisp_data::domain::{Domain, Sampling};
+use nisp_data::{DataError, Table};
+
+/// Points on a line, over an area and in a volume, or in more dimensions, for equations of second order.
 const POINTS: [usize; 3] = [160, 800, 2000];
 
 /// A domain whose regions have been checked.
@@ -23,20 +26,19 @@ pub(crate) struct Placed {
 }
 
 impl Body {
-    /// A domain as declared.
+    /// A domain as declared over these coordinates; files are looked for from a folder.
     ///
     /// # Errors
-    /// A polygon that crosses itself.
-    pub(crate) fn new(regions: &[Region]) -> Result<Self, DataError> {
-        let factors = regions.iter().map(|region| match region {
-            Region::Box(ranges) => {
-                let (low, high): (Vec<f64>, Vec<f64>) = ranges.iter().map(|[low, high]| (*low, *high)).unzip();
-                Domain::cuboid(&low, &high)
-            }
-            Region::Ellipse { centre, semi_axes } => Domain::ellipse(*centre, *semi_axes),
-            Region::Polygon(corners) => Domain::polygon(corners),
-        });
-        Ok(Self { factors: factors.collect::<Result<_, _>>()? })
+    /// A file that cannot be read, a polygon that crosses itself, a surface that is not closed.
+    pub(crate) fn new(regions: &[Region], coordinates: &[Coordinate], folder: &Path) -> Result<Self, DataError> {
+        let mut left = coordinates;
+        let mut factors = Vec::new();
+        for region in regions {
+            let factor = domain(region, left, folder)?;
+            left = left.get(factor.dim()..).unwrap_or_default();
+            factors.push(factor);
+        }
+        Ok(Self { factors })
     }
 
     /// The box around it: lower and upper corner.
@@ -60,26 +62,38 @@ impl Body {
         self.factors.first().map_or_else(Vec::new, |first| first.outline(200))
     }
 
-    /// Points of one of its portions.
-    pub(crate) fn sample(&self, portion: Portion) -> Placed {
+    /// So many points of one of its portions.
+    pub(crate) fn sample(&self, portion: Portion, count: usize) -> Placed {
         match portion {
             Portion::Inside => {
-                let dimensions = self.factors.iter().map(Domain::dim).sum();
-                let sites = inside(&self.factors, count(dimensions));
+                let sites = inside(&self.factors, count);
                 Placed { points: weighted(sites, &self.factors), normals: Vec::new() }
             }
-            Portion::Boundary => self.boundary(),
-            Portion::Start => self.end(false),
-            Portion::End => self.end(true),
+            Portion::Boundary => self.boundary(count),
+            Portion::Start => self.end(count, false),
+            Portion::End => self.end(count, true),
         }
     }
 
+    /// About how many points a group has that says nothing of it.
+    pub(crate) fn usual(&self, portion: Portion, order: usize) -> usize {
+        let dimensions = self.factors.iter().map(Domain::dim).sum::<usize>();
+        let last = self.factors.last().map_or(0, Domain::dim);
+        count(
+            match portion {
+                Portion::Inside => dimensions,
+                Portion::Boundary => dimensions.saturating_sub(1),
+                Portion::Start | Portion::End => dimensions - last,
+            },
+            order,
+        )
+    }
+
     /// The edge of the first region, over all of the others.
-    fn boundary(&self) -> Placed {
+    fn boundary(&self, count: usize) -> Placed {
         let Some((first, others)) = self.factors.split_first() else { return Placed::default() };
-        let dimensions = self.factors.iter().map(Domain::dim).sum::<usize>() - 1;
-        let edge = first.boundary(count(dimensions));
-        let rest = inside(others, count(dimensions).div_ceil(if first.dim() == 1 { edge.len() } else { 1 }));
+        let edge = first.boundary(count);
+        let rest = inside(others, count.div_ceil(if first.dim() == 1 { edge.len() } else { 1 }));
         // Both ends of an interval meet all points of the others; along an edge, neighbours meet points that are far apart.
         let pairs: Vec<(usize, usize)> = match (others.is_empty(), first.dim()) {
             (true, _) => (0..edge.len()).map(|site| (site, 0)).collect(),
@@ -99,19 +113,58 @@ impl Body {
     }
 
     /// Where the last region, an interval, begins or ends.
-    fn end(&self, last: bool) -> Placed {
+    fn end(&self, count: usize, last: bool) -> Placed {
         let Some((interval, others)) = self.factors.split_last() else { return Placed::default() };
         let (low, high) = interval.bounds();
         let value = if last { high[0] } else { low[0] };
-        let mut sites = inside(others, count(others.iter().map(Domain::dim).sum()));
+        let mut sites = inside(others, count);
         sites.iter_mut().for_each(|site| site.push(value));
         Placed { points: weighted(sites, others), normals: Vec::new() }
     }
 }
 
-/// Points over a portion of so many dimensions.
-fn count(dimensions: usize) -> usize {
-    dimensions.checked_sub(1).map_or(1, |at| POINTS[at.min(POINTS.len() - 1)])
+/// A region as declared over the first of these coordinates.
+fn domain(region: &Region, coordinates: &[Coordinate], folder: &Path) -> Result<Domain, DataError> {
+    let part = |region: &Region| domain(region, coordinates, folder);
+    match region {
+        Region::Box(ranges) => {
+            let (low, high): (Vec<f64>, Vec<f64>) = ranges.iter().map(|[low, high]| (*low, *high)).unzip();
+            Domain::cuboid(&low, &high)
+        }
+        Region::Ellipse { centre, semi_axes } => Domain::ellipse(*centre, *semi_axes),
+        Region::Polygon(corners) => Domain::polygon(corners),
+        Region::Ball { centre, radius } => Domain::ball(*centre, *radius),
+        Region::Cylinder { centre, radius, ends } => Domain::cylinder(*centre, *radius, *ends),
+        Region::File { kind: FileKind::Polygon, path, .. } => {
+            let table = Table::read(folder.join(path))?;
+            let columns = coordinates.iter().take(2).map(|axis| table.quantity(axis.name, axis.unit.text));
+            let columns = columns.collect::<Result<Vec<_>, _>>()?;
+            let corners: Vec<[f64; 2]> = (0..table.rows()).map(|row| [columns[0][row], columns[1][row]]).collect();
+            Domain::polygon(&corners).map_err(|error| of_file(table.path(), &error))
+        }
+        Region::File { kind: FileKind::Solid, path, scale } => {
+            let path = folder.join(path);
+            Domain::solid(&Surface::read(&path)?, *scale).map_err(|error| of_file(&path, &error))
+        }
+        Region::Plus([a, b]) => part(a)?.plus(part(b)?),
+        Region::Minus([a, b]) => part(a)?.minus(part(b)?),
+    }
+}
+
+/// What is wrong with a region, said of the file that it was read from.
+fn of_file(path: &Path, error: &DataError) -> DataError {
+    DataError::File { path: path.into(), what: error.to_string() }
+}
+
+/// How many points a group shall have: as the user asks, as its equation says, or nothing if neither does.
+pub(crate) fn asked(group: &Group, place: &Place, points: &[(String, usize)]) -> Option<usize> {
+    let user = points.iter().rev().find(|(name, _)| name == group.name).map(|(_, count)| *count);
+    user.or(place.points)
+}
+
+/// Points over a portion of so many dimensions, for equations of this order: splines of as many degrees more need as many more.
+fn count(dimensions: usize, order: usize) -> usize {
+    dimensions.checked_sub(1).map_or(1, |at| POINTS[at.min(POINTS.len() - 1)] * (order + 2).max(4) / 4)
 }
 
 /// Points that fill the product of regions evenly; one without coordinates where there are none.
@@ -158,32 +211,36 @@ mod tests {
     const SLAB: [Region; 2] =
         [Region::Ellipse { centre: [1.0, 0.0], semi_axes: [2.0, 2.0] }, Region::Box(&[[0.0, 5.0]])];
 
+    fn built(regions: &[Region]) -> Body {
+        Body::new(regions, &[], Path::new("")).unwrap()
+    }
+
     fn size(placed: &Placed) -> f64 {
         placed.points.weights.iter().sum()
     }
 
     #[test]
     fn weights_are_the_size_of_a_portion() {
-        let body = Body::new(&SLAB).unwrap();
+        let body = built(&SLAB);
         let (area, edge) = (std::f64::consts::PI * 4.0, std::f64::consts::TAU * 2.0);
         let portions = [Portion::Inside, Portion::Boundary, Portion::Start, Portion::End];
         for (portion, exact) in portions.into_iter().zip([5.0 * area, 5.0 * edge, area, area]) {
-            assert!((size(&body.sample(portion)) / exact - 1.0).abs() < 1e-12, "{portion:?}");
+            assert!((size(&body.sample(portion, body.usual(portion, 2))) / exact - 1.0).abs() < 1e-12, "{portion:?}");
         }
-        let rod = Body::new(&[Region::Box(&[[1.0, 4.0]])]).unwrap();
-        assert_eq!(rod.sample(Portion::Boundary).points.coordinates, [1.0, 4.0]);
-        assert_eq!(rod.sample(Portion::Boundary).normals, [[-1.0, 1.0]]);
-        assert_eq!(rod.sample(Portion::End).points.coordinates, [4.0]);
+        let rod = built(&[Region::Box(&[[1.0, 4.0]])]);
+        assert_eq!(rod.sample(Portion::Boundary, 2).points.coordinates, [1.0, 4.0]);
+        assert_eq!(rod.sample(Portion::Boundary, 2).normals, [[-1.0, 1.0]]);
+        assert_eq!(rod.sample(Portion::End, 1).points.coordinates, [4.0]);
     }
 
     #[test]
     fn points_lie_where_their_portion_is() {
-        let body = Body::new(&SLAB).unwrap();
-        let of = |portion: Portion| body.sample(portion).points.coordinates;
+        let body = built(&SLAB);
+        let of = |portion: Portion| body.sample(portion, body.usual(portion, 2)).points.coordinates;
         for point in of(Portion::Inside).chunks(3) {
             assert!(body.contains(point));
         }
-        let edge = body.sample(Portion::Boundary);
+        let edge = body.sample(Portion::Boundary, 800);
         let angles: Vec<f64> = edge.points.coordinates.chunks(3).map(|p| p[1].atan2(p[0] - 1.0)).collect();
         for (at, point) in edge.points.coordinates.chunks(3).enumerate() {
             assert!(((point[0] - 1.0).hypot(point[1]) - 2.0).abs() < 1e-9 && (0.0..=5.0).contains(&point[2]));

@@ -32,6 +32,8 @@ pub struct Request {
     pub network: bool,
     /// Names and the headers that hold them; the last word on a name counts.
     pub columns: Vec<(String, String)>,
+    /// About how many points groups shall have that lie in domains; the last word on a name counts.
+    pub points: Vec<(String, usize)>,
     /// Parameters in their declared units; the last word on a name counts.
     pub parameters: Vec<(String, f64)>,
 }

@@ -74,7 +74,11 @@ impl Series {
     ) -> Result<Prepared, PrepareError> {
         let scene = entry.scene(request.scene.as_deref())?;
         let schema = scene.schema;
-        let found = tables::bind(scene, &Tables { any: Some(table), own: Vec::new() }, request)?;
+        let found = tables::bind(
+            scene,
+            &Tables { any: Some(table), own: Vec::new(), clouds: Vec::new(), folder: Path::new("") },
+            request,
+        )?;
         let span = found.bounds.first().copied();
         let truth = truth.map(|truth| Truth::read(truth, schema, span, Headers::default())).transpose()?;
         let given =

@@ -2,7 +2,7 @@
 units: off;
 coordinates: x, y, t: time;
 fields: u;
-sources: a;
+sources: a(x, y);
 domains: room = box(-1 .. 1, -1 .. 1) times 0 .. 1;
 let S = sin(pi * x) * sin(pi * y);
 let known_a = 2 + S;

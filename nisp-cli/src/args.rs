@@ -2,17 +2,21 @@
 
 use std::ffi::OsString;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use clap::{Args as Group, Parser, Subcommand};
-use nisp_cli::options::{count, optimizers, precisions, seconds, seed, size};
+use clap::{Args as Group, CommandFactory, FromArgMatches, Parser, Subcommand};
 use nisp_data::cloud::LengthUnit;
 
+use crate::config;
+use crate::help::{EVAL_SEE_HELP, EVAL_TEACH, SEE_HELP, TEACH};
+use crate::options::{count, one_line, optimizers, precisions, seconds, seed, show, size};
+use crate::program::Program;
 use crate::stream::{self, StreamOptions};
 
 /// Recover unknown sources from noisy measurements and a known governing equation.
 #[derive(Parser)]
-#[command(version, after_help = "Begin with `nisp solve pendulum`; `nisp solve --help` has examples.")]
+#[command(version)]
 pub(crate) struct Args {
     #[command(subcommand)]
     pub(crate) command: Command,
@@ -44,6 +48,9 @@ pub(crate) enum Command {
     New {
         /// Name of the equation and of the folder: letters, digits and underscores.
         name: String,
+        /// A crate in Rust instead of a text file: the equation is compiled, and the program has this command line.
+        #[arg(long)]
+        rust: bool,
     },
     /// Show a scene's equations, units, channels, what a point costs and what is skipped.
     Explain {
@@ -63,7 +70,7 @@ pub(crate) enum Command {
     /// Learn a sensor's pose, size and stiffness from frames that nothing touches, and what the theory leaves.
     Calibrate(Frames),
     /// Recover a source; without options, from the repository's own noisy example.
-    #[command(args_override_self = true, after_help = SEE_HELP, after_long_help = TEACH)]
+    #[command(args_override_self = true, after_help = SEE_HELP)]
     Solve(Box<Options>),
     /// Answer frame after frame of a camera, or row after row of a record, as they come: one JSON object a line.
     #[command(after_help = stream::SEE_HELP, after_long_help = stream::TEACH)]
@@ -154,6 +161,9 @@ pub(crate) struct Options {
     /// Header of the column that holds a quantity, for instance q=q_m_sigma0.01. Repeatable.
     #[arg(long, value_name = "NAME=HEADER", value_parser = pair, help_heading = DATA)]
     pub(crate) column: Vec<(String, String)>,
+    /// About how many points a group in a domain shall have, for instance inside=4000. Repeatable.
+    #[arg(long, value_name = "GROUP=N", value_parser = points, help_heading = DATA)]
+    pub(crate) points: Vec<(String, usize)>,
     /// Leave out measured values that are far off: Welsch's loss instead of the square.
     #[arg(long, help_heading = DATA)]
     pub(crate) robust: bool,
@@ -221,72 +231,6 @@ const DATA: &str = "Data";
 const METHOD: &str = "Method";
 const RESULTS: &str = "Results";
 
-const SEE_HELP: &str =
-    "Exit codes: 0 solved, 2 bad input, 3 not converged, 4 results elsewhere. `--help` has examples.";
-
-const TEACH: &str = "\
-Examples:
-  nisp solve pendulum
-      the repository's noisy example, scored against its truth
-  nisp solve pendulum --data run.csv --column q=q_m_sigma0.01 --set m0=0.05
-      your measurements; the cart weighs 50 g
-  nisp solve rlc --data volts.csv --set f0=6 --budget 4 --seed 3 --json > answer.json
-  nisp solve pendulum --config run.toml --out results/run-7
-  nisp solve membrane --sample y_shape_1.toml --cloud 2 --truth y_shape_1_truth.csv
-      contact pressure on a membrane, from a cloud of the sample
-  nisp solve membrane --scene identify --data bubble.ply --unit mm --set p=5670
-      your cloud; nothing touches the membrane, and its modulus is wanted
-  nisp solve sponge --data sides.ply --set force_z=2.4 --set force_x=0 ...
-  nisp calibrate bubble --reference free.npy --set p=5256 --set a=0.057 --set b=0.04 --out sensor, then
-  nisp solve bubble --calibration sensor/calibration.toml --data frame.npy --set p=5690
-      a soft bubble seen by a depth camera: first its free shape, then a force
-  nisp new cooling, then nisp solve cooling/cooling.pde --data cooling/data.csv
-      an equation of your own, in a text file
-  nisp solve heat.pde --data probes=probes.csv --data wall=wall.csv --grid 100x50
-      a table for each group that was measured; the answer on a grid
-  nisp solve plate --budget 600 --checkpoint
-  nisp solve plate --budget 600 --checkpoint --resume nisp-out
-      goes on where the first run stopped, or was stopped
-
-Data:
-  A CSV with one header line, a column for each coordinate (one alone must rise) and for each observed quantity. A group
-  of several, or one whose points are wanted from a table, is named before its file. For `q` in metres the headers
-  `q`, `q [m]` and `q_m` are found by themselves; `q_mm` is converted. Any other header is chosen with --column. A
-  header without a unit is taken in the declared one: `nisp explain SCENE` shows units and parameters. Files may have
-  256 MiB; devices and pipes are not read.
-  For contact, a cloud: PLY, PCD, NPY, NPZ, CSV or XYZ, in metres or the unit of --unit, in the frame of the sample
-  (data/README.md). --column then names columns of the truth.
-
-Configuration (every option has a key of the same name; paths are taken from the file's folder):
-  data = \"run.csv\"
-  column = { q = \"q_m_sigma0.01\" }
-  set = { m0 = 0.05 }
-  budget = 4.0
-
-Results, in the folder of --out:
-  source.csv  the recovered source with its standard deviation, where the method gives one
-  state.csv   the fields, likewise
-  plot.svg    both, with measurements, truth and a band of two standard deviations
-  answer.nisp the answer itself: `nisp eval` reads values, derivatives and declared expressions anywhere, without data
-  For contact also surface.svg, surface.vtu and surface.ply: the deformed surface, coloured by pressure.
-  All are written together at the end, or none; files of those names are replaced. One run at a time has the folder.
-  If it cannot be written any more, they go to a new one beside it or to the system's temporary folder, and the last
-  line (`files` of --json) says where; if no folder takes them, the tables go to standard output.
-
-Ctrl-C (or SIGTERM) ends the run at the best state so far, which is written together with checkpoint.nisp and without
-error bars; the status is not_converged. If that takes more than 8 s, checkpoint.nisp alone is written. A second Ctrl-C
-ends it at once.
-
-Checkpoints (--checkpoint, Ctrl-C) hold the whole state of the solver. `nisp solve SCENE --resume DIR`, with the other
-options as before, goes on as if the run had not stopped, to the last bit on the same kind of processor; --budget counts
-from now, --iterations from the first start. A checkpoint that is damaged or of another problem is refused.
-
-Exit codes:
-  0  solved, or the budget is spent (status `converged`, `budget`)
-  2  bad input; nothing was written
-  3  not converged, or interrupted (status `not_converged`); the best state was written
-  4  the results could not be written to the folder of --out, or to standard output";
-
 /// Where an answer is read.
 #[derive(Group)]
 #[group(required = true, multiple = false)]
@@ -298,33 +242,6 @@ pub(crate) struct Place {
     #[arg(long, value_name = "NxM", value_parser = grid)]
     pub(crate) grid: Option<Grid>,
 }
-
-const EVAL_SEE_HELP: &str =
-    "Exit codes: 0 read, 2 bad input, 3 the answer is not to be relied on, 4 not written. `--help` has examples.";
-
-const EVAL_TEACH: &str = "\
-Examples:
-  nisp eval nisp-out/answer.nisp --grid 500
-      every field and source at 500 points over the domain
-  nisp eval beam/answer.nisp --at gauges.csv --of 'w, M, d(M, x)' --out moments.csv
-      deflection, bending moment (a `let M = ...;` of the equation) and shear force where the gauges are
-
-An answer holds the text of its equation, parameters, scales, and what carries fields and sources with what is known of
-it; no data are needed. --of takes the name of every `let` outside of groups and of every parameter; derivatives are
-written as in equations. Fields, sources and parameters come in their declared units and everything else in SI units,
-which stand in the headers.
-
-A column NAME_sd holds the standard deviation, where the answer has any. Those of derivatives and expressions follow
-from the same posterior, to first order.
-
-The answer holds between the points that it was found from: in their range along each coordinate, and in their convex
-hull over every two. Other points have no value, NaN (null in --json), and their number goes to standard error.
-
-Exit codes:
-  0  read
-  2  bad input, or no point inside; nothing was written
-  3  read, but the answer is not to be relied on: it did not converge or failed a check
-  4  could not be written";
 
 /// Points along each coordinate.
 #[derive(Clone, Debug)]
@@ -354,7 +271,8 @@ fn data_parser() -> impl TypedValueParser<Value = (Option<String>, PathBuf)> {
 /// `FILE` or `GROUP=FILE`; what is no text is a file.
 fn data(word: OsString) -> Result<(Option<String>, PathBuf), String> {
     let Some(text) = word.to_str() else { return Ok((None, word.into())) };
-    let is_name = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_');
+    let is_name =
+        |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '.');
     match text.split_once('=').map(|(group, path)| (group.trim(), path.trim())) {
         Some((group, "")) if is_name(group) => Err(format!("no file behind `{group}=`")),
         Some((group, path)) if is_name(group) => Ok((Some(group.into()), path.into())),
@@ -367,9 +285,50 @@ pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
     Ok((name.trim().into(), value.trim().into()))
 }
 
+fn points(text: &str) -> Result<(String, usize), String> {
+    let (group, number) = text.split_once('=').ok_or("write GROUP=N, for instance inside=4000")?;
+    match count(number.trim())? {
+        number if number <= MOST_POINTS => Ok((group.trim().into(), number)),
+        _ => Err(format!("at most {MOST_POINTS} points")),
+    }
+}
+
 pub(crate) fn value(text: &str) -> Result<(String, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, for instance m0=0.005")?;
     let number = value.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     let number = number.ok_or("the value must be a finite number, in the declared unit and without it")?;
     Ok((name.trim().into(), number))
+}
+
+/// What a command line turned out to be.
+pub(crate) enum Parsed {
+    Asked(Args),
+    /// Help or version, which is all that was wanted.
+    Shown(ExitCode),
+}
+
+/// Reads a program's command line, and the configuration that it names.
+pub(crate) fn parse(program: &Program, words: Vec<OsString>) -> Result<Parsed, String> {
+    let first = program.equations.first().map_or("heat.pde", |entry| entry.name);
+    let command = Args::command()
+        .name(program.name)
+        .after_help(format!("Begin with `{0} solve {first}`; `{0} solve --help` has examples.", program.name))
+        .mut_subcommand("solve", |solve| solve.after_long_help(format!("Examples:\n{}\n\n{TEACH}", program.examples)));
+    let read = |words: &mut dyn Iterator<Item = OsString>| {
+        command.clone().try_get_matches_from(words).and_then(|found| Args::from_arg_matches(&found))
+    };
+    let args = match read(&mut words.iter().cloned()) {
+        Ok(args) => args,
+        Err(error) => return show(&error).map(Parsed::Shown),
+    };
+    let Command::Solve(options) = &args.command else { return Ok(Parsed::Asked(args)) };
+    let Some(path) = &options.config else { return Ok(Parsed::Asked(args)) };
+    let flags = config::flags(path)?;
+    // The file alone first, so that a fault of it is said to be one.
+    let alone = words[..2].iter().cloned().chain([options.equation.clone().into()]).chain(flags.clone());
+    if let Err(error) = read(&mut alone.into_iter()) {
+        return Err(format!("{}: {}", path.display(), one_line(&error)));
+    }
+    let mut both = words[..2].iter().cloned().chain(flags).chain(words[2..].iter().cloned());
+    read(&mut both).map(Parsed::Asked).or_else(|error| show(&error).map(Parsed::Shown))
 }

@@ -4,11 +4,11 @@ use std::fmt::Write;
 use std::process::ExitCode;
 use std::time::Duration;
 
+use crate::interrupt;
+use crate::processors;
+use crate::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print, progress};
 use nisp::solve::driver::{Flow, Status};
 use nisp::{LearnedValue, Report, Settings, Solution, recover};
-use nisp_cli::interrupt;
-use nisp_cli::processors;
-use nisp_cli::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print, progress};
 use nisp_data::colour::ColourScale;
 use nisp_data::picture::{FieldMap, Grid, MapPanel, Quantity, field_map};
 use nisp_data::{DataError, OutDir};
@@ -17,6 +17,7 @@ use nisp_equations::{Entry, PrepareError, Request};
 use serde_json::json;
 
 use crate::args::Frames;
+use crate::program::Program;
 
 /// What is written.
 const FILE: &str = "calibration.toml";
@@ -30,13 +31,13 @@ struct Fit {
 }
 
 /// Fits every law that the equation has, keeps the one that leaves least, and writes it.
-pub(crate) fn calibrate(options: &Frames) -> Result<ExitCode, String> {
-    let entry = nisp_cli::entry(&options.equation)?;
+pub(crate) fn calibrate(program: &Program, options: &Frames) -> Result<ExitCode, String> {
+    let entry = program.entry(&options.equation)?;
     let laws = entry.calibrates();
     if laws.is_empty() {
         return Err(format!("`{}` cannot be calibrated; `nisp calibrate bubble` can", options.equation));
     }
-    interrupt::listen(crate::NAME)?;
+    interrupt::listen(program.name)?;
     OutDir::require_free(&options.out, &[FILE, PLOT]).map_err(|error| error.to_string())?;
     let mut fits = Vec::new();
     let mut failed = Vec::new();
@@ -63,7 +64,7 @@ pub(crate) fn calibrate(options: &Frames) -> Result<ExitCode, String> {
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::clean(out.traces());
     if let Err(error) = out.write(&files) {
-        note(&format!("{}: {error}\n", crate::NAME));
+        note(&format!("{}: {error}\n", program.name));
         return Ok(ExitCode::from(NOT_WRITTEN));
     }
     print(&if options.json {

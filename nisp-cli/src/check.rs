@@ -6,19 +6,18 @@ use std::process::ExitCode;
 
 use nisp::schema::{Group, Portion};
 use nisp_equations::rivals::noise_level;
-use nisp_equations::{Prepared, Request};
+use nisp_equations::{Entry, Prepared, Request};
 
 use crate::explain::{unit, unknowns};
 
 /// Prints a scene's unknowns and conditions and, with data, where each group's points come from and what each column holds.
 pub(crate) fn check(
-    equation: &str,
+    entry: &Entry,
     scene: Option<String>,
     data: Vec<(Option<String>, PathBuf)>,
     columns: Vec<(String, String)>,
     latex: bool,
 ) -> Result<ExitCode, String> {
-    let entry = nisp_cli::entry(equation)?;
     let schema = entry.scene(scene.as_deref()).map_err(|error| error.to_string())?.schema;
     let prepared = if data.is_empty() && entry.data.is_empty() {
         None
@@ -53,7 +52,7 @@ pub(crate) fn check(
     } else {
         line("data: none given; `--data FILE` says what is seen in them".into());
     }
-    nisp_cli::terminal::print(&text)?;
+    crate::terminal::print(&text)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::time::Instant;
 
+use crate::interrupt;
 use nisp::{Checkpoint, Report};
-use nisp_cli::interrupt;
 use nisp_data::OutDir;
 use nisp_data::input::read_bytes;
 

@@ -26,7 +26,7 @@ pub(crate) fn flags(path: &Path) -> Result<Vec<OsString>, String> {
         let refuse = |what: &str| Err(format!("{}: `{key}` {what}", path.display()));
         match value {
             _ if key == "config" => return refuse("cannot stand in a configuration; name one file only"),
-            Value::Table(pairs) if matches!(key.as_str(), "column" | "set") => {
+            Value::Table(pairs) if matches!(key.as_str(), "column" | "set" | "points") => {
                 for (name, value) in pairs {
                     let Some(value) = plain(value) else { return refuse("takes NAME = VALUE pairs") };
                     flags.push(format!("--{key}={name}={value}").into());

@@ -5,10 +5,10 @@ use std::process::ExitCode;
 
 use nisp::network::Architecture;
 use nisp::schema::{Origin, Scene, Unit};
+use nisp_equations::Entry;
 
 /// Prints a scene's equations, units, channels and savings, and what a point costs in a network of this shape.
-pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Architecture) -> Result<ExitCode, String> {
-    let entry = nisp_cli::entry(equation)?;
+pub(crate) fn explain(entry: &Entry, scene: Option<&str>, architecture: Architecture) -> Result<ExitCode, String> {
     let schema = entry.scene(scene).map_err(|error| error.to_string())?.schema;
     let mut text = String::new();
     // Writing into a string cannot fail.
@@ -40,7 +40,7 @@ pub(crate) fn explain(equation: &str, scene: Option<&str>, architecture: Archite
     for skipped in schema.skipped {
         line(format!("skipped: {skipped}"));
     }
-    nisp_cli::terminal::print(&text)?;
+    crate::terminal::print(&text)?;
     Ok(ExitCode::SUCCESS)
 }
 

@@ -2,10 +2,12 @@
 
 use std::process::ExitCode;
 
+use crate::program::Program;
+
 /// Prints every equation with its scenes.
-pub(crate) fn list() -> Result<ExitCode, String> {
+pub(crate) fn list(program: &Program) -> Result<ExitCode, String> {
     let mut text = String::new();
-    for entry in nisp_equations::catalogue() {
+    for entry in &program.equations {
         text += &format!("{:10} {}\n", entry.name, entry.about);
         let schemas: Vec<_> = entry.scenes.iter().map(|scene| scene.schema).collect();
         let widest = schemas.iter().map(|schema| schema.name.len()).max().unwrap_or(0);
@@ -14,6 +16,6 @@ pub(crate) fn list() -> Result<ExitCode, String> {
             text += &format!("{:10} --scene {:widest$}  {about}\n", "", schema.name);
         }
     }
-    nisp_cli::terminal::print(&text)?;
+    crate::terminal::print(&text)?;
     Ok(ExitCode::SUCCESS)
 }

@@ -3,23 +3,24 @@
 use std::process::ExitCode;
 use std::time::Duration;
 
+use crate::score::Found;
+use crate::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print, progress};
+use crate::{interrupt, processors};
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Carrier, Checkpoint, Optimizer, Report, Resampling, Settings, Solution, Width, recover, resume};
-use nisp_cli::score::Found;
-use nisp_cli::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print, progress};
-use nisp_cli::{interrupt, processors};
 use nisp_data::OutDir;
 use nisp_equations::{Prepared, Request, Truth, Wanted};
 
 use crate::args::Options;
 use crate::checkpoint::{self, Keeper};
+use crate::program::Program;
 use crate::report::{self, Run};
 use crate::results;
 
 /// Solves, writes the results, and says how well it went.
-pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
-    let entry = nisp_cli::entry(&options.equation)?;
+pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, String> {
+    let entry = program.entry(&options.equation)?;
     let settings = settings(options, entry.usual_budget())?;
     let request = Request {
         scene: options.scene.clone(),
@@ -32,6 +33,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         truth: options.truth.clone(),
         network: settings.carrier == Carrier::Network,
         columns: options.column.clone(),
+        points: options.points.clone(),
         parameters: options.set.clone(),
         ..Request::default()
     };
@@ -39,7 +41,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
     prepared.problem.set_robust(options.robust);
     let settings = prepared.suited(settings);
     let from = options.resume.as_deref().map(checkpoint::read).transpose()?;
-    interrupt::listen(crate::NAME)?;
+    interrupt::listen(program.name)?;
     let names = [results::names(&prepared), vec![checkpoint::NAME]].concat();
     OutDir::require_free(&options.out, &names).map_err(|error| error.to_string())?;
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
@@ -66,7 +68,7 @@ pub(crate) fn solve(options: &Options) -> Result<ExitCode, String> {
         report::table(&solution, &run, &if options.rivals { found.with_rival(&prepared) } else { found })
     };
     if let Err(message) = print(&text) {
-        note(&format!("{}: {message}\n", crate::NAME));
+        note(&format!("{}: {message}\n", program.name));
         return Ok(ExitCode::from(NOT_WRITTEN));
     }
     let unfinished = matches!(solution.status, Status::NotConverged | Status::Interrupted);

@@ -2,6 +2,7 @@
 
 use std::f64::consts::PI;
 
+use nisp_data::cloud::Surface;
 use nisp_data::domain::{Domain, Points, Sampling, resample};
 
 fn integral(points: &Points, f: impl Fn(&[f64]) -> f64) -> f64 {
@@ -21,6 +22,79 @@ fn plane_and_solid() -> Vec<Domain> {
         Domain::ellipse([0.0, 0.0], [0.06, 0.04]).unwrap(),
         Domain::polygon(&[[0.0, 0.0], [0.0, 2.0], [1.0, 2.0], [1.0, 1.0], [3.0, 1.0], [3.0, 0.0]]).unwrap(),
     ]
+}
+
+/// A tetrahedron with three edges of 2 along the axes from a corner, inside out or not.
+fn tetrahedron(inside_out: bool) -> Surface {
+    let vertices = vec![[0.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]];
+    let mut triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+    if inside_out {
+        triangles.iter_mut().for_each(|triangle| triangle.reverse());
+    }
+    Surface { vertices, triangles }
+}
+
+/// Bodies whose size has a closed form: domain and measures inside and on the boundary.
+fn bodies() -> Vec<(Domain, [f64; 2])> {
+    let square = |low: f64, high: f64| Domain::cuboid(&[low, 0.0], &[high, 1.0]).unwrap();
+    let disc = |x: f64| Domain::disc([x, 0.5], 0.25).unwrap();
+    let ball = |radius: f64| Domain::ball([1.0, -1.0, 0.5], radius).unwrap();
+    let slope = 5.0_f64.sqrt();
+    vec![
+        (ball(0.5), [PI / 6.0, PI]),
+        (Domain::cylinder([1.0, 0.0], 0.5, [-1.0, 2.0]).unwrap(), [0.75 * PI, 3.5 * PI]),
+        // Its volume is a third of base times height; edges of 2 in the file, of 1 here.
+        (Domain::solid(&tetrahedron(false), 0.5).unwrap(), [1.0 / 6.0, 1.5 + 3.0_f64.sqrt() / 2.0]),
+        (Domain::solid(&tetrahedron(true), 0.5).unwrap(), [1.0 / 6.0, 1.5 + 3.0_f64.sqrt() / 2.0]),
+        (square(0.0, 1.0).minus(disc(0.5)).unwrap(), [1.0 - PI / 16.0, 4.0 + PI / 2.0]),
+        // Half of the disc is outside: its edge there bounds the sum, and the side below it no more.
+        (square(0.0, 1.0).plus(disc(1.0)).unwrap(), [1.0 + PI / 32.0, 3.5 + PI / 4.0]),
+        (square(0.0, 1.0).minus(disc(1.0)).unwrap(), [1.0 - PI / 32.0, 3.5 + PI / 4.0]),
+        // Boundaries that run along each other.
+        (square(0.0, 1.0).plus(square(1.0, 3.0)).unwrap(), [3.0, 8.0]),
+        (square(0.0, 2.0).plus(square(1.0, 3.0)).unwrap(), [3.0, 8.0]),
+        (square(0.0, 3.0).minus(square(1.0, 3.0)).unwrap(), [1.0, 4.0]),
+        (ball(0.5).minus(ball(0.25)).unwrap(), [PI / 6.0 * 0.875, 1.25 * PI]),
+        (Domain::polygon(&[[0.0, 0.0], [2.0, 0.0], [0.0, 1.0]]).unwrap().minus(disc(9.0)).unwrap(), [1.0, 3.0 + slope]),
+    ]
+}
+
+#[test]
+fn bodies_have_their_sizes_and_points_in_their_places() {
+    for (domain, [inside, around]) in bodies() {
+        close(domain.measure(), inside, 2e-3);
+        close(domain.boundary_measure(), around, 2e-3);
+        let points = domain.interior(700, Sampling::Sobol, 3);
+        assert!(points.len() == 700 && points.iter().all(|point| domain.contains(point)), "{domain:?}");
+        close(integral(&points, |_| 1.0), inside, 2e-3);
+        let (low, high) = domain.bounds();
+        let middle: f64 = low.iter().zip(&high).map(|(a, b)| (a + b) / 2.0).sum();
+        let edge = domain.boundary(3000);
+        assert!((2700..3300).contains(&edge.len()), "{} points: {domain:?}", edge.len());
+        let (mut flux, dim) = (0.0, domain.dim());
+        for (at, point) in edge.iter().enumerate() {
+            let normal = edge.normal(at).unwrap();
+            close(normal.iter().map(|n| n * n).sum(), 1.0, 1e-9);
+            let beside = |way: f64| -> Vec<f64> { point.iter().zip(normal).map(|(x, n)| x + way * n).collect() };
+            assert!(domain.contains(&beside(-1e-6)) && !domain.contains(&beside(1e-6)), "{point:?} of {domain:?}");
+            let along = point.iter().zip(normal).map(|(x, n)| (x - middle / dim as f64) * n).sum::<f64>();
+            flux += edge.weights.as_ref().unwrap()[at] * along;
+        }
+        // The divergence theorem.
+        close(flux, dim as f64 * inside, 1e-2);
+    }
+}
+
+#[test]
+fn a_surface_with_a_hole_is_no_solid() {
+    let mut open = tetrahedron(false);
+    open.triangles.pop();
+    let error = Domain::solid(&open, 1.0).unwrap_err().to_string();
+    assert!(error.contains("not closed: 3 edges"), "{error}");
+    assert!(Domain::ball([0.0; 3], -1.0).is_err());
+    let (interval, disc) = (Domain::interval(0.0, 1.0).unwrap(), Domain::disc([0.0; 2], 1.0).unwrap());
+    assert!(disc.clone().plus(interval).is_err());
+    assert!(disc.clone().minus(disc).unwrap_err().to_string().contains("nothing of the region is left"));
 }
 
 #[test]

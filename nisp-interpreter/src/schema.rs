@@ -8,8 +8,8 @@ use nisp_compiler::plan::{self, GroupPlan, Plan, RowKind, ScenePlan, TermPlan};
 use nisp_compiler::symbolic::exact::to_f64;
 use nisp_compiler::unit;
 use nisp_runtime::schema::{
-    Column, Coordinate, Group, Head, Jet, Loss, Origin, Place, Portion, Region, RuleFlops, Scalar, Scene, Term,
-    TermKind, Unit,
+    Column, Coordinate, FileKind, Group, Head, Held, Jet, Loss, Origin, Place, Portion, Region, RuleFlops, Scalar,
+    Scene, Term, TermKind, Unit,
 };
 
 /// The schema of a scene.
@@ -109,24 +109,44 @@ fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene,
         rows: group.terms.iter().map(|term| term.rows).sum(),
         place: source.place.as_ref().map(place),
         paired: source.paired,
+        held: list(group.held.iter().map(|site| {
+            let (of, coordinates) = describe::held(*site, model);
+            Held { of, coordinates: list(coordinates) }
+        })),
         flops: [group.residual.flops(), group.adjoint.flops()],
         rule_flops: RuleFlops { compose, affine, product },
     }
 }
 
 fn place(place: &model::Place) -> Place {
-    let regions = place.domain.iter().map(|region| match region {
-        model::Region::Box(ranges) => Region::Box(list(ranges.iter().copied())),
-        model::Region::Ellipse { centre, semi_axes } => Region::Ellipse { centre: *centre, semi_axes: *semi_axes },
-        model::Region::Polygon(corners) => Region::Polygon(list(corners.iter().copied())),
-    });
     let portion = match place.portion {
         model::Portion::Inside => Portion::Inside,
         model::Portion::Boundary => Portion::Boundary,
         model::Portion::Start => Portion::Start,
         model::Portion::End => Portion::End,
     };
-    Place { portion, domain: list(regions) }
+    Place { portion, domain: list(place.domain.iter().map(region)), points: place.points }
+}
+
+fn region(of: &model::Region) -> Region {
+    match of {
+        model::Region::Box(ranges) => Region::Box(list(ranges.iter().copied())),
+        model::Region::Ellipse { centre, semi_axes } => Region::Ellipse { centre: *centre, semi_axes: *semi_axes },
+        model::Region::Polygon(corners) => Region::Polygon(list(corners.iter().copied())),
+        model::Region::Ball { centre, radius } => Region::Ball { centre: *centre, radius: *radius },
+        model::Region::Cylinder { centre, radius, ends } => {
+            Region::Cylinder { centre: *centre, radius: *radius, ends: *ends }
+        }
+        model::Region::File { kind, path, scale } => {
+            let kind = match kind {
+                model::FileKind::Polygon => FileKind::Polygon,
+                model::FileKind::Solid => FileKind::Solid,
+            };
+            Region::File { kind, path: text(path), scale: *scale }
+        }
+        model::Region::Plus(parts) => Region::Plus(Box::leak(Box::new(parts.each_ref().map(region)))),
+        model::Region::Minus(parts) => Region::Minus(Box::leak(Box::new(parts.each_ref().map(region)))),
+    }
 }
 
 fn jet(model: &Model, scene: &ScenePlan, jet: &plan::Jet) -> Jet {

@@ -41,6 +41,11 @@ enum Command {
 /// The program's name, in its messages.
 const NAME: &str = "nisp-lab";
 
+/// A shipped equation, or one in a text file.
+fn entry(name: &str) -> Result<nisp_equations::Entry, String> {
+    nisp_cli::Program::shipped().entry(name)
+}
+
 fn main() -> ExitCode {
     let result = match Args::try_parse() {
         Ok(Args { command: Command::Frontier(options) }) => frontier::frontier(&options),

@@ -138,6 +138,8 @@ pub struct Group {
     pub place: Option<Place>,
     /// True if every point has a partner.
     pub paired: bool,
+    /// Where the heads are read beside the points and their partners: heads that depend on some of the coordinates only.
+    pub held: &'static [Held],
     /// Floating-point operations per point of the residual program and its adjoint.
     pub flops: [usize; 2],
     /// Floating-point operations per point and unit of the network's rules.
@@ -145,6 +147,11 @@ pub struct Group {
 }
 
 impl Group {
+    /// Places at which the heads are read for each point.
+    pub fn sites(&self) -> usize {
+        1 + usize::from(self.paired) + self.held.len()
+    }
+
     /// True for the group of what is believed of learned parameters, which the compiler adds and which is bound by itself.
     pub fn is_beliefs(&self) -> bool {
         self.name == "(beliefs)"
@@ -167,6 +174,8 @@ pub struct Place {
     pub portion: Portion,
     /// The domain: a product of regions over the coordinates in their order.
     pub domain: &'static [Region],
+    /// About how many points the group shall have, if it says so.
+    pub points: Option<usize>,
 }
 
 /// A part of a domain.
@@ -196,6 +205,44 @@ pub enum Region {
     },
     /// The corners of a polygon.
     Polygon(&'static [[f64; 2]]),
+    /// A ball.
+    Ball {
+        /// Its centre.
+        centre: [f64; 3],
+        /// Its radius.
+        radius: f64,
+    },
+    /// A cylinder along the third coordinate.
+    Cylinder {
+        /// Its axis.
+        centre: [f64; 2],
+        /// Its radius.
+        radius: f64,
+        /// Where it begins and ends.
+        ends: [f64; 2],
+    },
+    /// What a file holds.
+    File {
+        /// Its kind.
+        kind: FileKind,
+        /// Its path as written.
+        path: &'static str,
+        /// One of the file's unit in the coordinates' own; 1 of a table, whose headers have units.
+        scale: f64,
+    },
+    /// What is in either.
+    Plus(&'static [Region; 2]),
+    /// What is in the first and not in the second.
+    Minus(&'static [Region; 2]),
+}
+
+/// What a file holds that a region is read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// The corners of a polygon, as a table of two columns.
+    Polygon,
+    /// A closed surface of triangles, as STL.
+    Solid,
 }
 
 /// Floating-point operations of propagation rules on all channels, forward and on the way back (which computes a layer
@@ -208,6 +255,15 @@ pub struct RuleFlops {
     pub affine: [usize; 2],
     /// The product of a layer and its gate.
     pub product: [usize; 2],
+}
+
+/// A point or its partner with some coordinates held in the middle of their range, whatever the point's are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Held {
+    /// 0 for the point itself, 1 for its partner.
+    pub of: usize,
+    /// The coordinates that are held.
+    pub coordinates: &'static [usize],
 }
 
 /// A network output or a derivative of it.
@@ -224,7 +280,7 @@ pub struct Jet {
     pub combination: &'static [(usize, f64)],
     /// The operator in derivatives: (order by each coordinate, coefficient).
     pub operator: &'static [(&'static [u8], f64)],
-    /// 0 for the point itself, 1 for its partner.
+    /// 0 for the point itself, then its partner if the group is paired, then [`Group::held`].
     pub site: usize,
 }
 

@@ -30,8 +30,10 @@ fn schemas_agree<M: Model>(model: &M) {
 fn a_text_has_the_schema_that_the_macro_emits() {
     each_model!(schemas_agree);
     // Groups in every portion of domains of every kind.
-    let compiled = nisp::scene::<crate::models::poisson::everywhere::Scene>();
-    assert_eq!(format!("{:#?}", interpreted(compiled).schema), format!("{:#?}", compiled.schema));
+    let everywhere = nisp::scene::<crate::models::poisson::everywhere::Scene>();
+    for compiled in [everywhere, nisp::scene::<crate::models::solids::solve::Scene>()] {
+        assert_eq!(format!("{:#?}", interpreted(compiled).schema), format!("{:#?}", compiled.schema));
+    }
 }
 
 /// Loss and gradient of both, in one precision and on one instruction set, within `tolerance`.

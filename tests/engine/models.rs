@@ -33,12 +33,13 @@ nisp::pde! {
         sources: s;
         domains:
             square = box(-1 .. 1, -1 .. 1), round = disc(0, 0, 2), three = polygon([0, 0], [1, 0], [0, 1]),
-            strip = 0 .. 1 times -1 .. 3;
+            strip = 0 .. 1 times -1 .. 3, holed = box(0 .. 2, 0 .. 2) plus disc(2, 1, 1) minus polygon("hole.csv");
         on inside in square { balance: laplacian(u) == s; }
         on rim boundary of round { held: u == x * y; }
         on corner in three { held: u == 1 within 5; }
         on early start of strip { held: u == 2 within 5; }
         on late end of strip { held: u == 3 within 5; }
+        on around boundary of holed with 500 points { held: u == 4 within 5; }
         scene solve { only inside.balance, rim.held; }
         scene everywhere { }
     }
@@ -155,6 +156,31 @@ nisp::pde! {
         hard w = x * y by 1 - x^2 - y^2;
         on inside { balance: laplacian(w) == s; }
         on samples { observe w; }
+        scene solve { }
+    }
+}
+
+nisp::pde! {
+    mod partial {
+        units: off;
+        coordinates: x, t;
+        fields: u, a(x);
+        sources: r(t), c;
+        on inside { balance: d(u, t) + d(a, t) == d(a * d(u, x), x) + r * c + d(r, t); }
+        on seam pairs { both: a == r * partner(a) + partner(r * u); }
+        on probes { observe u; }
+        scene solve { }
+    }
+}
+
+nisp::pde! {
+    pub(crate) mod solids {
+        units: off;
+        coordinates: x, y, z;
+        fields: u;
+        domains: drum = cylinder(0, 1, 2, -1 .. 3) minus ball(0, 1, 0, 0.5), part = solid("part.stl");
+        on inside in drum { balance: laplacian(u) == 1; }
+        on rim boundary of part { held: u == 0; }
         scene solve { }
     }
 }
@@ -444,6 +470,38 @@ impl Model for Held {
     }
 }
 
+pub(crate) struct Partial;
+
+impl Model for Partial {
+    const ORDER: usize = 2;
+    fn scene(&self) -> nisp::SceneRef {
+        scene::<partial::solve::Scene>()
+    }
+    fn held(&self, head: usize) -> &'static [usize] {
+        [&[] as &[usize], &[1], &[0], &[]][head]
+    }
+    fn groups(&self) -> Vec<Data> {
+        let seam = Data { partners: scatter(17, 2, -0.8, 0.9), ..group("seam", scatter(17, 2, -1.0, 1.5)) };
+        let probes = Data { columns: vec![wave(25, 0.6)], ..group("probes", scatter(25, 2, -1.0, 1.0)) };
+        vec![group("inside", scatter(60, 2, -1.0, 1.0)), seam, probes]
+    }
+    fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T> {
+        let [u, a, r, c] = [0, 1, 2, 3].map(|head| at.heads[head].clone());
+        match group {
+            "probes" => vec![u.value() - T::of(at.columns[0])],
+            "seam" => {
+                let [far_u, far_a, far_r] = [0, 1, 2].map(|head| at.partner[head].value());
+                vec![a.value() - r.value() * far_a - far_r * far_u]
+            }
+            // The product rule, by hand: `a` has no derivative by time.
+            _ => {
+                let flux = a.by(0).value() * u.by(0).value() + a.value() * at.d(0, &[2, 0]);
+                vec![u.by(1).value() - flux - r.value() * c.value() - r.by(1).value()]
+            }
+        }
+    }
+}
+
 /// Runs a generic check on every model.
 macro_rules! each_model {
     ($check:ident!) => {
@@ -456,6 +514,7 @@ macro_rules! each_model {
         $check!(&crate::models::Shape);
         $check!(&crate::models::Ring);
         $check!(&crate::models::Held);
+        $check!(&crate::models::Partial);
     };
     ($check:ident) => {
         $check(&crate::models::Cart);
@@ -467,6 +526,7 @@ macro_rules! each_model {
         $check(&crate::models::Shape);
         $check(&crate::models::Ring);
         $check(&crate::models::Held);
+        $check(&crate::models::Partial);
     };
 }
 

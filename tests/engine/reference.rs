@@ -33,6 +33,10 @@ pub(crate) trait Model {
     fn learned<T: Number>(&self, _theta: &[T]) -> Vec<T> {
         Vec::new()
     }
+    /// Coordinates that a head does not depend on: it is the network's output where they are in the middle.
+    fn held(&self, _head: usize) -> &'static [usize] {
+        &[]
+    }
     /// Rows of a group at a point; heads come as series in the user's coordinates.
     fn rows<T: Number>(&self, group: &str, at: &Point<'_, '_, T>) -> Vec<T>;
     /// What the integral in this row should be.
@@ -121,8 +125,19 @@ impl<'m, M: Model> Reference<'m, M> {
         })
     }
 
-    /// Series of all heads at a point, in the engine's units, which are the user's where units are off.
+    /// Series of all heads at a point, those of some coordinates only where the others are held.
     fn heads<'s, T: Number>(&'s self, theta: &[T], x: &[f64]) -> Vec<Jet<'s, T>> {
+        let mut heads = self.outputs(theta, x);
+        for (at, head) in heads.iter_mut().enumerate().filter(|(at, _)| !self.model.held(*at).is_empty()) {
+            let mut place = x.to_vec();
+            self.model.held(at).iter().for_each(|&i| place[i] = self.scaling.centre[i]);
+            *head = self.outputs(theta, &place).swap_remove(at);
+        }
+        heads
+    }
+
+    /// Series of the network's outputs at a point, in the engine's units, which are the user's where units are off.
+    fn outputs<'s, T: Number>(&'s self, theta: &[T], x: &[f64]) -> Vec<Jet<'s, T>> {
         let layout = &self.layout;
         let inputs: Vec<Jet<'s, T>> = x
             .iter()

@@ -6,12 +6,13 @@ mod report;
 use std::path::Path;
 use std::process::ExitCode;
 
+use crate::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print};
 use nisp::{Estimate, OpenAnswer, SavedAnswer};
-use nisp_cli::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print};
 use nisp_data::input::read_bytes;
 use nisp_interpreter::{ask, is_same_equation, open};
 
 use crate::args::EvalOptions;
+use crate::program::Program;
 
 /// Bytes of an answer at most: the largest networks that fit into memory stay below.
 const MOST_BYTES: u64 = 4 << 30;
@@ -29,7 +30,7 @@ struct Evaluated {
 }
 
 /// Reads an answer at the points that are wanted, and prints or writes what it says there.
-pub(crate) fn eval(options: &EvalOptions) -> Result<ExitCode, String> {
+pub(crate) fn eval(program: &Program, options: &EvalOptions) -> Result<ExitCode, String> {
     let path = &options.answer;
     let saved = read(path)?;
     let (answer, names) = match &options.of {
@@ -44,7 +45,8 @@ pub(crate) fn eval(options: &EvalOptions) -> Result<ExitCode, String> {
         return Err("--of: nothing is asked for; name fields, sources, definitions or expressions of them".into());
     }
     let points = points::wanted(&answer, options)?;
-    let evaluated = evaluated(saved, answer, points, &names)?;
+    let mut evaluated = evaluated(saved, answer, points, &names)?;
+    evaluated.warnings.extend(changed(program, &evaluated.saved));
     for warning in &evaluated.warnings {
         note(&format!("warning: {warning}\n"));
     }
@@ -52,7 +54,7 @@ pub(crate) fn eval(options: &EvalOptions) -> Result<ExitCode, String> {
     if let Some(path) = &options.out
         && let Err(error) = table.write(path)
     {
-        note(&format!("{}: {error}\n", crate::NAME));
+        note(&format!("{}: {error}\n", program.name));
         return Ok(ExitCode::from(NOT_WRITTEN));
     }
     let text = match (options.json, &options.out) {
@@ -61,7 +63,7 @@ pub(crate) fn eval(options: &EvalOptions) -> Result<ExitCode, String> {
         (false, Some(path)) => format!("wrote {} rows to {}\n", table.rows(), path.display()),
     };
     if let Err(message) = print(&text) {
-        note(&format!("{}: {message}\n", crate::NAME));
+        note(&format!("{}: {message}\n", program.name));
         return Ok(ExitCode::from(NOT_WRITTEN));
     }
     Ok(if is_reliable(&evaluated.saved) { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
@@ -105,7 +107,6 @@ fn evaluated(saved: SavedAnswer, answer: OpenAnswer, points: Vec<f64>, names: &[
     if estimates.iter().all(|estimate| estimate.deviations.is_none()) {
         warnings.push("the answer was saved without error bars".into());
     }
-    warnings.extend(changed(&saved));
     Ok(Evaluated { saved, answer, points, estimates, warnings })
 }
 
@@ -121,10 +122,9 @@ fn spread(estimate: &Estimate, is_inside: &[bool]) -> Estimate {
     Estimate { values: all(&estimate.values), deviations: estimate.deviations.as_ref().map(all), ..estimate.clone() }
 }
 
-/// That the equation of this name which ships now is another one.
-fn changed(saved: &SavedAnswer) -> Option<String> {
-    let entries = nisp_equations::catalogue();
-    let scenes = entries.iter().flat_map(|entry| &entry.scenes);
+/// That the program's own equation of this name is another one now.
+fn changed(program: &Program, saved: &SavedAnswer) -> Option<String> {
+    let scenes = program.equations.iter().flat_map(|entry| &entry.scenes);
     let own = scenes.into_iter().find(|scene| scene.schema.module == saved.module())?;
     let said = "is not the one that ships with this version; values are those of the equation as it was saved";
     (!is_same_equation(own.text, saved.equation()))

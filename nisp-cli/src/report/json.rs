@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::score::Found;
 use nisp::solve::driver::Status;
 use nisp::{Estimate, LearnedValue, Solution, TermReport};
-use nisp_cli::score::Found;
 use nisp_data::cloud::LengthUnit;
 use nisp_equations::contact::Patch;
 use serde_json::{Map, Value, json};

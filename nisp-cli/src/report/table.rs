@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
+use crate::score::{Found, Rival, Score};
 use nisp::Solution;
 use nisp::solve::driver::Status;
-use nisp_cli::score::{Found, Rival, Score};
 use nisp_equations::Prepared;
 use nisp_equations::contact::ContactScore;
 use nisp_equations::rivals::mean_abs_error;

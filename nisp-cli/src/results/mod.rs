@@ -1,12 +1,15 @@
 //! The files of a solved problem: source and state as CSV, a plot, and the answer itself.
 
 mod contact;
+mod misfits;
 
 pub(crate) use contact::map as contact_map;
 
+use crate::interrupt;
+use nisp::solve::driver::Status;
 use nisp::{Estimate, Solution};
-use nisp_cli::interrupt;
 use nisp_data::colour::ColourScale;
+use nisp_data::export::Mesh;
 use nisp_data::out_dir::Content;
 use nisp_data::picture::{
     Curve, FieldMap, Grid, LinePanel, LinePlot, MapPanel, Picture, Quantity, field_map, line_plot,
@@ -14,18 +17,26 @@ use nisp_data::picture::{
 use nisp_data::{DataError, Table};
 use nisp_equations::Prepared;
 
+/// Points of a map at least.
+const FEWEST: usize = 4;
+
 /// Points of a curve: a layer between two measurements shows too.
 const CURVE: usize = 600;
 
 /// Names of the files that will be written.
 pub(crate) fn names(prepared: &Prepared) -> Vec<&'static str> {
     let surface = prepared.contact.as_ref().map(|_| contact::SURFACE);
-    [SOURCE, STATE, PLOT, SAVED].into_iter().chain(surface.into_iter().flatten()).collect()
+    let mut names = vec![SOURCE, STATE, PLOT, SAVED, VOLUME];
+    names.extend(misfits::FILES);
+    names.extend(surface.into_iter().flatten());
+    names
 }
 
 const SOURCE: &str = "source.csv";
 const STATE: &str = "state.csv";
 const PLOT: &str = "plot.svg";
+/// Over three coordinates, for other programs.
+const VOLUME: &str = "volume.vtu";
 /// What `nisp eval` reads.
 const SAVED: &str = "answer.nisp";
 
@@ -67,6 +78,10 @@ impl Answer {
 /// take time, and do not hold for a state that the method left halfway.
 pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataError> {
     let mut answer = shown(prepared, solution)?;
+    // What a run that was cut short leaves says little of the data.
+    if prepared.contact.is_none() && solution.status == Status::Inconsistent {
+        misfits::show(&mut answer, solution);
+    }
     answer.keep(solution);
     Ok(answer)
 }
@@ -81,8 +96,12 @@ fn shown(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataErr
         let estimates = evaluate(solution, times);
         let draw = if prepared.planes.is_empty() { maps } else { planes };
         let plot = draw(prepared, solution, &estimates).map(|plot| plot.svg().into());
+        let volume = (solution.scene().coordinates.len() == 3).then(|| volume(prepared, &estimates));
         let mut answer = Answer::new(prepared, estimates)?;
         answer.show(PLOT, plot);
+        if let Some(volume) = volume {
+            answer.show(VOLUME, volume);
+        }
         return Ok(answer);
     }
     let (first, last) = (times[0], times[times.len() - 1]);
@@ -126,6 +145,19 @@ fn table(prepared: &Prepared, estimates: &[Estimate], source: bool) -> Result<Ve
     // A vector takes everything.
     let _ = table.write_to(&mut bytes);
     Ok(bytes)
+}
+
+/// Every head over three coordinates, with its standard deviation where there is one.
+fn volume(prepared: &Prepared, estimates: &[Estimate]) -> Result<Vec<u8>, DataError> {
+    let (points, _) = prepared.points.as_chunks::<3>();
+    let mut mesh = Mesh::volume(points.to_vec());
+    for estimate in estimates {
+        mesh.push(estimate.name, estimate.unit.text, estimate.values.clone())?;
+        if let Some(deviations) = &estimate.deviations {
+            mesh.push(&format!("{}_sd", estimate.name), estimate.unit.text, deviations.clone())?;
+        }
+    }
+    Ok(mesh.vtu_bytes())
 }
 
 fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estimate]) -> Result<Picture, DataError> {
@@ -186,7 +218,8 @@ fn planes(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> R
         let places = points.chunks_exact(scene.coordinates.len()).map(|point| [point[0], point[1]]);
         found.map(|estimate| (title, estimate, places.collect::<Vec<_>>()))
     });
-    let drawn: Vec<_> = drawn.flatten().collect();
+    // A plane may only touch the body.
+    let drawn: Vec<_> = drawn.flatten().filter(|(_, _, places)| places.len() >= FEWEST).collect();
     let values: Vec<f64> = drawn.iter().flat_map(|(_, estimate, _)| estimate.values.iter().copied()).collect();
     // One scale for all, so that they can be compared.
     let scale = ColourScale::sequential(&values);

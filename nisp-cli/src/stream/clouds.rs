@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
+use crate::terminal::{NOT_WRITTEN, note};
+use crate::{interrupt, processors};
 use nisp::solve::driver::Flow;
 use nisp::{Settings, Solution, recover};
-use nisp_cli::terminal::{NOT_WRITTEN, note};
-use nisp_cli::{interrupt, processors};
 use nisp_data::Cloud;
 use nisp_data::atomic::write_atomic;
 use nisp_equations::Frames;
@@ -60,7 +60,7 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
 }
 
 pub(super) fn not_written(message: &str) -> ExitCode {
-    note(&format!("{}: {message}\n", crate::NAME));
+    note(&format!("{message}\n"));
     ExitCode::from(NOT_WRITTEN)
 }
 

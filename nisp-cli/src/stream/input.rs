@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::thread::{Builder, sleep};
 use std::time::{Duration, Instant};
 
-use nisp_cli::interrupt;
+use crate::interrupt;
 use nisp_data::Cloud;
 use nisp_data::input::MOST_BYTES;
 

@@ -3,7 +3,7 @@
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::Duration;
 
-use nisp_cli::interrupt;
+use crate::interrupt;
 
 /// How often whoever waits looks whether the user has asked to stop.
 const LOOK: Duration = Duration::from_millis(20);

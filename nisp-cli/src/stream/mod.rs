@@ -9,14 +9,15 @@ mod records;
 
 use std::process::ExitCode;
 
-use nisp_cli::interrupt;
+use crate::interrupt;
+use crate::program::Program;
 use nisp_equations::Binding;
 
 pub(crate) use options::{SEE_HELP, StreamOptions, TEACH};
 
 /// Follows a stream until it ends or the user asks to stop.
-pub(crate) fn stream(options: &StreamOptions) -> Result<ExitCode, String> {
-    let entry = nisp_cli::entry(&options.equation)?;
+pub(crate) fn stream(program: &Program, options: &StreamOptions) -> Result<ExitCode, String> {
+    let entry = program.entry(&options.equation)?;
     match entry.binding {
         Binding::Own(_) => Err(format!("`{}` is not measured in rows or clouds; use `nisp solve`", entry.name)),
         Binding::Cloud(_) if options.from.data.is_some() || options.lag.is_some() || !options.column.is_empty() => {
@@ -26,11 +27,11 @@ pub(crate) fn stream(options: &StreamOptions) -> Result<ExitCode, String> {
             ))
         }
         Binding::Cloud(_) => {
-            interrupt::listen(crate::NAME)?;
+            interrupt::listen(program.name)?;
             clouds::follow(&entry, options)
         }
-        Binding::Series(_) | Binding::Tables => {
-            interrupt::listen(crate::NAME)?;
+        Binding::Series(_) | Binding::Tables(_) => {
+            interrupt::listen(program.name)?;
             records::follow(&entry, options)
         }
     }

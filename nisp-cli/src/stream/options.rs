@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
+use crate::options::{count, number, seconds};
 use clap::Args;
-use nisp_cli::options::{count, number, seconds};
 use nisp_data::cloud::LengthUnit;
 
 use crate::args::{pair, value};

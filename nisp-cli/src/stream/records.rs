@@ -8,10 +8,10 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
 use std::thread::Builder;
 use std::time::{Duration, Instant};
 
+use crate::interrupt;
+use crate::terminal::{NOT_CONVERGED, note};
 use nisp::schema::{Head, Scene};
 use nisp::{FixedLagSmoother, LagSettings, Smoothed};
-use nisp_cli::interrupt;
-use nisp_cli::terminal::{NOT_CONVERGED, note};
 use nisp_data::Rows;
 use nisp_equations::{Entry, Record, Request};
 use serde_json::{Map, Value, json};
@@ -71,7 +71,7 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
 }
 
 fn say(message: &str) {
-    note(&format!("{}: {message}\n", crate::NAME));
+    note(&format!("{message}\n"));
 }
 
 /// Reads rows until they end or nobody wants any more.

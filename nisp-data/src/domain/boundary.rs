@@ -1,7 +1,11 @@
 //! Points on a boundary, evenly spaced, with outward normals and weights that add up to its length or area.
 
 use super::interior::{cell_middles, cells};
+use super::round::{on_ball, on_cylinder};
 use super::{Domain, Points, Shape, edges};
+
+/// Points from which the size of a combined boundary is found.
+const MEASURED: usize = 4096;
 
 /// Steps in which the arc length of an ellipse is tabulated. The sum converges spectrally: this is exact to rounding
 /// for any ellipse less flat than 1 : 100.
@@ -15,6 +19,10 @@ impl Domain {
             Shape::Box { low, high } => on_box(low, high, count, &mut out),
             Shape::Ellipse { centre, semi_axes } => on_ellipse(*centre, *semi_axes, count, &mut out),
             Shape::Polygon { vertices } => on_polygon(vertices, count, &mut out),
+            Shape::Ball { centre, radius } => on_ball(*centre, *radius, count, &mut out),
+            Shape::Cylinder { base, ends } => on_cylinder(base, *ends, count, &mut out),
+            Shape::Solid(solid) => solid.boundary(count, &mut out),
+            Shape::Pair(pair) => return pair.boundary(count),
         }
         out
     }
@@ -27,11 +35,16 @@ impl Domain {
             }
             Shape::Ellipse { semi_axes, .. } => arc_table(*semi_axes)[ARC_STEPS],
             Shape::Polygon { vertices } => edges(vertices).map(|(p, q)| distance(p, q)).sum(),
+            Shape::Ball { radius, .. } => 4.0 * std::f64::consts::PI * radius * radius,
+            Shape::Cylinder { base, ends } => base.boundary_measure() * (ends[1] - ends[0]) + 2.0 * base.measure(),
+            Shape::Solid(solid) => solid.area(),
+            Shape::Pair(pair) => pair.boundary(MEASURED).weights.iter().flatten().sum(),
         }
     }
 }
 
-fn add(out: &mut Points, point: &[f64], normal: &[f64], weight: f64) {
+/// Adds a point with its normal and weight.
+pub(super) fn add(out: &mut Points, point: &[f64], normal: &[f64], weight: f64) {
     out.coords.extend(point);
     out.normals.get_or_insert_default().extend(normal);
     out.weights.get_or_insert_default().push(weight);

@@ -1,10 +1,11 @@
 //! Points inside a domain. Each stands for an equal share of it.
 
+use super::round::in_ball;
 use super::sequence::unit_cube;
 use super::{Domain, Points, Sampling, Shape};
 
 /// Turns by which consecutive points of a sunflower differ.
-const GOLDEN_TURN: f64 = 0.618_033_988_749_894_9;
+pub(super) const GOLDEN_TURN: f64 = 0.618_033_988_749_894_9;
 
 impl Domain {
     /// About `count` points (exactly, but for a grid) with weights that add up to [`Domain::measure`].
@@ -13,7 +14,10 @@ impl Domain {
         let coords = match &self.shape {
             Shape::Box { low, high } => in_box(low, high, count, sampling, seed),
             Shape::Ellipse { centre, semi_axes } => in_ellipse(*centre, *semi_axes, count, sampling, seed),
-            Shape::Polygon { .. } => self.by_rejection(count, sampling, seed),
+            Shape::Ball { centre, radius } => in_ball(*centre, *radius, count, sampling, seed),
+            Shape::Polygon { .. } | Shape::Cylinder { .. } | Shape::Solid(_) | Shape::Pair(_) => {
+                self.by_rejection(count, sampling, seed)
+            }
         };
         let actual = coords.len() / dim;
         let weights = Some(vec![self.measure() / actual.max(1) as f64; actual]);
@@ -28,12 +32,13 @@ impl Domain {
         let mut tries = (count as f64 / share).ceil() as usize;
         loop {
             let drawn = in_box(&low, &high, tries, sampling, seed);
-            let inside: Vec<f64> = drawn.chunks(2).filter(|point| self.contains(point)).flatten().copied().collect();
+            let dim = self.dim();
+            let inside: Vec<f64> = drawn.chunks(dim).filter(|point| self.contains(point)).flatten().copied().collect();
             if sampling == Sampling::Grid {
                 return inside;
             }
-            if inside.len() >= 2 * count {
-                return inside[..2 * count].to_vec();
+            if inside.len() >= dim * count {
+                return inside[..dim * count].to_vec();
             }
             tries += tries / 8 + 8;
         }

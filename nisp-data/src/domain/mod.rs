@@ -1,18 +1,25 @@
-//! Where equations hold: intervals, boxes, discs, ellipses and polygons, and the points that stand for them.
+//! Where equations hold: intervals, boxes, discs, ellipses, polygons, balls, cylinders, solids, what is in either of two or in
+//! one and not in the other; and the points that stand for them.
 //!
 //! Interior and boundary points come with weights that add up to the length, area or volume, so that a weighted sum
 //! over them is an integral. Boundary points have outward normals.
 
 mod boundary;
+mod combined;
 mod interior;
 mod points;
 mod resample;
+mod round;
 mod sequence;
+mod solid;
 
 pub use points::Points;
 pub use resample::resample;
 
 use crate::DataError;
+use crate::cloud::Surface;
+use combined::Pair;
+use solid::Solid;
 
 /// A region of space, space-time or the time axis.
 #[derive(Debug, Clone, PartialEq)]
@@ -35,6 +42,17 @@ enum Shape {
     Polygon {
         vertices: Vec<[f64; 2]>,
     },
+    Ball {
+        centre: [f64; 3],
+        radius: f64,
+    },
+    /// Along the third coordinate.
+    Cylinder {
+        base: Box<Domain>,
+        ends: [f64; 2],
+    },
+    Solid(Solid),
+    Pair(Box<Pair>),
 }
 
 /// How points are spread.
@@ -102,20 +120,67 @@ impl Domain {
         Ok(Domain { shape: Shape::Polygon { vertices } })
     }
 
+    /// A ball.
+    pub fn ball(centre: [f64; 3], radius: f64) -> Result<Domain, DataError> {
+        if !(centre.iter().all(|value| value.is_finite()) && radius.is_finite() && radius > 0.0) {
+            return Err(DataError::invalid("a ball needs a finite centre and a positive radius"));
+        }
+        Ok(Domain { shape: Shape::Ball { centre, radius } })
+    }
+
+    /// A cylinder along the third coordinate, with its lids.
+    pub fn cylinder(centre: [f64; 2], radius: f64, ends: [f64; 2]) -> Result<Domain, DataError> {
+        let base = Box::new(Domain::disc(centre, radius)?);
+        Domain::interval(ends[0], ends[1])?;
+        Ok(Domain { shape: Shape::Cylinder { base, ends } })
+    }
+
+    /// The inside of a closed surface whose coordinates are multiplied by `scale`.
+    pub fn solid(surface: &Surface, scale: f64) -> Result<Domain, DataError> {
+        Ok(Domain { shape: Shape::Solid(Solid::new(surface, scale)?) })
+    }
+
+    /// What is in either of two regions of the same coordinates.
+    pub fn plus(self, other: Domain) -> Result<Domain, DataError> {
+        self.pair(other, true)
+    }
+
+    /// What is in this region and not in another one of the same coordinates.
+    pub fn minus(self, other: Domain) -> Result<Domain, DataError> {
+        self.pair(other, false)
+    }
+
+    fn pair(self, second: Domain, either: bool) -> Result<Domain, DataError> {
+        if self.dim() != second.dim() {
+            return Err(DataError::invalid("regions to be combined must have the same coordinates"));
+        }
+        let pair = Pair::new(self, second, either);
+        if pair.measure <= 0.0 {
+            return Err(DataError::invalid("nothing of the region is left"));
+        }
+        Ok(Domain { shape: Shape::Pair(Box::new(pair)) })
+    }
+
     /// How many coordinates a point has.
     pub fn dim(&self) -> usize {
         match &self.shape {
             Shape::Box { low, .. } => low.len(),
             Shape::Ellipse { .. } | Shape::Polygon { .. } => 2,
+            Shape::Ball { .. } | Shape::Cylinder { .. } | Shape::Solid(_) => 3,
+            Shape::Pair(pair) => pair.first.dim(),
         }
     }
 
-    /// Length, area or volume.
+    /// Length, area or volume; of combined regions to about a thousandth where their boundaries cross.
     pub fn measure(&self) -> f64 {
         match &self.shape {
             Shape::Box { low, high } => low.iter().zip(high).map(|(a, b)| b - a).product(),
             Shape::Ellipse { semi_axes: [a, b], .. } => std::f64::consts::PI * a * b,
             Shape::Polygon { vertices } => signed_area(vertices),
+            Shape::Ball { radius, .. } => 4.0 / 3.0 * std::f64::consts::PI * radius.powi(3),
+            Shape::Cylinder { base, ends } => base.measure() * (ends[1] - ends[0]),
+            Shape::Solid(solid) => solid.volume(),
+            Shape::Pair(pair) => pair.measure,
         }
     }
 
@@ -130,6 +195,17 @@ impl Domain {
                 };
                 (vec![pick(0, f64::min), pick(1, f64::min)], vec![pick(0, f64::max), pick(1, f64::max)])
             }
+            Shape::Ball { centre, radius } => {
+                (centre.map(|x| x - radius).to_vec(), centre.map(|x| x + radius).to_vec())
+            }
+            Shape::Cylinder { base, ends } => {
+                let (mut low, mut high) = base.bounds();
+                low.push(ends[0]);
+                high.push(ends[1]);
+                (low, high)
+            }
+            Shape::Solid(solid) => solid.bounds(),
+            Shape::Pair(pair) => pair.bounds(),
         }
     }
 
@@ -144,6 +220,15 @@ impl Domain {
                 point.len() == 2 && scaled(0).powi(2) + scaled(1).powi(2) <= 1.0
             }
             Shape::Polygon { vertices } => point.len() == 2 && inside_polygon([point[0], point[1]], vertices),
+            Shape::Ball { centre, radius } => {
+                let square: f64 = point.iter().zip(centre).map(|(x, c)| (x - c).powi(2)).sum();
+                point.len() == 3 && square <= radius * radius
+            }
+            Shape::Cylinder { base, ends } => {
+                point.len() == 3 && (ends[0]..=ends[1]).contains(&point[2]) && base.contains(&point[..2])
+            }
+            Shape::Solid(solid) => point.len() == 3 && solid.contains([point[0], point[1], point[2]]),
+            Shape::Pair(pair) => pair.contains(point),
         }
     }
 
@@ -153,7 +238,10 @@ impl Domain {
             Shape::Box { low, high } if low.len() == 2 => {
                 vec![[low[0], low[1]], [high[0], low[1]], [high[0], high[1]], [low[0], high[1]]]
             }
-            Shape::Box { .. } => Vec::new(),
+            Shape::Box { .. } | Shape::Ball { .. } | Shape::Cylinder { .. } | Shape::Solid(_) => Vec::new(),
+            // The first one's, where the other one is a hole in it.
+            Shape::Pair(pair) if !pair.either => pair.first.outline(count),
+            Shape::Pair(_) => Vec::new(),
             Shape::Ellipse { centre, semi_axes } => {
                 let at = |index: usize| std::f64::consts::TAU * index as f64 / count.max(3) as f64;
                 let corner =

@@ -46,6 +46,13 @@ impl Points {
         self.take(&chosen)
     }
 
+    /// Adds other points of the same kind behind these.
+    pub(super) fn append(&mut self, other: Points) {
+        self.coords.extend(other.coords);
+        self.normals.get_or_insert_default().extend(other.normals.unwrap_or_default());
+        self.weights.get_or_insert_default().extend(other.weights.unwrap_or_default());
+    }
+
     /// The points with these indices, in this order.
     pub fn take(&self, indices: &[usize]) -> Points {
         let dim = self.dim;

@@ -1,7 +1,8 @@
-//! Results for other programs: VTU for ParaView, PLY with colours for any mesh viewer.
+//! Results for other programs: VTU of surfaces and volumes for ParaView, PLY with colours for any mesh viewer.
 
 mod ply;
 mod triangulate;
+mod voxels;
 mod vtu;
 
 pub use triangulate::triangulate;
@@ -13,6 +14,8 @@ use crate::DataError;
 pub struct Mesh {
     points: Vec<[f64; 3]>,
     triangles: Vec<[usize; 3]>,
+    /// Cells between the points of a grid; none where there are triangles.
+    voxels: Vec<[usize; 8]>,
     arrays: Vec<Array>,
 }
 
@@ -31,7 +34,13 @@ impl Mesh {
         if triangles.iter().flatten().any(|&corner| corner >= points.len()) {
             return Err(DataError::invalid("a triangle names a point that the mesh does not have"));
         }
-        Ok(Mesh { points, triangles, arrays: Vec::new() })
+        Ok(Mesh { points, triangles, ..Mesh::default() })
+    }
+
+    /// The cells of a grid all of whose corners are points; a cloud where there are none.
+    pub fn volume(points: Vec<[f64; 3]>) -> Mesh {
+        let voxels = voxels::voxels(&points);
+        Mesh { points, voxels, ..Mesh::default() }
     }
 
     /// Adds values: one for each point, or three for a vector (or any fixed number).

@@ -8,9 +8,10 @@ use super::Mesh;
 use crate::DataError;
 use crate::atomic::write_atomic;
 
-/// VTK's numbers for a lone point and a triangle.
+/// VTK's numbers for a lone point, a triangle and a cell along the axes.
 const VERTEX: u8 = 1;
 const TRIANGLE: u8 = 5;
+const VOXEL: u8 = 11;
 
 impl Mesh {
     /// Writes the mesh as VTU.
@@ -27,8 +28,11 @@ impl Mesh {
     }
 
     fn vtu(&self, out: &mut dyn Write) -> io::Result<()> {
-        let lone = self.triangles.is_empty();
-        let cells = if lone { self.points.len() } else { self.triangles.len() };
+        let (cells, corners, kind) = match (self.triangles.len(), self.voxels.len()) {
+            (0, 0) => (self.points.len(), 1, VERTEX),
+            (0, voxels) => (voxels, 8, VOXEL),
+            (triangles, _) => (triangles, 3, TRIANGLE),
+        };
         writeln!(out, "<?xml version=\"1.0\"?>")?;
         writeln!(out, "<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\">")?;
         writeln!(
@@ -39,12 +43,11 @@ impl Mesh {
         writeln!(out, "<Points>")?;
         array(out, "Float64", "position [m]", 3, self.points.iter().flatten())?;
         writeln!(out, "</Points>\n<Cells>")?;
-        if lone {
-            array(out, "Int64", "connectivity", 1, 0..cells)?;
-        } else {
-            array(out, "Int64", "connectivity", 1, self.triangles.iter().flatten())?;
+        match kind {
+            VERTEX => array(out, "Int64", "connectivity", 1, 0..cells)?,
+            VOXEL => array(out, "Int64", "connectivity", 1, self.voxels.iter().flatten())?,
+            _ => array(out, "Int64", "connectivity", 1, self.triangles.iter().flatten())?,
         }
-        let (corners, kind) = if lone { (1, VERTEX) } else { (3, TRIANGLE) };
         array(out, "Int64", "offsets", 1, (1..=cells).map(|cell| cell * corners))?;
         array(out, "UInt8", "types", 1, std::iter::repeat_n(kind, cells))?;
         writeln!(out, "</Cells>\n<PointData>")?;

@@ -53,7 +53,7 @@ impl Table {
     pub fn lacks(&self, name: &str) -> bool {
         self.answering(name, None).is_empty()
             && self.matching(|header| starts_with_name(header, name)).is_empty()
-            && self.nearest(name).is_none()
+            && self.nearest(name, &|_| true).is_none()
     }
 
     fn converted<'a>(
@@ -165,13 +165,16 @@ impl Table {
         if let Some(other) = other {
             return other;
         }
-        let nearest = longer.first().map(|column| column.header.as_str()).or_else(|| self.nearest(name));
+        // What is suggested must not be refused for its unit.
+        let passes = |header: &str| unit.is_none_or(|unit| self.other_unit(header, name, unit).is_none());
+        let nearest = longer.first().map(|column| column.header.as_str()).or_else(|| self.nearest(name, &passes));
         self.no_column(&wanted, &format!("; {}", choose(name, nearest)))
     }
 
     /// A header that the user asked for and that is not there.
     fn absent(&self, name: &str, header: &str) -> DataError {
-        let hint = self.nearest(header).map(|near| format!("; the nearest is `{near}`: {}", option(name, near)));
+        let hint =
+            self.nearest(header, &|_| true).map(|near| format!("; the nearest is `{near}`: {}", option(name, near)));
         self.no_column(&format!("`{header}`"), &hint.unwrap_or_default())
     }
 
@@ -187,12 +190,12 @@ impl Table {
         DataError::Column { path: self.path.clone(), what }
     }
 
-    /// The header most like the name, if it may be meant: `psi` is not meant by `phi`, but `time` by `t`.
-    fn nearest(&self, name: &str) -> Option<&str> {
+    /// The header most like the name among those that pass, if it may be meant: `psi` is not meant by `phi`, but `time` by `t`.
+    fn nearest(&self, name: &str, passes: &dyn Fn(&str) -> bool) -> Option<&str> {
         let likeness = |header: &str| likeness(base(header), name);
         let meant =
             |header: &&str| header.to_lowercase().starts_with(&name.to_lowercase()) || likeness(header) >= ALIKE;
-        self.headers().filter(meant).max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+        self.headers().filter(meant).filter(|header| passes(header)).max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
     }
 }
 

@@ -115,7 +115,7 @@ fn settings(study: &Study, variation: &Variation, prepared: &Prepared, options: 
 
 /// The samples of a study, bound as a variation wants them.
 fn samples(study: &Study, variation: &Variation, options: &Options) -> Result<Vec<Prepared>, String> {
-    let entry = nisp_cli::entry(study.equation)?;
+    let entry = crate::entry(study.equation)?;
     let request = Request {
         scene: variation.scene.map(Into::into),
         cloud: variation.cloud,

@@ -76,7 +76,7 @@ pub(crate) struct Options {
 
 /// Tries everything, prints a table, writes it and a plot.
 pub(crate) fn frontier(options: &Options) -> Result<ExitCode, String> {
-    let entry = nisp_cli::entry(&options.equation)?;
+    let entry = crate::entry(&options.equation)?;
     let samples = samples(&entry, options, true)?;
     let local = samples_for_local_functions(&entry, options)?;
     let measures = measures(&samples[0])?;

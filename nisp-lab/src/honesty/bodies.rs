@@ -130,7 +130,7 @@ fn body(repository: &Path, body: Body, cases: Vec<super::experiment::Case>) -> S
 }
 
 fn bind_body(body: Body, (sample, truth): (&Path, &Path), samples: &Samples, told: Told<'_>) -> Result<Ready, String> {
-    let entry = nisp_cli::entry(body.entry)?;
+    let entry = crate::entry(body.entry)?;
     let fault = |error: std::io::Error| error.to_string();
     let mut cloud = tempfile::Builder::new().suffix(".xyz").tempfile().map_err(fault)?;
     for row in 0..samples.rows() {
@@ -181,7 +181,7 @@ fn plate_subject(name: &'static str, scene: &'static str, told: &[super::corrupt
 fn bind_plate(scene: &str, told: Told<'_>) -> Result<Ready, String> {
     let parameters = told.iter().map(|(name, value)| ((*name).into(), *value)).collect();
     let request = Request { scene: Some(scene.into()), parameters, ..Request::default() };
-    let prepared = nisp_cli::entry("plate")?.prepare(&request).map_err(|error| error.to_string())?;
+    let prepared = crate::entry("plate")?.prepare(&request).map_err(|error| error.to_string())?;
     let known = prepared.truth.as_ref().ok_or("no truth")?;
     let value = |name: &str, usual: f64| told.iter().find(|(own, _)| *own == name).map_or(usual, |(_, value)| *value);
     // The deflection goes with (1 - nu^2) / (E t^3); the example has E = 1e9 Pa, nu = 0.5, t = 0.3 mm.

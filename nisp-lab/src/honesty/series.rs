@@ -51,7 +51,7 @@ fn subject(repository: &Path, name: &'static str, entry: &'static str, noise: f6
 }
 
 fn experiment(repository: &Path, entry: &str, noise: f64) -> Result<Experiment, String> {
-    let entry = nisp_cli::entry(entry)?;
+    let entry = crate::entry(entry)?;
     let schema = entry.scene(None).map_err(|error| error.to_string())?.schema;
     let series = entry.series().ok_or("no measurements over time")?;
     // The example's truth where there are several.

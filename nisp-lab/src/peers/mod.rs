@@ -67,7 +67,7 @@ fn prepare(problem: &Problem, data: &Data) -> Result<Prepared, String> {
     let [text, table] = [format!("{}.pde", problem.name), "data.csv".into()].map(|name| folder.path().join(name));
     fs::write(&text, problem.text).map_err(fault)?;
     fs::write(&table, csv(data)).map_err(fault)?;
-    let entry = nisp_cli::entry(&text.to_string_lossy())?;
+    let entry = crate::entry(&text.to_string_lossy())?;
     let request = Request { data: vec![(None, table)], ..Request::default() };
     entry.prepare(&request).map_err(|error| error.to_string())
 }

@@ -39,9 +39,10 @@ macro_rules! problem {
 }
 
 /// All of them.
-pub(super) fn problems() -> [Problem; 7] {
+pub(super) fn problems() -> [Problem; 8] {
     [
         problem!("elliptic", elliptic),
+        problem!("rate", rate),
         problem!("brinkman", brinkman),
         problem!("diffusion", diffusion),
         problem!("lorenz", |_| lorenz(|_| 0.0)),
@@ -62,6 +63,23 @@ fn elliptic(_: &mut Random) -> Data {
     let places = line(-1.0, 1.0, 201);
     let values = places.iter().map(|x| -PI * PI * (PI * x).sin()).collect();
     let truth = Truth::Source("q", places.into_iter().map(|x| vec![x]).collect(), values);
+    Data { columns: &["x", "u"], rows, truth }
+}
+
+/// DeepXDE, diffusion_reaction_rate: the field as a sum of two solutions from the left end, so that it is zero at the right.
+fn rate(_: &mut Random) -> Data {
+    let k = |x: f64| 0.1 + (-0.5 * ((x - 0.5) / 0.15).powi(2)).exp();
+    let at = line(0.0, 1.0, 100);
+    let solve = |load: f64, slope: f64| {
+        let second = move |x: f64, u: f64| (load * (2.0 * PI * x).sin() + k(x) * u) / 0.01;
+        integrate(|x, [u, v]| [v, second(x, u)], [0.0, slope], &at)
+    };
+    let (forced, free) = (solve(1.0, 0.0), solve(0.0, 1.0));
+    let share = forced[99][0] / free[99][0];
+    let rows = (0..100).map(|i| vec![at[i], forced[i][0] - share * free[i][0]]).collect();
+    let places = line(0.0, 1.0, 201);
+    let values = places.iter().map(|x| k(*x)).collect();
+    let truth = Truth::Source("k", places.into_iter().map(|x| vec![x]).collect(), values);
     Data { columns: &["x", "u"], rows, truth }
 }
 

@@ -4,6 +4,7 @@ use crate::channels::{ChannelSet, Operator};
 use crate::model::{Group, Model, Scene, TermKind};
 use crate::plan::{GroupPlan, Jet, ScenePlan, SetPlan, TermPlan};
 use crate::rational::Rational;
+use crate::symbolic::site::Site;
 
 /// Channels as people write them: `1`, `x`, `xx`, `xxx + xyy`.
 pub fn channel_names(set: &ChannelSet, model: &Model) -> Vec<String> {
@@ -30,6 +31,11 @@ fn operator_name(operator: &Operator, model: &Model, prefix: &str) -> String {
         name.push_str(&letters);
     }
     name
+}
+
+/// A site at which coordinates are held: 0 for the point or 1 for its partner, and the coordinates.
+pub fn held(site: Site, model: &Model) -> (usize, Vec<usize>) {
+    (usize::from(site.partner), (0..model.coordinates.len()).filter(|&at| site.holds(at)).collect())
 }
 
 /// What a group reads of a head, as people write it: `w`, `w_xx`.

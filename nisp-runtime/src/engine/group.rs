@@ -74,7 +74,15 @@ impl<E: Precision> BoundGroup<E> {
         let points = coordinates.len() / inputs;
         let sites = [coordinates, partners];
         let scaled = |(at, x): (usize, &f64)| (x - scaling.centre[at % inputs]) / scaling.half[at % inputs];
-        let network = || sites.iter().flat_map(|site| site.iter().enumerate().map(scaled));
+        // Zero is the middle of a coordinate's range.
+        let held = |held: &'static schema::Held| {
+            let value = move |(at, x)| if held.coordinates.contains(&(at % inputs)) { 0.0 } else { scaled((at, x)) };
+            sites[held.of].iter().enumerate().map(value)
+        };
+        let network = || {
+            let own = sites.iter().flat_map(|site| site.iter().enumerate().map(scaled));
+            own.chain(schema.held.iter().flat_map(held))
+        };
         let transposed = |site: &[f64], i: usize| -> Vec<E> {
             site.iter().skip(i).step_by(inputs).map(|&x| E::from_f64(x)).collect()
         };
@@ -119,9 +127,9 @@ impl<E: Precision> BoundGroup<E> {
         self.reading.tiles(self.points)
     }
 
-    /// Points of the network for each point: two if points have partners.
+    /// Points of the network for each point.
     pub(crate) fn sites(&self) -> usize {
-        1 + usize::from(self.schema.paired)
+        self.schema.sites()
     }
 }
 

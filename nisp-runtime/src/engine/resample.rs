@@ -94,9 +94,10 @@ impl<E: Precision> Resampler<E> {
 impl<E: Precision> BoundGroup<E> {
     /// Takes over the chosen points of a group that has more of them.
     fn take(&mut self, pool: &Self, chosen: &[usize]) {
-        self.network.take(&pool.network, pool.points, chosen);
+        let sites = self.sites();
+        self.network.take(&pool.network, sites, pool.points, chosen);
         if let (Some(own), Some(all)) = (&mut self.doubled, &pool.doubled) {
-            own.take(all, pool.points, chosen);
+            own.take(all, sites, pool.points, chosen);
         }
         for (own, all) in [(&mut self.coordinates, &pool.coordinates), (&mut self.columns, &pool.columns)] {
             for (own, all) in own.chunks_exact_mut(self.points).zip(all.chunks_exact(pool.points)) {

@@ -3,7 +3,7 @@
 use crate::kernel::Precision;
 use crate::network::Mapping;
 
-/// The points of a group, then their partners if they have any.
+/// The points of a group, then their partners if they have any, then those at which coordinates are held.
 pub(crate) struct Sites<E: Precision> {
     /// Network coordinates, `[site][point][coordinate]`.
     coordinates: Vec<E>,
@@ -21,12 +21,15 @@ impl<E: Precision> Sites<E> {
         self.table = features.table(&self.coordinates);
     }
 
-    /// Takes over the chosen points of others, of which there are more.
-    pub(super) fn take(&mut self, pool: &Self, points: usize, chosen: &[usize]) {
+    /// Takes over the chosen points of others, of which there are more, at each of their sites.
+    pub(super) fn take(&mut self, pool: &Self, sites: usize, points: usize, chosen: &[usize]) {
         for (own, all) in [(&mut self.coordinates, &pool.coordinates), (&mut self.table, &pool.table)] {
-            let length = all.len() / points;
-            for (at, &from) in chosen.iter().enumerate() {
-                own[at * length..][..length].copy_from_slice(&all[from * length..][..length]);
+            let length = all.len() / (sites * points);
+            for site in 0..sites {
+                for (at, &from) in chosen.iter().enumerate() {
+                    let (to, from) = (site * chosen.len() + at, site * points + from);
+                    own[to * length..][..length].copy_from_slice(&all[from * length..][..length]);
+                }
             }
         }
     }

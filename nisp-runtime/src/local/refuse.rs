@@ -18,6 +18,10 @@ pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) 
         (inputs > MOST_COORDINATES, "more than four coordinates"),
         (schema.groups.iter().any(|group| group.paired), "paired points"),
         (
+            schema.groups.iter().any(|group| !group.held.is_empty()),
+            "fields and sources of some of the coordinates only",
+        ),
+        (
             schema.heads.iter().any(|h| h.hard || (h.transformed && !one_sided(h))),
             "heads between two bounds or with hard conditions",
         ),

@@ -23,9 +23,9 @@ impl Cost {
 
 impl Architecture {
     /// What a point of a group costs from its coordinates to the heads' outputs, and what the way back costs. A partner
-    /// costs as much again as its point.
+    /// costs as much again as its point, and so does a site at which coordinates are held.
     pub fn cost(&self, group: &Group) -> [Cost; 2] {
-        let sites = 1 + usize::from(group.paired);
+        let sites = group.sites();
         let mut outputs: Vec<(usize, usize)> =
             group.jets.iter().flat_map(|jet| jet.combination.iter().map(|&(channel, _)| (jet.head, channel))).collect();
         outputs.sort_unstable();
@@ -65,6 +65,7 @@ mod tests {
             rows: 1,
             place: None,
             paired: false,
+            held: &[],
             flops: [0, 0],
             rule_flops: RuleFlops { compose: [11, 23], affine: [5, 7], product: [2, 3] },
         };

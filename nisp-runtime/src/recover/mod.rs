@@ -9,6 +9,7 @@ mod checkpoint;
 mod choice;
 mod course;
 mod layers;
+mod misfits;
 mod network;
 mod on_lattice;
 mod on_splines;
@@ -29,6 +30,7 @@ use std::time::Instant;
 use thiserror::Error;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use misfits::Misfits;
 pub use settings::{Carrier, Optimizer, Settings, Width};
 pub use solution::{LearnedValue, Solution, TermReport};
 

@@ -41,9 +41,9 @@ pub struct Solution {
     pub carrier_reason: String,
     /// Whether data are met to the digits that they are written with.
     is_met_exactly: bool,
-    bound: Bound,
+    pub(super) bound: Bound,
     method: &'static str,
-    carried: Box<dyn Carried>,
+    pub(super) carried: Box<dyn Carried>,
 }
 
 /// A learned scalar.

@@ -45,6 +45,7 @@ pub fn emit(model: &Model, plan: &Plan, text: &str) -> TokenStream {
         .flat_map(|(plan, scene)| plan.groups.iter().map(move |group| residuals::emit(model, scene, group)));
     let scenes =
         plan.scenes.iter().zip(&model.scenes).map(|(scene, declared)| scene::emit(model, plan, scene, declared));
+    let names = model.scenes.iter().map(|scene| ident(&scene.name));
     let warnings = model.warnings.iter().enumerate().map(|(at, (message, span))| warning(at, message, *span));
     quote! {
         #(#documentation)*
@@ -61,6 +62,12 @@ pub fn emit(model: &Model, plan: &Plan, text: &str) -> TokenStream {
                 #(#sets)*
                 #(#groups)*
             }
+            /// All scenes, in double precision, for what takes them without their types, like `nisp::main!`.
+            // Compiled where it is called, and the kernels with it.
+            #[inline]
+            pub fn scenes() -> Vec<::nisp::SceneRef> {
+                vec![#(::nisp::scene::<#names::Scene>()),*]
+            }
             #(#scenes)*
         }
     }
@@ -74,7 +81,12 @@ pub fn skeleton(model: &Model) -> TokenStream {
         let name = ident(&scene.name);
         quote!(pub mod #name {})
     });
-    quote!(#visibility mod #name { #(#scenes)* })
+    quote! {
+        #visibility mod #name {
+            pub fn scenes() -> Vec<::nisp::SceneRef> { Vec::new() }
+            #(#scenes)*
+        }
+    }
 }
 
 /// A warning on stable Rust: the use of a deprecated constant, at the user's token.

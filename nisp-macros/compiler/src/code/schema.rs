@@ -95,6 +95,10 @@ fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &Sc
 fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene, group: &GroupPlan) -> TokenStream {
     let source = &model.groups[group.group];
     let (name, docs, paired) = (&source.name.text, describe::text(&source.docs), source.paired);
+    let held = group.held.iter().map(|site| {
+        let (of, coordinates) = describe::held(*site, model);
+        quote!(schema::Held { of: #of, coordinates: &[#(#coordinates),*] })
+    });
     let place = source.place.as_ref().map_or_else(|| quote!(None), place);
     let set = &plan.sets[group.hidden].set;
     let channels = describe::channel_names(set, model);
@@ -114,18 +118,27 @@ fn group(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &model::Scene,
         schema::Group {
             name: #name, docs: #docs, channels: &[#(#channels),*], order: #order, dense: #dense,
             jets: &[#(#jets),*], columns: &[#(#columns),*], terms: &[#(#terms),*],
-            rows: #rows, place: #place, paired: #paired, flops: [#(#flops),*], rule_flops: #rule_flops,
+            rows: #rows, place: #place, paired: #paired, held: &[#(#held),*], flops: [#(#flops),*], rule_flops: #rule_flops,
         }
     }
 }
 
 fn place(place: &model::Place) -> TokenStream {
     let portion = Ident::new(&format!("{:?}", place.portion), Span::call_site());
+    let regions = place.domain.iter().map(region);
+    let points = match place.points {
+        Some(count) => quote!(Some(#count)),
+        None => quote!(None),
+    };
+    quote!(Some(schema::Place { portion: schema::Portion::#portion, domain: &[#(#regions),*], points: #points }))
+}
+
+fn region(of: &Region) -> TokenStream {
     let pairs = |pairs: &[[f64; 2]]| {
         let pairs = pairs.iter().map(|[a, b]| quote!([#a, #b]));
         quote!(&[#(#pairs),*])
     };
-    let regions = place.domain.iter().map(|region| match region {
+    match of {
         Region::Box(ranges) => {
             let ranges = pairs(ranges);
             quote!(schema::Region::Box(#ranges))
@@ -137,8 +150,25 @@ fn place(place: &model::Place) -> TokenStream {
             let corners = pairs(corners);
             quote!(schema::Region::Polygon(#corners))
         }
-    });
-    quote!(Some(schema::Place { portion: schema::Portion::#portion, domain: &[#(#regions),*] }))
+        Region::Ball { centre: [x, y, z], radius } => {
+            quote!(schema::Region::Ball { centre: [#x, #y, #z], radius: #radius })
+        }
+        Region::Cylinder { centre: [x, y], radius, ends: [low, high] } => {
+            quote!(schema::Region::Cylinder { centre: [#x, #y], radius: #radius, ends: [#low, #high] })
+        }
+        Region::File { kind, path, scale } => {
+            let kind = Ident::new(&format!("{kind:?}"), Span::call_site());
+            quote!(schema::Region::File { kind: schema::FileKind::#kind, path: #path, scale: #scale })
+        }
+        Region::Plus(parts) => {
+            let [a, b] = parts.each_ref().map(region);
+            quote!(schema::Region::Plus(&[#a, #b]))
+        }
+        Region::Minus(parts) => {
+            let [a, b] = parts.each_ref().map(region);
+            quote!(schema::Region::Minus(&[#a, #b]))
+        }
+    }
 }
 
 fn jet(model: &Model, scene: &ScenePlan, jet: &Jet) -> TokenStream {

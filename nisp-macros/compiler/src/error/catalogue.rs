@@ -203,6 +203,14 @@ pub(crate) fn takes_no_bounds(what: &str) -> String {
     help(format!("{what} takes no bounds"), "sources, fields and parameters do")
 }
 
+pub(crate) fn depends_on_nothing(what: &str) -> String {
+    help(format!("{what} takes no coordinates in parentheses"), "fields and sources do: `sources: q(x) [W];`")
+}
+
+pub(crate) fn expected_points(found: &str, most: usize) -> String {
+    help(format!("expected a number of points, found {found}"), format!("write `with 2000 points`, at most {most}"))
+}
+
 pub(crate) fn takes_no_spread(what: &str) -> String {
     help(
         format!("{what} takes no `within` here"),

@@ -3,7 +3,7 @@
 use super::elaborate::Elaborator;
 use super::{Coordinate, Place, Region, constant};
 use crate::error::{Checked, catalogue};
-use crate::syntax::{self, Expr, ExprKind, Item, Module, Portion, RegionKind};
+use crate::syntax::{self, Expr, ExprKind, FileKind, Item, Module, Portion, RegionKind};
 use crate::unit::Unit;
 
 /// The domains of a module by their names; one that is broken has no regions.
@@ -49,7 +49,7 @@ impl Domains {
             elaborator.errors.push(wanted.span, catalogue::no_ends(&wanted.text));
             return None;
         }
-        Some(Place { portion: location.portion, domain })
+        Some(Place { portion: location.portion, domain, points: location.points })
     }
 
     /// Warns of domains in which no group lies.
@@ -68,9 +68,8 @@ fn regions(
     let mut left = coordinates;
     let mut regions = Vec::new();
     for region in &domain.regions {
-        let wanted = match &region.kind {
-            RegionKind::Box(ranges) => ranges.len(),
-            RegionKind::Disc(_) | RegionKind::Ellipse(_) | RegionKind::Polygon(_) => 2,
+        let Some(wanted) = dimension(region) else {
+            return Err(elaborator.errors.report(region.place, catalogue::regions_of_two_dimensions()));
         };
         let Some((own, rest)) = left.split_at_checked(wanted) else { break };
         left = rest;
@@ -114,8 +113,60 @@ fn numbers(region: &syntax::Region, units: &[&Unit], elaborator: &mut Elaborator
             let corners = corners.collect::<Checked<Option<Vec<_>>>>()?;
             corners.filter(|corners| corners.len() >= 3).map(Region::Polygon)
         }
+        RegionKind::Ball(parts) => {
+            let unit = alike(region, units, elaborator)?;
+            let values = parts.iter().map(|part| number(part, unit, elaborator)).collect::<Checked<Vec<_>>>()?;
+            match values[..] {
+                [x, y, z, radius] if radius > 0.0 => Some(Region::Ball { centre: [x, y, z], radius }),
+                _ => None,
+            }
+        }
+        RegionKind::Cylinder(parts, ends) => {
+            let unit = alike(region, units, elaborator)?;
+            let values = parts.iter().map(|part| number(part, unit, elaborator)).collect::<Checked<Vec<_>>>()?;
+            let ends =
+                ends.as_ref().map(|(low, high)| Ok([number(low, unit, elaborator)?, number(high, unit, elaborator)?]));
+            match (&values[..], ends.transpose()?) {
+                (&[x, y, radius], Some([low, high])) if radius > 0.0 && low < high => {
+                    Some(Region::Cylinder { centre: [x, y], radius, ends: [low, high] })
+                }
+                _ => None,
+            }
+        }
+        RegionKind::File(FileKind::Polygon, path, _) => {
+            Some(Region::File { kind: FileKind::Polygon, path: path.clone(), scale: 1.0 })
+        }
+        RegionKind::File(FileKind::Solid, path, one) => {
+            let unit = alike(region, units, elaborator)?;
+            Some(Region::File { kind: FileKind::Solid, path: path.clone(), scale: number(one, unit, elaborator)? })
+        }
+        RegionKind::Plus(a, b) => {
+            Some(Region::Plus(Box::new([numbers(a, units, elaborator)?, numbers(b, units, elaborator)?])))
+        }
+        RegionKind::Minus(a, b) => {
+            Some(Region::Minus(Box::new([numbers(a, units, elaborator)?, numbers(b, units, elaborator)?])))
+        }
     };
     found.ok_or_else(|| elaborator.errors.report(region.place, catalogue::no_region()))
+}
+
+/// How many coordinates a region goes over; nothing where its parts do not agree.
+fn dimension(region: &syntax::Region) -> Option<usize> {
+    match &region.kind {
+        RegionKind::Box(ranges) => Some(ranges.len()),
+        RegionKind::Disc(_) | RegionKind::Ellipse(_) | RegionKind::Polygon(_) => Some(2),
+        RegionKind::Ball(_) | RegionKind::Cylinder(..) => Some(3),
+        RegionKind::File(kind, ..) => Some(if *kind == FileKind::Polygon { 2 } else { 3 }),
+        RegionKind::Plus(a, b) | RegionKind::Minus(a, b) => dimension(a).filter(|own| dimension(b) == Some(*own)),
+    }
+}
+
+/// The unit of coordinates that have one in common, as a shape wants that is no product of ranges.
+fn alike<'a>(region: &syntax::Region, units: &[&'a Unit], elaborator: &mut Elaborator<'_>) -> Checked<&'a Unit> {
+    match units {
+        [first, others @ ..] if others.iter().all(|unit| unit.factor == first.factor) => Ok(first),
+        _ => Err(elaborator.errors.report(region.place, catalogue::region_of_two_units())),
+    }
 }
 
 fn round(parts: [&Expr; 4], units: &[&Unit], elaborator: &mut Elaborator<'_>) -> Checked<Option<Region>> {

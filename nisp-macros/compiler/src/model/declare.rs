@@ -155,6 +155,7 @@ fn field(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: &mut
         Kind::Source => (Role::Source, Meaning::Source),
         _ => (Role::Field, Meaning::Field),
     };
+    let held = held(declaration, elaborator);
     let names = components(declaration, elaborator);
     let first = model.fields.len();
     let entries = (0..names.len()).map(|k| Scalar::leaf(Node::Field(first + k), Reads::FIELD)).collect();
@@ -168,8 +169,31 @@ fn field(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: &mut
         check_order(declaration, lower, upper, elaborator);
         let docs = declaration.docs.clone();
         let part = part(declaration, k, count);
-        model.fields.push(Field { name, role, unit: unit.clone(), lower, upper, hard: None, part, docs });
+        model.fields.push(Field { name, role, unit: unit.clone(), held, lower, upper, hard: None, part, docs });
     }
+}
+
+/// A bit for each coordinate that a field does not depend on.
+fn held(declaration: &Declaration, elaborator: &mut Elaborator<'_>) -> u32 {
+    let Some(names) = &declaration.depends else { return 0 };
+    if names.is_empty() {
+        let message = catalogue::depends_on_no_coordinate(&declaration.name.text);
+        elaborator.errors.push(declaration.name.span, message);
+    }
+    let mut held = (1 << elaborator.coordinates.len()) - 1;
+    for name in names {
+        match elaborator.coordinates.iter().position(|coordinate| coordinate.name.text == name.text) {
+            Some(at) => {
+                held &= !(1 << at);
+                elaborator.scope.mark_used(&name.text);
+            }
+            None => {
+                let all: Vec<&str> = elaborator.coordinates.iter().map(|c| c.name.text.as_str()).collect();
+                elaborator.errors.push(name.span, catalogue::not_a_coordinate(&name.text, &all));
+            }
+        }
+    }
+    held
 }
 
 fn check_order(declaration: &Declaration, lower: Option<f64>, upper: Option<f64>, elaborator: &mut Elaborator<'_>) {

@@ -9,7 +9,7 @@ use proc_macro2::{Span, TokenStream};
 
 use crate::loss::Robust;
 use crate::rational::Rational;
-pub use crate::syntax::{Name, Portion};
+pub use crate::syntax::{FileKind, Name, Portion};
 use crate::unit::{Dimension, Unit};
 
 mod arithmetic;
@@ -100,6 +100,8 @@ pub struct Field {
     pub role: Role,
     /// Declared unit.
     pub unit: Unit,
+    /// A bit for each coordinate that it does not depend on.
+    pub held: u32,
     /// Lower bound in SI units, kept by construction.
     pub lower: Option<f64>,
     /// Upper bound in SI units, kept by construction.
@@ -224,6 +226,8 @@ pub struct Place {
     pub portion: Portion,
     /// The domain's factors.
     pub domain: Vec<Region>,
+    /// About how many points it shall have, if the group says so.
+    pub points: Option<usize>,
 }
 
 /// A region over some coordinates, in their declared units.
@@ -240,6 +244,35 @@ pub enum Region {
     },
     /// The corners of a polygon.
     Polygon(Vec<[f64; 2]>),
+    /// A ball.
+    Ball {
+        /// Its centre.
+        centre: [f64; 3],
+        /// Its radius.
+        radius: f64,
+    },
+    /// A cylinder along the third coordinate.
+    Cylinder {
+        /// Its axis.
+        centre: [f64; 2],
+        /// Its radius.
+        radius: f64,
+        /// Where it begins and ends.
+        ends: [f64; 2],
+    },
+    /// What a file holds.
+    File {
+        /// Its kind.
+        kind: FileKind,
+        /// Its path as written.
+        path: String,
+        /// One of the file's unit in the coordinates' own; 1 of a table, whose headers have units.
+        scale: f64,
+    },
+    /// What is in either.
+    Plus(Box<[Region; 2]>),
+    /// What is in the first and not in the second.
+    Minus(Box<[Region; 2]>),
 }
 
 impl Group {

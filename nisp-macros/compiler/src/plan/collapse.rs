@@ -15,9 +15,10 @@ use crate::symbolic::exact::{self, Exact};
 use crate::symbolic::factor::LONG_SUM;
 use crate::symbolic::graph::{Graph, Id, Leaf, Node};
 use crate::symbolic::rewrite::rewrite;
+use crate::symbolic::site::Site;
 
 /// A network output at a site.
-type Head = (usize, usize);
+type Head = (usize, Site);
 
 /// For each coordinate, the class of coordinates with the same dimension.
 pub(super) fn dimension_classes(model: &Model) -> Vec<usize> {

@@ -16,6 +16,10 @@ use crate::symbolic::graph::{Fault, Graph, Id, Leaf, Node, ZERO};
 use crate::symbolic::lower::{Lowering, Scalars};
 use crate::symbolic::magnitude::magnitude;
 use crate::symbolic::rewrite::rewrite;
+use crate::symbolic::site::Site;
+
+/// An output of the network that is read: field, site, channel.
+type Output = (usize, Site, usize);
 
 /// A group's expressions, before slots are numbered for the whole scene.
 pub(super) struct Draft {
@@ -29,8 +33,8 @@ pub(super) struct Draft {
     targets: Vec<Vec<Id>>,
     /// The channels its hidden layers carry.
     pub(super) set: ChannelSet,
-    /// Outputs that are read: field, site, channel.
-    pub(super) jets: Vec<(usize, usize, usize)>,
+    /// Outputs that are read.
+    pub(super) jets: Vec<Output>,
 }
 
 /// Numbers of slots that are the same for all groups of a scene.
@@ -93,7 +97,7 @@ pub(super) fn draft(
     if let Some(fault) = graph.fault() {
         return Err(error(fault, scene, name));
     }
-    let all: Vec<(usize, usize, usize)> = jets(&graph, &rows, &set).into_iter().collect();
+    let all: Vec<Output> = jets(&graph, &rows, &set).into_iter().collect();
     for term in &mut terms {
         let own = jets(&graph, &rows[term.first..term.first + term.rows], &set);
         term.jets = (0..all.len()).filter(|&at| own.contains(&all[at])).collect();
@@ -163,8 +167,8 @@ fn expand(graph: &mut Graph, id: Id, set: &ChannelSet) -> Id {
     graph.linear(&terms)
 }
 
-/// The jets that rows read, as (field, site, channel).
-fn jets(graph: &Graph, rows: &[Id], set: &ChannelSet) -> BTreeSet<(usize, usize, usize)> {
+/// The jets that rows read.
+fn jets(graph: &Graph, rows: &[Id], set: &ChannelSet) -> BTreeSet<Output> {
     let mut found = BTreeSet::new();
     for id in graph.reachable(rows.iter().copied()) {
         if let Node::Leaf(Leaf::Jet { field, site, operator }) = graph.node(id)
@@ -178,13 +182,13 @@ fn jets(graph: &Graph, rows: &[Id], set: &ChannelSet) -> BTreeSet<(usize, usize,
 
 impl Draft {
     /// Makes the programs.
-    pub(super) fn finish(mut self, slots: &Slots, sets: &mut Sets) -> Result<GroupPlan, Fault> {
+    pub(super) fn finish(mut self, slots: &Slots, paired: bool, sets: &mut Sets) -> Result<GroupPlan, Fault> {
         let all = vec![true; self.set.len()];
         let mut read = vec![false; self.set.len()];
         self.jets.iter().for_each(|&(_, _, channel)| read[channel] = true);
         let hidden = sets.index(&self.set, all)?;
         let last = sets.index(&self.set, read)?;
-        let jets = self.jet_list(slots);
+        let (jets, held) = self.jet_list(slots, paired);
         let columns = self.columns();
         let nodes: Vec<Id> = jets_nodes(&mut self.graph, &self.jets, &self.set);
         let residual = self.program(&self.rows, slots, &columns);
@@ -199,6 +203,7 @@ impl Draft {
                 hidden,
                 last,
                 jets,
+                held,
                 terms: self.terms,
                 residual,
                 adjoint,
@@ -208,14 +213,21 @@ impl Draft {
         }
     }
 
-    fn jet_list(&self, slots: &Slots) -> Vec<Jet> {
-        let jet = |&(field, site, channel): &(usize, usize, usize)| Jet {
+    /// The jets in slot order, and the sites at which coordinates are held.
+    fn jet_list(&self, slots: &Slots, paired: bool) -> (Vec<Jet>, Vec<Site>) {
+        let held: BTreeSet<Site> = self.jets.iter().map(|(_, site, _)| *site).filter(|site| site.held != 0).collect();
+        let held: Vec<Site> = held.into_iter().collect();
+        let number = |site: Site| match held.iter().position(|own| *own == site) {
+            Some(at) => 1 + usize::from(paired) + at,
+            None => usize::from(site.partner),
+        };
+        let jet = |&(field, site, channel): &Output| Jet {
             head: slots.heads.iter().position(|&head| head == field).unwrap_or(0),
             operator: self.set.basis[channel].clone(),
             combination: vec![(channel, ratio(1, 1))],
-            site,
+            site: number(site),
         };
-        self.jets.iter().map(jet).collect()
+        (self.jets.iter().map(jet).collect(), held)
     }
 
     fn columns(&self) -> Vec<usize> {
@@ -232,8 +244,7 @@ impl Draft {
         let place = |list: &[usize], wanted: usize| list.iter().position(|&x| x == wanted).unwrap_or(0);
         schedule(&self.graph, outputs, &|leaf| match leaf {
             Leaf::Jet { field, site, operator } => {
-                let is =
-                    |&(f, s, c): &(usize, usize, usize)| f == *field && s == *site && self.set.basis[c] == *operator;
+                let is = |&(f, s, c): &Output| f == *field && s == *site && self.set.basis[c] == *operator;
                 (Slot::Jet, self.jets.iter().position(is).unwrap_or(0))
             }
             Leaf::Input(Slot::Parameter, index) => (Slot::Parameter, slots.scalars[*index]),
@@ -282,9 +293,8 @@ impl Draft {
     }
 }
 
-fn jets_nodes(graph: &mut Graph, jets: &[(usize, usize, usize)], set: &ChannelSet) -> Vec<Id> {
-    let mut leaf = |&(field, site, channel): &(usize, usize, usize)| {
-        graph.leaf(Leaf::Jet { field, site, operator: set.basis[channel].clone() })
-    };
+fn jets_nodes(graph: &mut Graph, jets: &[Output], set: &ChannelSet) -> Vec<Id> {
+    let mut leaf =
+        |&(field, site, channel): &Output| graph.leaf(Leaf::Jet { field, site, operator: set.basis[channel].clone() });
     jets.iter().map(&mut leaf).collect()
 }

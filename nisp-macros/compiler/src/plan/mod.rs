@@ -19,6 +19,7 @@ use crate::model::Model;
 use crate::program::Program;
 use crate::rational::Rational;
 pub use crate::symbolic::lower::Scalar;
+use crate::symbolic::site::Site;
 
 /// The highest order of a derivative that a plan supports.
 pub const MAX_ORDER: u32 = 6;
@@ -112,7 +113,7 @@ pub struct Jet {
     pub operator: Operator,
     /// The operator in the channels of the group's set: (channel, coefficient).
     pub combination: Vec<(usize, Rational)>,
-    /// 0 for the point itself, 1 for its partner.
+    /// Where it is taken: 0 for the point itself, then its partner if the group is paired, then [`GroupPlan::held`].
     pub site: usize,
 }
 
@@ -127,6 +128,8 @@ pub struct GroupPlan {
     pub last: usize,
     /// What the programs read of the heads, in slot order.
     pub jets: Vec<Jet>,
+    /// Further sites: the point or its partner with some coordinates held, for fields that do not depend on those.
+    pub held: Vec<Site>,
     /// Used terms with their rows.
     pub terms: Vec<TermPlan>,
     /// Rows of all terms: slots Jet, Coordinate, Column, Parameter.

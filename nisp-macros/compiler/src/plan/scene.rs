@@ -35,10 +35,10 @@ pub(super) fn build(model: &Model, scene: &Scene, sets: &mut Sets) -> Result<Sce
     let slots = Slots { heads: heads.clone(), scalars: places, learned };
     let mut groups = Vec::new();
     for draft in drafts {
-        let name = &model.groups[draft.group].name;
-        match draft.finish(&slots, sets) {
-            Ok(group) => groups.push(group),
-            Err(fault) => errors.push(failure(fault, scene, name)),
+        let group = &model.groups[draft.group];
+        match draft.finish(&slots, group.paired, sets) {
+            Ok(plan) => groups.push(plan),
+            Err(fault) => errors.push(failure(fault, scene, &group.name)),
         }
     }
     if !errors.is_empty() {

@@ -84,6 +84,7 @@ fn pending(graph: &Graph, memo: &Memo, root: Id, coordinate: usize) -> BTreeSet<
 
 fn leaf_derivative(graph: &mut Graph, leaf: Leaf, coordinate: usize, coordinates: usize) -> Id {
     match leaf {
+        Leaf::Jet { site, .. } if site.holds(coordinate) => ZERO,
         Leaf::Jet { field, site, operator } => match operator.times(&Polynomial::variable(coordinate, coordinates)) {
             Ok(operator) => graph.leaf(Leaf::Jet { field, site, operator }),
             Err(_) => graph.fail(Fault::Overflow),

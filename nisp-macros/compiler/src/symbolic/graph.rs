@@ -11,6 +11,7 @@ use num_traits::Zero;
 use super::elementary::{self, Parity};
 use super::exact;
 use super::polynomial::Polynomial;
+use super::site::Site;
 use crate::model::Function;
 use crate::program::{self, Slot};
 use crate::rational::Rational;
@@ -55,8 +56,8 @@ pub enum Leaf {
     Jet {
         /// Index of the field in the model.
         field: usize,
-        /// 0 for the point itself, 1 for its partner.
-        site: usize,
+        /// Where it is taken.
+        site: Site,
         /// Which operator.
         operator: Polynomial,
     },

@@ -7,6 +7,7 @@ use super::differentiate::{self, Memo};
 use super::exact;
 use super::graph::{Fault, Graph, Id, Leaf, ZERO};
 use super::polynomial::Polynomial;
+use super::site::Site;
 use crate::model::{Expr, Function, Model, Node, Scene};
 use crate::program::Slot;
 use crate::rational::ratio;
@@ -211,6 +212,7 @@ impl<'a> Lowering<'a> {
         let declared = &self.model.fields[field];
         let dimension = declared.unit.dimension.clone();
         let operator = Polynomial::one(self.model.coordinates.len());
+        let site = Site { partner: site == 1, held: declared.held };
         let raw = self.graph.leaf(Leaf::Jet { field, site, operator });
         match (declared.lower, declared.upper) {
             (None, None) => raw,

@@ -15,3 +15,4 @@ pub mod lower;
 pub mod magnitude;
 pub mod polynomial;
 pub mod rewrite;
+pub mod site;

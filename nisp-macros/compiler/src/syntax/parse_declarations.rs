@@ -5,7 +5,7 @@ use proc_macro2::Delimiter;
 use super::parse_number;
 use super::recover::{self, at_statement};
 use super::stream::{Context, Stream};
-use super::tree::{Declaration, Kind, Shape};
+use super::tree::{Declaration, Kind, Name, Shape};
 use super::{parse_expression, parse_unit};
 use crate::error::{Checked, Place, catalogue};
 use crate::unit::Unit;
@@ -93,6 +93,7 @@ fn entry(
     let name = recover::name(stream, context, noun(kind))?;
     // From here on the name is known: whatever is wrong behind it, using it is no further mistake.
     context.broken.insert(name.text.clone());
+    let depends = depends(stream, context, kind)?;
     let shape = if stream.take(":").is_some() { shape(stream, context, kind)? } else { Shape::Scalar };
     let unit = match parse_unit::parse_optional(stream, context) {
         None => Some(Unit::one()),
@@ -102,6 +103,7 @@ fn entry(
     let mut declaration = Declaration {
         kind,
         name,
+        depends,
         shape,
         unit,
         lower: None,
@@ -115,6 +117,23 @@ fn entry(
     attributes(stream, context, &mut declaration)?;
     context.broken.remove(&broken_name);
     Ok(declaration)
+}
+
+/// `(x, y)` behind the name of a field or a source: the coordinates that it depends on.
+fn depends(stream: &mut Stream<'_>, context: &mut Context<'_>, kind: Kind) -> Checked<Option<Vec<Name>>> {
+    let start = stream.place();
+    let Some((mut inside, place)) = stream.take_group(Delimiter::Parenthesis) else { return Ok(None) };
+    if !matches!(kind, Kind::Field | Kind::Source) {
+        return Err(context.errors.report(start.to(place), catalogue::depends_on_nothing(noun(kind))));
+    }
+    let mut names = Vec::new();
+    while !inside.at_end() {
+        names.push(recover::name(&mut inside, context, "a coordinate")?);
+        if inside.take(",").is_none() && !inside.at_end() {
+            return Err(context.errors.report(inside.place(), catalogue::expected_separator(&inside.found())));
+        }
+    }
+    Ok(Some(names))
 }
 
 fn noun(kind: Kind) -> &'static str {

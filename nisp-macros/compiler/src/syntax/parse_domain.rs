@@ -1,12 +1,14 @@
 //! `domains: plate = disc(0, 0, 0.1), slab = box(0 .. 1, 0 .. 2) times 0 .. 5;` and where in them a group lies.
 
+use num_traits::One;
 use proc_macro2::Delimiter;
 
-use super::parse_expression;
 use super::recover;
 use super::stream::{Context, Stream};
-use super::tree::{Domain, Expr, Location, Portion, Region, RegionKind};
+use super::tree::{Domain, Expr, ExprKind, FileKind, Location, Number, Portion, Region, RegionKind};
+use super::{parse_expression, parse_unit};
 use crate::error::{Checked, catalogue};
+use crate::rational::Rational;
 
 /// Reads a whole declaration of domains, word and all.
 pub(super) fn parse(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Vec<Domain>> {
@@ -17,9 +19,9 @@ pub(super) fn parse(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Check
         let name = recover::name(stream, context, "a domain")?;
         context.broken.insert(name.text.clone());
         recover::operator(stream, context, "=", &name.text)?;
-        let mut regions = vec![region(stream, context)?];
+        let mut regions = vec![combined(stream, context)?];
         while stream.take_word("times") {
-            regions.push(region(stream, context)?);
+            regions.push(combined(stream, context)?);
         }
         context.broken.remove(&name.text);
         domains.push(Domain { name, regions });
@@ -39,7 +41,39 @@ pub(super) fn location(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Ch
         return Err(context.errors.report(stream.place(), catalogue::expected_of(word, &stream.found())));
     }
     let domain = recover::name(stream, context, "a domain")?;
-    Ok(Some(Location { portion, domain }))
+    let points = if stream.take_word("with") { Some(points(stream, context)?) } else { None };
+    Ok(Some(Location { portion, domain, points }))
+}
+
+/// `2000 points`, behind `with`.
+fn points(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<usize> {
+    let place = stream.place();
+    let found = stream.found();
+    let number = stream.take_literal().and_then(|literal| literal.to_string().replace('_', "").parse::<usize>().ok());
+    match number.filter(|number| (1..=MOST_POINTS).contains(number) && stream.take_word("points")) {
+        Some(number) => Ok(number),
+        None => Err(context.errors.report(place, catalogue::expected_points(&found, MOST_POINTS))),
+    }
+}
+
+/// More points than this are a slip.
+const MOST_POINTS: usize = 10_000_000;
+
+/// A region, or several with `plus` and `minus` between them, from left to right.
+fn combined(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Region> {
+    let mut found = region(stream, context)?;
+    loop {
+        let kind = if stream.take_word("plus") {
+            RegionKind::Plus
+        } else if stream.take_word("minus") {
+            RegionKind::Minus
+        } else {
+            return Ok(found);
+        };
+        let other = region(stream, context)?;
+        let place = found.place.to(other.place);
+        found = Region { kind: kind(Box::new(found), Box::new(other)), place };
+    }
 }
 
 fn region(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Region> {
@@ -49,10 +83,58 @@ fn region(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Region>
         "box" => RegionKind::Box(listed(stream, context, range)?),
         "disc" => RegionKind::Disc(listed(stream, context, parse_expression::parse)?),
         "ellipse" => RegionKind::Ellipse(listed(stream, context, parse_expression::parse)?),
+        "solid" => file(stream, context)?,
+        "polygon" if holds_text(stream) => file(stream, context)?,
         "polygon" => RegionKind::Polygon(listed(stream, context, parse_expression::parse)?),
+        "ball" => RegionKind::Ball(listed(stream, context, parse_expression::parse)?),
+        "cylinder" => cylinder(stream, context)?,
         _ => RegionKind::Box(vec![range(stream, context)?]),
     };
     Ok(Region { kind, place: start.to(stream.previous()) })
+}
+
+/// True if a text in quotes stands first between the parentheses behind a word.
+fn holds_text(stream: &Stream<'_>) -> bool {
+    let inside = stream.after_next().take_group(Delimiter::Parenthesis);
+    let literal = inside.and_then(|(mut inside, _)| inside.take_literal());
+    literal.is_some_and(|literal| literal.to_string().starts_with('"'))
+}
+
+/// `polygon("FILE")` or `solid("FILE" [unit])`.
+fn file(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<RegionKind> {
+    let kind = if stream.take_word("solid") { FileKind::Solid } else { FileKind::Polygon };
+    if kind == FileKind::Polygon {
+        stream.skip();
+    }
+    let Some((mut inside, place)) = stream.take_group(Delimiter::Parenthesis) else {
+        return Err(context.errors.report(stream.place(), catalogue::no_region()));
+    };
+    let path = inside.take_literal().and_then(|literal| syn::parse_str::<syn::LitStr>(&literal.to_string()).ok());
+    // The headers of a table have units of their own.
+    let unit = match kind {
+        FileKind::Solid => parse_unit::parse_optional(&mut inside, context).transpose()?,
+        FileKind::Polygon => None,
+    };
+    match path.filter(|_| inside.at_end()) {
+        Some(path) => {
+            let one = Number { exact: Some(Rational::one()), value: 1.0, text: "1".into() };
+            let one = Expr { kind: ExprKind::Number(one, unit.map(Box::new)), place };
+            Ok(RegionKind::File(kind, path.value(), one))
+        }
+        None => Err(context.errors.report(place, catalogue::no_region())),
+    }
+}
+
+/// `cylinder(x, y, radius, a .. b)`
+fn cylinder(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<RegionKind> {
+    let parts = listed(stream, context, |stream, context| {
+        let first = parse_expression::parse(stream, context)?;
+        let last = if stream.take("..").is_some() { Some(parse_expression::parse(stream, context)?) } else { None };
+        Ok((first, last))
+    })?;
+    let (plain, ranges): (Vec<_>, Vec<_>) = parts.into_iter().partition(|(_, last)| last.is_none());
+    let ends = ranges.into_iter().next().and_then(|(low, high)| Some((low, high?)));
+    Ok(RegionKind::Cylinder(plain.into_iter().map(|(first, _)| first).collect(), ends))
 }
 
 /// What stands between the parentheses behind a word, separated by commas.

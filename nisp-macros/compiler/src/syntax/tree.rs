@@ -69,6 +69,8 @@ pub struct Declaration {
     pub kind: Kind,
     /// Its name.
     pub name: Name,
+    /// The coordinates that it depends on, where they are written: `q(x)`.
+    pub depends: Option<Vec<Name>>,
     /// Its components.
     pub shape: Shape,
     /// Its unit; None if the unit could not be read.
@@ -149,6 +151,25 @@ pub enum RegionKind {
     Ellipse(Vec<Expr>),
     /// `polygon([x, y], ...)`.
     Polygon(Vec<Expr>),
+    /// `ball(x, y, z, radius)`.
+    Ball(Vec<Expr>),
+    /// `cylinder(x, y, radius, a .. b)`, its axis along the third coordinate.
+    Cylinder(Vec<Expr>, Option<(Expr, Expr)>),
+    /// `polygon("outline.csv")` or `solid("tank.stl" [mm])`: one of the file's unit, as an expression.
+    File(FileKind, String, Expr),
+    /// `a plus b`: what is in either.
+    Plus(Box<Region>, Box<Region>),
+    /// `a minus b`: what is in the first and not in the second.
+    Minus(Box<Region>, Box<Region>),
+}
+
+/// What a file holds that a region is read from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum FileKind {
+    /// The corners of a polygon, as a table of two columns.
+    Polygon,
+    /// A closed surface of triangles, as STL.
+    Solid,
 }
 
 /// Which part of a domain a group lies in.
@@ -171,6 +192,8 @@ pub struct Location {
     pub portion: Portion,
     /// The domain's name.
     pub domain: Name,
+    /// `with 2000 points`: about how many, where that is written.
+    pub points: Option<usize>,
 }
 
 /// `on NAME { ... }`

@@ -117,6 +117,7 @@ impl Build for Model {
             name: name(text),
             role,
             unit,
+            held: 0,
             lower,
             upper,
             hard: None,

@@ -65,16 +65,35 @@ pub(crate) fn no_ends(name: &str) -> String {
 pub(crate) fn domain_of_other_dimension(name: &str, coordinates: &str) -> String {
     help(
         format!("the regions of `{}` do not match the coordinates {coordinates}", shorten(name)),
-        "a region for all coordinates, in their order: an interval takes one, a disc, an ellipse and a polygon two, a box \
-         one for each of its ranges",
+        "a region for all coordinates, in their order: an interval takes one, a disc, an ellipse and a polygon two, a ball, \
+         a cylinder and a solid three, a box one for each of its ranges",
     )
 }
 
 pub(crate) fn no_region() -> String {
     help(
         "this is no region",
-        "write `0 .. 2`, `box(0 .. 2, 0 .. 1)`, `disc(x, y, radius)`, `ellipse(x, y, a, b)` or `polygon([x, y], ...)`: lower \
-         ends first, radii above zero, three corners or more",
+        "write `0 .. 2`, `box(0 .. 2, 0 .. 1)`, `disc(x, y, radius)`, `ellipse(x, y, a, b)`, `polygon([x, y], ...)`, \
+         `polygon(\"FILE.csv\")`, `ball(x, y, z, radius)`, `cylinder(x, y, radius, 0 .. 1)` or `solid(\"FILE.stl\" \
+         [mm])`: lower ends first, radii above zero, three corners or more",
+    )
+}
+
+pub(crate) fn regions_of_two_dimensions() -> String {
+    help("`plus` and `minus` stand between regions of the same coordinates", "write `times` for a product of others")
+}
+
+pub(crate) fn region_of_two_units() -> String {
+    help(
+        "this region wants coordinates of one unit",
+        "declare them in the same unit, or write a product of regions: `disc(0, 0, 1) times 0 .. 5`",
+    )
+}
+
+pub(crate) fn depends_on_no_coordinate(name: &str) -> String {
+    help(
+        format!("`{}` depends on no coordinate", shorten(name)),
+        "declare it under `parameters` and find it with `learn` in a scene, or name coordinates: `q(x)`",
     )
 }
 
@@ -116,7 +135,7 @@ pub(crate) fn shadows_derivative(name: &str, base: &str) -> String {
 pub(crate) fn not_a_coordinate(text: &str, known: &[&str]) -> String {
     let listed: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
     let nearest = super::super::nearest(text, known.iter().copied());
-    let step = meant(nearest, &format!("derivatives are taken by coordinates: {}", listed.join(", ")));
+    let step = meant(nearest, &format!("the coordinates are {}", listed.join(", ")));
     help(format!("`{}` is not a coordinate", shorten(text)), step)
 }
 

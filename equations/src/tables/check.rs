@@ -1,0 +1,59 @@
+//! Names that the user gave must be names that there are.
+
+use std::path::Path;
+
+use nisp::schema::{Origin, Scene};
+
+use super::Tables;
+use crate::entry::hint;
+use crate::error::PrepareError;
+use crate::prepared::Assumed;
+use crate::request::Request;
+
+/// A file of data must be for a group that there is.
+pub(super) fn group(schema: &Scene, group: Option<&str>, path: &Path) -> Result<(), PrepareError> {
+    let known: Vec<&str> = schema.groups.iter().filter(|group| !group.is_beliefs()).map(|group| group.name).collect();
+    match group.filter(|group| !known.contains(group)) {
+        Some(group) => {
+            let (group, path) = (group.to_string(), path.to_path_buf());
+            Err(PrepareError::Group { hint: hint(&group, &known), group, path, have: known.join(", ") })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Every name in `--points` must be that of a group which lies in a domain and has no table of points.
+pub(super) fn points(schema: &Scene, tables: &Tables<'_>, request: &Request) -> Result<(), PrepareError> {
+    let drawn = schema.groups.iter().filter(|group| group.place.is_some() && tables.of(group).is_none());
+    let known: Vec<&str> = drawn.map(|group| group.name).collect();
+    match request.points.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+        Some((name, _)) => {
+            Err(PrepareError::Points { group: name.clone(), hint: hint(name, &known), have: known.join(", ") })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Every name in `--column` must be one that the scene observes, or a coordinate.
+pub(crate) fn columns(schema: &Scene, request: &Request) -> Result<(), PrepareError> {
+    let observed = schema.groups.iter().flat_map(|group| group.columns).map(|column| column.name);
+    let known: Vec<_> = observed.chain(schema.coordinates.iter().map(|axis| axis.name)).collect();
+    match request.columns.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+        Some((name, _)) => {
+            Err(PrepareError::Column { name: name.clone(), hint: hint(name, &known), have: known.join(", ") })
+        }
+        None => Ok(()),
+    }
+}
+
+/// Parameters that nobody gave beside data of the user's own.
+pub(crate) fn assumed(schema: &Scene, request: &Request) -> Vec<Assumed> {
+    let declared =
+        schema.scalars.iter().filter(|_| !request.data.is_empty()).filter_map(|scalar| match scalar.origin {
+            Origin::Given(Some(value)) if !scalar.name.is_empty() => {
+                Some(Assumed { name: scalar.name, value: value / scalar.unit.factor, unit: scalar.unit.text })
+            }
+            _ => None,
+        });
+    declared.filter(|assumed| request.parameters.iter().all(|(name, _)| name != assumed.name)).collect()
+}

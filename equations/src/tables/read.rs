@@ -1,0 +1,112 @@
+//! From a table to the places and the columns of a group.
+
+use nisp::schema::{Group, Scene};
+use nisp_data::Table;
+
+use super::Found;
+use crate::error::PrepareError;
+use crate::prepared::Measured;
+use crate::request::Request;
+
+/// Products of a few numbers up to this size are finite.
+const LARGEST: f64 = 1e60;
+
+/// A group's part of a table.
+pub(super) struct Rows {
+    /// Its points, point by point.
+    pub(super) points: Vec<f64>,
+    /// Its columns, NaN where nothing was measured.
+    pub(super) columns: Vec<Vec<f64>>,
+}
+
+/// Reads what a group takes from its table; all that is wrong with it at once.
+pub(super) fn rows(
+    schema: &Scene,
+    group: &Group,
+    table: &Table,
+    request: &Request,
+    found: &mut Found,
+) -> Result<Rows, PrepareError> {
+    let points = places(schema, table, request);
+    let columns = columns(group, table, request, found);
+    let (points, columns) = match (points, columns) {
+        (Ok(points), Ok(columns)) => (points, columns),
+        (points, columns) => {
+            return Err(PrepareError::all([points.err(), columns.err()].into_iter().flatten().collect()));
+        }
+    };
+    if schema.coordinates.len() == 1 {
+        let measured = group.columns.iter().zip(&columns).filter(|(_, values)| !values.iter().all(|x| x.is_nan()));
+        found.measured.extend(measured.map(|(c, values)| Measured {
+            name: c.name,
+            at: points.clone(),
+            values: values.clone(),
+        }));
+    }
+    Ok(Rows { points, columns })
+}
+
+/// Those values that were read, or everything that is wrong.
+fn gathered<T>(results: impl Iterator<Item = Result<T, PrepareError>>) -> Result<Vec<T>, PrepareError> {
+    let (mut values, mut faults) = (Vec::new(), Vec::new());
+    for result in results {
+        match result {
+            Ok(value) => values.push(value),
+            Err(fault) => faults.push(fault),
+        }
+    }
+    if faults.is_empty() { Ok(values) } else { Err(PrepareError::all(faults)) }
+}
+
+/// The places of a table's rows, point by point.
+pub(super) fn places(schema: &Scene, table: &Table, request: &Request) -> Result<Vec<f64>, PrepareError> {
+    let axes = schema.coordinates.iter().map(|axis| read(table, (axis.name, axis.unit.text), false, request));
+    let axes = gathered(axes)?;
+    if let [axis] = schema.coordinates {
+        table.require_increasing(header(request, axis.name).unwrap_or(axis.name))?;
+    }
+    Ok((0..table.rows()).flat_map(|row| axes.iter().map(move |axis| axis[row])).collect())
+}
+
+/// The columns of a group, and what is to be said of them.
+fn columns(group: &Group, table: &Table, request: &Request, found: &mut Found) -> Result<Vec<Vec<f64>>, PrepareError> {
+    // A quantity without a column of its own is not measured, as long as another one is.
+    let is_lacking = |name: &str| group.may_lack(name) && header(request, name).is_none() && table.lacks(name);
+    let is_any = group.columns.iter().any(|column| !is_lacking(column.name));
+    gathered(group.columns.iter().map(|c| {
+        if is_any && is_lacking(c.name) {
+            let headers = table.headers().collect::<Vec<_>>().join(", ");
+            let message = format!("`{}` is not measured: no column answers to it (columns: {headers})", c.name);
+            found.warnings.push(message);
+            return Ok(vec![f64::NAN; table.rows()]);
+        }
+        let values = read(table, (c.name, c.unit.text), group.may_lack(c.name), request)?;
+        let gaps = values.iter().filter(|value| value.is_nan()).count();
+        if gaps > 0 {
+            found.warnings.push(format!("`{}` is not measured in {gaps} of {} rows", c.name, values.len()));
+        }
+        Ok(values)
+    }))
+}
+
+/// The header that the user chose for a name; the last word counts.
+pub(crate) fn header<'a>(request: &'a Request, name: &str) -> Option<&'a str> {
+    request.columns.iter().rev().find(|(own, _)| own == name).map(|(_, header)| header.as_str())
+}
+
+/// The values of a quantity in its declared unit.
+pub(crate) fn read(
+    table: &Table,
+    (name, unit): (&'static str, &'static str),
+    may_lack: bool,
+    request: &Request,
+) -> Result<Vec<f64>, PrepareError> {
+    let values = match (header(request, name), may_lack) {
+        (Some(header), false) => table.chosen(name, header, unit)?,
+        (Some(header), true) => table.chosen_measured(name, header, unit)?,
+        (None, false) => table.quantity(name, unit)?,
+        (None, true) => table.measured(name, unit)?,
+    };
+    let largest = values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
+    if largest > LARGEST { Err(PrepareError::Size { name, largest, unit }) } else { Ok(values) }
+}
