@@ -181,10 +181,8 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
             RowKind::Integral(_) => TermKind::Integral,
             RowKind::Chamfer { symmetric, plane } => TermKind::Chamfer { symmetric, plane },
         },
-        loss: plan.loss.map_or(Loss::Square, |loss| match loss.variant {
-            "Huber" => Loss::Huber(loss.threshold),
-            "Welsch" => Loss::Welsch(loss.threshold),
-            _ => Loss::Tukey(loss.threshold),
+        loss: plan.loss.map_or(Loss::Square, |loss| {
+            Loss::named(loss.variant, loss.threshold).expect("the runtime has every loss that the compiler names")
         }),
         weight: declared.weights[group.group][plan.term],
         within: term.within,

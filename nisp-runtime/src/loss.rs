@@ -19,6 +19,16 @@ pub enum Loss {
 }
 
 impl Loss {
+    /// The robust loss of a variant's name, as the compiler writes it into a schema.
+    pub fn named(variant: &str, threshold: f64) -> Option<Self> {
+        match variant {
+            "Huber" => Some(Self::Huber(threshold)),
+            "Welsch" => Some(Self::Welsch(threshold)),
+            "Tukey" => Some(Self::Tukey(threshold)),
+            _ => None,
+        }
+    }
+
     /// What a misfit costs: half its square, or less.
     pub fn rho(self, u: f64) -> f64 {
         match self {

@@ -204,7 +204,8 @@ impl<'a> Fit<'a> {
             Optimizer::GaussNewton => Box::new(GaussNewton::new(theta, prior, INNER)),
             Optimizer::Broyden => Box::new(Broyden::new(theta, Update::SelfScaledBroyden)),
             Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, lbfgs::MEMORY)),
-            Optimizer::Auto | Optimizer::Adam => Box::new(Adam::new(theta, AdamSettings::default())),
+            Optimizer::Adam => Box::new(Adam::new(theta, AdamSettings::default())),
+            Optimizer::Auto => unreachable!("`Optimizer::candidates` names what `Auto` stands for"),
         }
     }
 
@@ -270,7 +271,8 @@ impl<'a> Fit<'a> {
         let theta: Vec<f32> = self.theta.iter().map(|&x| x as f32).collect();
         let mut method: Box<dyn Method<f32, Engine<f32>>> = match optimizer {
             Optimizer::Lbfgs => Box::new(Lbfgs::new(theta, lbfgs::MEMORY)),
-            _ => Box::new(Adam::new(theta, AdamSettings::default())),
+            Optimizer::Adam => Box::new(Adam::new(theta, AdamSettings::default())),
+            other => return Err(RecoverError::Precision { optimizer: other.name() }),
         };
         let outcome = match promotion {
             None => course.run(&mut *method, &mut engine)?,
