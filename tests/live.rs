@@ -98,7 +98,7 @@ fn a_linear_record_is_smoothed_as_it_is_solved() {
             let (exact, bar) = (whole[head].values[at], whole[head].deviations.as_ref().unwrap()[at]);
             // Cells are half as wide in the whole, and its bars count other orders of smoothness that may be right too.
             assert!((value - exact).abs() < 0.25 * bar, "row {at}: {value} beside {exact} +- {bar}");
-            assert!((0.7..1.02).contains(&(deviation / bar)), "row {at}: {deviation} beside {bar}");
+            assert!((0.7..1.1).contains(&(deviation / bar)), "row {at}: {deviation} beside {bar}");
         }
     }
 }

@@ -57,6 +57,19 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// A string without any load: its equation has one quantity, which vanishes.
+    mod slack {
+        units: off;
+        coordinates: x;
+        fields: w;
+        on inside { balance: d(w, x, 2) == 0; }
+        on left { held: w == 1; }
+        on right { held: w == 2; }
+        scene straight { }
+    }
+}
+
+nisp::pde! {
     /// Lorenz's equations, all three coefficients unknown.
     mod lorenz {
         units: off;
@@ -400,4 +413,19 @@ fn what_splines_do_not_do_is_refused() {
     let error = recover(&bound(scene::<summed::loaded::Scene>()), &settings(Carrier::Splines), &mut |_| Flow::Continue);
     let message = error.err().unwrap().to_string();
     assert_eq!(message, "splines do not do integrals; choose a network");
+}
+
+/// A residual beside nothing but itself is compared with what the quantity would be elsewhere.
+#[test]
+fn an_equation_of_one_vanishing_quantity_holds() {
+    let mut problem = Problem::new(scene::<slack::straight::Scene>());
+    let inside: Vec<f64> = (0..41).map(|i| f64::from(i) / 40.0).collect();
+    problem.set_group("inside", inside.clone().into(), Vec::new()).unwrap();
+    problem.set_group("left", vec![0.0].into(), Vec::new()).unwrap();
+    problem.set_group("right", vec![1.0].into(), Vec::new()).unwrap();
+    let settings = Settings { carrier: Carrier::Splines, ..Settings::default() };
+    let solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let found = &solution.evaluate(&inside)[0].values;
+    assert!(found.iter().zip(&inside).all(|(w, x)| (w - 1.0 - x).abs() < 1e-6), "{found:?}");
 }

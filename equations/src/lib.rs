@@ -7,7 +7,6 @@
     allow(dead_code, unused_imports, reason = "much of it binds shipped equations only")
 )]
 
-#[cfg(feature = "shipped")]
 mod bodies;
 #[cfg(feature = "shipped")]
 pub mod bubble;

@@ -1,5 +1,7 @@
 //! What the command line takes.
 
+pub(crate) mod stream;
+
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -10,9 +12,9 @@ use nisp_data::cloud::LengthUnit;
 
 use crate::config;
 use crate::help::{EVAL_SEE_HELP, EVAL_TEACH, SEE_HELP, TEACH};
-use crate::options::{count, one_line, optimizers, precisions, seconds, seed, show, size};
+use crate::options::{count, one_line, optimizers, pair, precisions, seconds, seed, show, size, value};
 use crate::program::Program;
-use crate::stream::{self, StreamOptions};
+use stream::StreamOptions;
 
 /// Recover unknown sources from noisy measurements and a known governing equation.
 #[derive(Parser)]
@@ -280,24 +282,12 @@ fn data(word: OsString) -> Result<(Option<String>, PathBuf), String> {
     }
 }
 
-pub(crate) fn pair(text: &str) -> Result<(String, String), String> {
-    let (name, value) = text.split_once('=').ok_or("write NAME=HEADER, for instance q=q_m_sigma0.01")?;
-    Ok((name.trim().into(), value.trim().into()))
-}
-
 fn points(text: &str) -> Result<(String, usize), String> {
     let (group, number) = text.split_once('=').ok_or("write GROUP=N, for instance inside=4000")?;
     match count(number.trim())? {
         number if number <= MOST_POINTS => Ok((group.trim().into(), number)),
         _ => Err(format!("at most {MOST_POINTS} points")),
     }
-}
-
-pub(crate) fn value(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, for instance m0=0.005")?;
-    let number = value.trim().parse::<f64>().ok().filter(|number| number.is_finite());
-    let number = number.ok_or("the value must be a finite number, in the declared unit and without it")?;
-    Ok((name.trim().into(), number))
 }
 
 /// What a command line turned out to be.

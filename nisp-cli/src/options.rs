@@ -89,3 +89,23 @@ pub fn show(error: &clap::Error) -> Result<ExitCode, String> {
         _ => Err(one_line(error)),
     }
 }
+
+/// `NAME=HEADER`.
+///
+/// # Errors
+/// No `=`.
+pub fn pair(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=HEADER, for instance q=q_m_sigma0.01")?;
+    Ok((name.trim().into(), value.trim().into()))
+}
+
+/// `NAME=VALUE`.
+///
+/// # Errors
+/// No `=`, or no finite number behind it.
+pub fn value(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, for instance m0=0.005")?;
+    let number = value.trim().parse::<f64>().ok().filter(|number| number.is_finite());
+    let number = number.ok_or("the value must be a finite number, in the declared unit and without it")?;
+    Ok((name.trim().into(), number))
+}

@@ -1,16 +1,11 @@
 //! A program with the whole command line: its name, and the equations that it knows beside those in text files.
 
-use std::ffi::OsString;
 use std::path::Path;
-use std::process::ExitCode;
 
 use nisp::SceneRef;
-use nisp::network::Architecture;
 use nisp_equations::{Binding, Entry};
 
-use crate::args::{self, Args, Command, Parsed};
-use crate::terminal::{end, note};
-use crate::{calibrate, check, eval, explain, list, new, solve, stream};
+use crate::terminal::note;
 
 /// Extension of equations in text files.
 pub const TEXT: &str = "pde";
@@ -37,33 +32,6 @@ impl Program {
         let equations: Vec<Entry> = equations.into_iter().filter_map(Entry::own).collect();
         let examples = equations.iter().map(|entry| format!("  {name} solve {} --data FILE", entry.name));
         Self { name, examples: examples.collect::<Vec<_>>().join("\n"), equations }
-    }
-
-    /// Does what the command line of the process asks for.
-    pub fn run(&self) -> ExitCode {
-        end(self.name, self.ask(std::env::args_os().collect()))
-    }
-
-    fn ask(&self, words: Vec<OsString>) -> Result<ExitCode, String> {
-        let args = match args::parse(self, words)? {
-            Parsed::Shown(code) => return Ok(code),
-            Parsed::Asked(Args { command }) => command,
-        };
-        match args {
-            Command::List => list::list(self),
-            Command::Check { equation, scene, data, column, latex } => {
-                check::check(&self.entry(&equation)?, scene, data, column, latex)
-            }
-            Command::New { name, rust } => new::new(&name, rust),
-            Command::Explain { equation, scene, width, layers } => {
-                let architecture = Architecture::modified(width, layers);
-                explain::explain(&self.entry(&equation)?, scene.as_deref(), architecture)
-            }
-            Command::Calibrate(frames) => calibrate::calibrate(self, &frames),
-            Command::Eval(options) => eval::eval(self, &options),
-            Command::Solve(options) => solve::solve(self, &options),
-            Command::Stream(options) => stream::stream(self, &options),
-        }
     }
 
     /// The equation of a name: of a text file, or one of the program's own. What a text's compiler warns of goes to

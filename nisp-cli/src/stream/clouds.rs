@@ -16,7 +16,7 @@ use serde_json::{Value, json};
 
 use super::input::{self, Frame};
 use super::line::{self, Head};
-use super::options::StreamOptions;
+use crate::args::stream::StreamOptions;
 use crate::report::{learned, patch, status};
 use crate::results::contact_map;
 

@@ -12,8 +12,8 @@ use nisp_data::Cloud;
 use nisp_data::input::MOST_BYTES;
 
 use super::latest::Latest;
-use super::options::From;
-use crate::args::value;
+use crate::args::stream::From;
+use crate::options::value;
 
 /// How often a folder is looked at.
 const LOOK: Duration = Duration::from_millis(5);

@@ -4,7 +4,6 @@ mod clouds;
 mod input;
 mod latest;
 mod line;
-mod options;
 mod records;
 
 use std::process::ExitCode;
@@ -13,7 +12,7 @@ use crate::interrupt;
 use crate::program::Program;
 use nisp_equations::Binding;
 
-pub(crate) use options::{SEE_HELP, StreamOptions, TEACH};
+use crate::args::stream::StreamOptions;
 
 /// Follows a stream until it ends or the user asks to stop.
 pub(crate) fn stream(program: &Program, options: &StreamOptions) -> Result<ExitCode, String> {

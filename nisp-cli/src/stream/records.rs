@@ -18,7 +18,7 @@ use serde_json::{Map, Value, json};
 
 use super::clouds::not_written;
 use super::line;
-use super::options::StreamOptions;
+use crate::args::stream::StreamOptions;
 
 /// Rows that are read ahead of the one at hand.
 const AHEAD: usize = 1024;

@@ -1,17 +1,17 @@
-//! Whatever is wrong with the input: one line that says what to do, exit code 2, no files, no panic.
+//! Whatever is wrong with the input: a line for each fault that says what to do, exit code 2, no files, no panic.
 
 use std::fs;
 
 use crate::common::{Place, circuit, circuit_table};
 
-/// Runs `solve rlc --data data.csv` and more on a table, and returns the one line.
+/// Runs `solve rlc --data data.csv` and more on a table, and returns what is said: a line for each of two columns at most.
 fn refusal(table: &str, more: &str) -> String {
     let place = Place::new();
     place.put("data.csv", table);
     let ran = place.run(&format!("solve rlc --data data.csv --budget 1 --out out {more}"));
     assert_eq!(ran.code, Some(2), "{table:.60} {more}: {}{}", ran.stdout, ran.stderr);
     assert_eq!(ran.stdout, "");
-    assert_eq!(ran.stderr.lines().count(), 1, "{}", ran.stderr);
+    assert!(ran.stderr.lines().count() <= 2, "{}", ran.stderr);
     assert!(ran.stderr.starts_with("nisp: ") && !ran.stderr.contains("panicked"), "{}", ran.stderr);
     assert_eq!(place.names(), ["data.csv"]);
     ran.stderr

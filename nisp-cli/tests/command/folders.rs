@@ -33,7 +33,7 @@ fn stop(child: Child) -> (Option<i32>, String, String) {
     (output.status.code(), text(output.stdout), text(output.stderr))
 }
 
-const LONG: &str = "solve pendulum --budget 120 --out a/out";
+const LONG: &str = "solve pendulum --carrier network --budget 120 --out a/out";
 
 #[test]
 fn two_runs_into_one_folder_do_not_mix() {

@@ -8,7 +8,7 @@ use std::time::Duration;
 use crate::common::{Place, circuit, names};
 
 fn start(place: &Place) -> Child {
-    let mut command = place.command("solve pendulum --budget 120 --json");
+    let mut command = place.command("solve pendulum --carrier network --budget 120 --json");
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -42,7 +42,8 @@ fn ctrl_c_writes_the_best_state_and_says_so() {
         ["answer.nisp", "checkpoint.nisp", "plot.svg", "source.csv", "state.csv"]
     );
     let stopped = object["iterations"].as_u64().unwrap();
-    let ran = place.run(&format!("solve pendulum --resume nisp-out --iterations {} --json", stopped + 2));
+    let ran =
+        place.run(&format!("solve pendulum --carrier network --resume nisp-out --iterations {} --json", stopped + 2));
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     let object: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!(object["iterations"], stopped + 2);
@@ -101,7 +102,12 @@ fn a_second_signal_ends_it_at_once() {
 fn signals_are_heard_where_standard_error_is_full() {
     let place = Place::new();
     let full = std::fs::File::options().write(true).open("/dev/full").unwrap();
-    let child = place.command("solve pendulum --budget 120").stdout(Stdio::piped()).stderr(full).spawn().unwrap();
+    let child = place
+        .command("solve pendulum --carrier network --budget 120")
+        .stdout(Stdio::piped())
+        .stderr(full)
+        .spawn()
+        .unwrap();
     started(&place);
     signal(&child, "-TERM");
     assert_eq!(child.wait_with_output().unwrap().status.code(), Some(3));

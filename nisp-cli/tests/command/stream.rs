@@ -140,7 +140,7 @@ fn a_folder_is_followed_until_the_program_is_told_to_end() {
 fn what_cannot_be_followed_is_refused() {
     let place = Place::new();
     for (line, words) in [
-        ("stream pendulum --frames x", "`nisp stream` follows"),
+        ("stream pendulum --frames x", "--frames is about clouds"),
         ("stream membrane --frames x", "there is no such file"),
         ("stream membrane --follow x", "--follow x"),
         ("stream membrane", "--frames"),

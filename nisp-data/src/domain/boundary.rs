@@ -43,13 +43,6 @@ impl Domain {
     }
 }
 
-/// Adds a point with its normal and weight.
-pub(super) fn add(out: &mut Points, point: &[f64], normal: &[f64], weight: f64) {
-    out.coords.extend(point);
-    out.normals.get_or_insert_default().extend(normal);
-    out.weights.get_or_insert_default().push(weight);
-}
-
 /// Side lengths of the faces across an axis.
 fn face(low: &[f64], high: &[f64], axis: usize) -> Vec<f64> {
     (0..low.len()).filter(|&other| other != axis).map(|other| high[other] - low[other]).collect()
@@ -74,7 +67,7 @@ fn on_box(low: &[f64], high: &[f64], count: usize, out: &mut Points) {
                 };
                 let point: Vec<f64> = (0..dim).map(along).collect();
                 let normal: Vec<f64> = (0..dim).map(|other| if other == axis { sign } else { 0.0 }).collect();
-                add(out, &point, &normal, areas[axis] / points as f64);
+                out.add(&point, &normal, areas[axis] / points as f64);
             }
         }
     }
@@ -108,7 +101,7 @@ fn on_ellipse(centre: [f64; 2], [a, b]: [f64; 2], count: usize, out: &mut Points
         let (sin, cos) = angle.sin_cos();
         let (nx, ny) = (cos / a, sin / b);
         let size = nx.hypot(ny);
-        add(out, &[centre[0] + a * cos, centre[1] + b * sin], &[nx / size, ny / size], weight);
+        out.add(&[centre[0] + a * cos, centre[1] + b * sin], &[nx / size, ny / size], weight);
     }
 }
 
@@ -121,7 +114,7 @@ fn on_polygon(vertices: &[[f64; 2]], count: usize, out: &mut Points) {
         let normal = [(q[1] - p[1]) / length, (p[0] - q[0]) / length];
         for piece in 0..pieces {
             let u = (piece as f64 + 0.5) / pieces as f64;
-            add(out, &[p[0] + u * (q[0] - p[0]), p[1] + u * (q[1] - p[1])], &normal, length / pieces as f64);
+            out.add(&[p[0] + u * (q[0] - p[0]), p[1] + u * (q[1] - p[1])], &normal, length / pieces as f64);
         }
     }
 }

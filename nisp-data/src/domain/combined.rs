@@ -3,7 +3,6 @@
 //! There are no closed forms: sizes come from points that fill the second region evenly, and are exact where it lies wholly inside
 //! or outside of the first.
 
-use super::boundary::add;
 use super::{Domain, Points, Sampling};
 
 /// Points that tell how large what both have in common is.
@@ -83,7 +82,7 @@ impl Pair {
             // Where both boundaries run along each other, the first one has the points.
             let is_firsts = is_second && self.first.contains(&inner) && !self.first.contains(&outer);
             if self.contains(&inner) && !self.contains(&outer) && !is_firsts {
-                add(&mut out, point, &normal, all.weights.as_ref().map_or(0.0, |weights| weights[index]));
+                out.add(point, &normal, all.weights.as_ref().map_or(0.0, |weights| weights[index]));
             }
         }
         out

@@ -1,11 +1,8 @@
 //! Points inside a domain. Each stands for an equal share of it.
 
 use super::round::in_ball;
-use super::sequence::unit_cube;
+use super::sequence::{GOLDEN_TURN, unit_cube};
 use super::{Domain, Points, Sampling, Shape};
-
-/// Turns by which consecutive points of a sunflower differ.
-pub(super) const GOLDEN_TURN: f64 = 0.618_033_988_749_894_9;
 
 impl Domain {
     /// About `count` points (exactly, but for a grid) with weights that add up to [`Domain::measure`].

@@ -24,6 +24,13 @@ impl Points {
         self.len() == 0
     }
 
+    /// Adds a point with its normal and weight.
+    pub(super) fn add(&mut self, point: &[f64], normal: &[f64], weight: f64) {
+        self.coords.extend(point);
+        self.normals.get_or_insert_default().extend(normal);
+        self.weights.get_or_insert_default().push(weight);
+    }
+
     /// Point by point.
     pub fn iter(&self) -> std::slice::ChunksExact<'_, f64> {
         self.coords.chunks_exact(self.dim.max(1))

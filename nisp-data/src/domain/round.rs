@@ -2,9 +2,8 @@
 
 use std::f64::consts::TAU;
 
-use super::boundary::add;
-use super::interior::GOLDEN_TURN;
-use super::{Domain, Points, Sampling, sequence};
+use super::sequence::{self, GOLDEN_TURN};
+use super::{Domain, Points, Sampling};
 
 /// Equal shares of the unit cube become equal shares of the ball: its radius goes with the cube root.
 pub(super) fn in_ball(centre: [f64; 3], radius: f64, count: usize, sampling: Sampling, seed: u64) -> Vec<f64> {
@@ -23,7 +22,7 @@ pub(super) fn on_ball(centre: [f64; 3], radius: f64, count: usize, out: &mut Poi
     for index in 0..count {
         let normal = direction(1.0 - (2.0 * index as f64 + 1.0) / count as f64, index as f64 * GOLDEN_TURN);
         let point: [f64; 3] = std::array::from_fn(|axis| centre[axis] + radius * normal[axis]);
-        add(out, &point, &normal, weight);
+        out.add(&point, &normal, weight);
     }
 }
 
@@ -44,12 +43,12 @@ pub(super) fn on_cylinder(base: &Domain, [low, high]: [f64; 2], count: usize, ou
         // Neighbours around the mantle are far apart along it.
         let height = low + (high - low) * ((index as f64 + 0.5) * GOLDEN_TURN).fract();
         let (point, normal) = (&around.coords[2 * index..][..2], around.normal(index).unwrap_or_default());
-        add(out, &[point[0], point[1], height], &[normal[0], normal[1], 0.0], rim / mantle as f64);
+        out.add(&[point[0], point[1], height], &[normal[0], normal[1], 0.0], rim / mantle as f64);
     }
     for (height, sign) in [(low, -1.0), (high, 1.0)] {
         let points = base.interior(share(lid), Sampling::Grid, 0);
         for point in points.iter() {
-            add(out, &[point[0], point[1], height], &[0.0, 0.0, sign], lid / points.len() as f64);
+            out.add(&[point[0], point[1], height], &[0.0, 0.0, sign], lid / points.len() as f64);
         }
     }
 }

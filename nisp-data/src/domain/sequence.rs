@@ -6,6 +6,9 @@ use rand::{RngExt, SeedableRng};
 
 use super::Sampling;
 
+/// Turns by which consecutive points of a sunflower differ.
+pub(super) const GOLDEN_TURN: f64 = 0.618_033_988_749_894_9;
+
 /// Sobol's direction numbers are listed for this many dimensions.
 pub(super) const MAX_DIM: usize = 6;
 

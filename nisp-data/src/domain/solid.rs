@@ -107,7 +107,7 @@ impl Solid {
                 std::array::from_fn(|i| corners[0][i] * (1.0 - u - v) + corners[1][i] * u + corners[2][i] * v);
             let normal = normal(corners);
             let length = size(normal);
-            super::boundary::add(out, &point, &normal.map(|x| x / length), total / count as f64);
+            out.add(&point, &normal.map(|x| x / length), total / count as f64);
         }
     }
 }

@@ -6,6 +6,7 @@ use super::on_splines::OnSplines;
 use super::settings::{Carrier, Optimizer, Settings};
 use crate::local::Local;
 use crate::problem::Bound;
+use crate::schema::Scene;
 use crate::solve::state::State;
 use crate::splines;
 
@@ -88,10 +89,21 @@ fn most_rows(bound: &Bound) -> usize {
     groups.filter(|(group, _)| !group.columns.is_empty()).map(|(_, points)| points.len()).max().unwrap_or(0)
 }
 
-/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps.
+/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. An equation
+/// that differentiates a source leaves some of it open, which is told of networks only.
 fn by_data(bound: &Bound) -> (Chosen, String) {
-    match splines::refused(bound.problem.scene().schema) {
-        Some(what) => (Chosen::Network, format!("splines do not do {what}")),
-        None => (Chosen::Splines, "one coordinate".into()),
+    let schema = bound.problem.scene().schema;
+    let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
+    match (splines::refused(schema), differentiated) {
+        (Some(what), _) => (Chosen::Network, format!("splines do not do {what}")),
+        (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, so that some of it may be open")),
+        (None, None) => (Chosen::Splines, "one coordinate".into()),
     }
+}
+
+/// A source of which an equation reads a derivative.
+fn differentiated(schema: &Scene) -> Option<&'static str> {
+    let jets = schema.groups.iter().flat_map(|group| group.jets);
+    let mut sources = jets.filter(|jet| schema.heads[jet.head].source);
+    sources.find(|jet| jet.degree.iter().any(|&degree| degree > 0)).map(|jet| schema.heads[jet.head].name)
 }

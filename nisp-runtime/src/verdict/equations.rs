@@ -187,12 +187,15 @@ impl Judged<'_> {
         }
         let nothing = self.without(&read);
         let constant = self.row(row, &nothing, &self.facts.columns);
-        largest = largest.max(root_mean_square(constant.into_iter().filter(|x| x.is_finite())));
+        let mut given = root_mean_square(constant.into_iter().filter(|x| x.is_finite()));
         if !self.facts.columns.is_empty() {
-            largest = largest.max(part(&self.facts.jets, &vec![0.0; self.facts.columns.len()]));
+            given = given.max(part(&self.facts.jets, &vec![0.0; self.facts.columns.len()]));
         }
+        largest = largest.max(given);
         let is_low = self.is_low(&read);
-        if is_low || self.facts.points <= FEW_POINTS {
+        // A quantity that is to vanish is all of its own residual.
+        let vanishes = read.len() == 1 && given == 0.0;
+        if is_low || vanishes || self.facts.points <= FEW_POINTS {
             largest = largest.max(self.elsewhere(&read, &slopes, row));
         }
         // A term of sources alone is no balance.

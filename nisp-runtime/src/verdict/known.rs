@@ -14,8 +14,14 @@ const GAIN: f64 = 12.5;
 /// size, and angles.
 const SLIGHT: f64 = 0.05;
 
-/// A check of what would gain most; none where nothing is known of that.
+/// A check of what would gain most; none where nothing is known of that, or where a cloud may be off over whole regions, which
+/// any number would make up for.
 pub(super) fn check(bound: &Bound, answer: &Answer) -> Option<Check> {
+    let groups = bound.problem.scene().schema.groups.iter().enumerate();
+    let mut terms = groups.flat_map(|(at, group)| group.terms.iter().map(move |term| (at, term)));
+    if terms.any(|(at, term)| bound.tolerance(at, term).is_some()) {
+        return None;
+    }
     let matters = |score: &Score| if score.change.abs() > SLIGHT { score.gain } else { score.gain.min(GAIN) };
     let mut scores: Vec<&Score> = answer.scores.iter().collect();
     scores.sort_by(|a, b| matters(b).total_cmp(&matters(a)));

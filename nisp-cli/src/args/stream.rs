@@ -6,7 +6,7 @@ use crate::options::{count, number, seconds};
 use clap::Args;
 use nisp_data::cloud::LengthUnit;
 
-use crate::args::{pair, value};
+use crate::options::{pair, value};
 
 /// What to follow, and how.
 #[derive(Args)]
@@ -50,7 +50,7 @@ pub(crate) struct StreamOptions {
 
 impl StreamOptions {
     /// An option that is given and says nothing of a record.
-    pub(super) fn about_clouds(&self) -> Option<&'static str> {
+    pub(crate) fn about_clouds(&self) -> Option<&'static str> {
         let given = [
             ("--frames", self.from.frames.is_some()),
             ("--follow", self.from.follow.is_some()),
