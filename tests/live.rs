@@ -96,9 +96,9 @@ fn a_linear_record_is_smoothed_as_it_is_solved() {
         assert!(found.lag >= 4.0 - 1e-9 || at >= 160, "row {at} waited for {}", found.lag);
         for (head, (value, deviation)) in found.heads.iter().enumerate() {
             let (exact, bar) = (whole[head].values[at], whole[head].deviations.as_ref().unwrap()[at]);
-            // Cells are half as wide in the whole, and its bars count other orders of smoothness that may be right too.
+            // Cells are half as wide in the whole, and its bars are those of all kinds of smoothness that may be right.
             assert!((value - exact).abs() < 0.25 * bar, "row {at}: {value} beside {exact} +- {bar}");
-            assert!((0.7..1.1).contains(&(deviation / bar)), "row {at}: {deviation} beside {bar}");
+            assert!((0.7..1.25).contains(&(deviation / bar)), "row {at}: {deviation} beside {bar}");
         }
     }
 }
