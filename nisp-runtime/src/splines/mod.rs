@@ -288,7 +288,10 @@ impl Place {
         let along =
             [false, true].map(|time| most(&mut self.tried.iter().filter(|tried| KINDS[tried.kind].stretched == time)));
         // Of a time that has not been tried nothing is known.
-        self.kinds.retain(|&kind| !(along[usize::from(KINDS[kind].stretched)] < best - NEAR));
+        self.kinds.retain(|&kind| {
+            let own = along[usize::from(KINDS[kind].stretched)];
+            own.is_nan() || own >= best - NEAR
+        });
     }
 
     /// The kind with the largest evidence.

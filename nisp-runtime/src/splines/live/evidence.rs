@@ -91,8 +91,8 @@ fn sigma(solver: &Solver<'_>, state: &State) -> Vec<Vec<f64>> {
     let of = |(at, group): (usize, &crate::schema::Group)| {
         let mut sigma = vec![1.0; group.rows];
         for (number, term) in group.terms.iter().enumerate() {
-            for row in term.first..term.first + term.rows {
-                sigma[row] = solver.sigma(state, at, number, row);
+            for (row, sigma) in sigma.iter_mut().enumerate().skip(term.first).take(term.rows) {
+                *sigma = solver.sigma(state, at, number, row);
             }
         }
         sigma
