@@ -74,7 +74,7 @@ pub enum Right<'a, E: Element> {
 pub enum Write {
     /// They are replaced.
     Set,
-    /// The same, from sums of few products where the type has few bits ([`Real::SUMMED`]): some per cent slower, and rounding
+    /// The same, from sums of few products where the type has few bits ([`SUMMED`](crate::real::Real::SUMMED)): some per cent slower, and rounding
     /// takes a fraction.
     SetFromShortSums,
     /// The product is added to them.

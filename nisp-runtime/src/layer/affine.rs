@@ -19,7 +19,7 @@ pub struct Affine<'a, E> {
     pub bias: &'a [E],
     /// Network coordinates, `[point][coordinate]`.
     pub coordinates: &'a [E],
-    /// Output (input where layers [take values](crate::kernel::Layers::takes_values)): `tanh`, `[point][unit]`.
+    /// Output (input where layers [take values](crate::layer::Layers::takes_values)): `tanh`, `[point][unit]`.
     pub value: &'a mut [E],
     /// Output (input likewise): slope of `tanh`, `[point][unit]`.
     pub slope: &'a mut [E],

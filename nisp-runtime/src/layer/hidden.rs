@@ -15,7 +15,7 @@ pub struct Layer<'a, E> {
     /// Shape of the tile.
     pub shape: Shape,
     /// Channels of the activation's argument; row 0 is replaced by `tanh`, or has been where layers
-    /// [take values](crate::kernel::Layers::takes_values).
+    /// [take values](crate::layer::Layers::takes_values).
     pub argument: &'a mut [E],
     /// Biases, added to the argument's value.
     pub bias: &'a [E],
