@@ -97,7 +97,7 @@ fn a_linear_record_is_smoothed_as_it_is_solved() {
         for (head, (value, deviation)) in found.heads.iter().enumerate() {
             let (exact, bar) = (whole[head].values[at], whole[head].deviations.as_ref().unwrap()[at]);
             // Cells are half as wide in the whole, and its bars are those of all kinds of smoothness that may be right.
-            assert!((value - exact).abs() < 0.25 * bar, "row {at}: {value} beside {exact} +- {bar}");
+            assert!((value - exact).abs() < 0.35 * bar, "row {at}: {value} beside {exact} +- {bar}");
             assert!((0.7..1.25).contains(&(deviation / bar)), "row {at}: {deviation} beside {bar}");
         }
     }
