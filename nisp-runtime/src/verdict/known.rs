@@ -29,10 +29,10 @@ pub(super) fn check(bound: &Bound, answer: &Answer) -> Option<Check> {
     // What gains half as much may be meant as well.
     let others = others.iter().filter(|other| matters(other) > 0.5 * matters(first));
     let others: Vec<String> = others.take(3).map(|other| said(bound, answer, other)).collect();
-    let or = if others.is_empty() { String::new() } else { format!(", or with {}", others.join(", or ")) };
+    let or = if others.is_empty() { String::new() } else { format!(", or {}", others.join(", or ")) };
     let message = format!(
-        "the data fit clearly better with {}{or}: {:.0} in the logarithm of the probability; check what is given here, since the \
-         source takes over what is wrong with it",
+        "with {}{or} the answer would be likelier by {:.0} in the logarithm of its probability; where that is much, check what is \
+         given: the source takes over what is wrong with it",
         said(bound, answer, first),
         first.gain
     );
@@ -59,8 +59,8 @@ fn said(bound: &Bound, answer: &Answer, score: &Score) -> String {
         Known::Scalar(slot) => {
             let scalar = &schema.scalars[slot];
             let now = answer.scalars[slot] * bound.system.outward(&scalar.unit);
-            let text = scalar.unit.text;
-            format!("`{}` about {:.3e} {text} instead of {now:.3e}", scalar.name, now * (1.0 + score.change))
+            let unit = if scalar.unit.text.is_empty() { String::new() } else { format!(" {}", scalar.unit.text) };
+            format!("`{}` about {:.3e}{unit} instead of {now:.3e}{unit}", scalar.name, now * (1.0 + score.change))
         }
         Known::Place { cloud, axis: at } => {
             let (name, unit) = term(cloud);
