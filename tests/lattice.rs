@@ -5,9 +5,7 @@ use std::f64::consts::PI;
 use std::time::Duration;
 
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Carrier, Points, Problem, SavedAnswer, SceneRef, Settings, Solution, recover, resume, scene};
-use rand::rngs::StdRng;
-use rand::{RngExt, SeedableRng};
+use nisp::{Carrier, Problem, SavedAnswer, SceneRef, Settings, Solution, recover, resume, scene};
 
 nisp::pde! {
     /// A conductivity that varies over a square.
@@ -68,15 +66,23 @@ fn pairs(points: &[f64]) -> impl Iterator<Item = [f64; 2]> {
     points.as_chunks::<2>().0.iter().copied()
 }
 
+/// Normal numbers, about: sums of twelve uniform ones.
+fn normals(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    let mut uniform = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+}
+
 fn conductivity([x, y]: [f64; 2]) -> f64 {
     1.0 + 0.5 * (2.0 * x).sin() * y
 }
 
 /// The square with a field that is measured with noise; `turn` is what the equation takes for the field's.
 fn conduction(scene: SceneRef, noise: f64, turn: f64) -> Problem {
-    let mut random = StdRng::seed_from_u64(5);
-    // Twelve uniform numbers have a variance of one.
-    let mut normal = || (0..12).map(|_| random.random::<f64>()).sum::<f64>() - 6.0;
+    let mut normal = normals(5);
     let samples = grid([24, 24], [1.0, 1.0], true);
     let field = pairs(&samples).map(|[x, y]| x * x + x * y + y.cos() + noise * normal()).collect();
     let edge = (0..25).map(|i| f64::from(i) / 24.0).flat_map(|s| [s, 0.0, s, 1.0, 0.0, s, 1.0, s]);
