@@ -4,7 +4,7 @@ coordinates: x, t: time;
 fields: a, b;
 parameters: kf = 0.05, D = 1;
 domains: layer = 0 .. 1 times 0 .. 10;
-on inside in layer {
+on inside in layer with 3000 points {
     first: d(a, t) - 1e-3 * D * d(a, x, 2) == -kf * a * b^2;
     second: d(b, t) - 1e-3 * D * d(b, x, 2) == -2 * kf * a * b^2;
 }

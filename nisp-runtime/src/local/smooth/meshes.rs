@@ -7,9 +7,10 @@ use crate::local::refuse::HIGHEST_DEGREE;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
-/// Degrees of splines above the order of their highest derivative: what is left of an equation falls with the fourth power of a
-/// cell.
+/// Degrees of splines above the order of their highest derivative, at least, and over two coordinates: what is left of an equation
+/// falls with the fourth power of a cell, or with the sixth. Over more coordinates too many functions would meet on a cell.
 const SMOOTH: usize = 3;
+const SMOOTHER: usize = 5;
 /// Points of an equation to an unknown of a field, at least: as many more as let no pattern of coefficients escape.
 const POINTS: f64 = 2.0;
 /// Functions that hardly any point sees, as a share of what the others see, are left out.
@@ -21,7 +22,8 @@ const MOST_CELLS: usize = 40;
 pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
     let jets = schema.groups.iter().flat_map(|group| group.jets).filter(|jet| jet.head == head);
     let order = jets.map(|jet| jet.degree.iter().map(|&n| usize::from(n)).sum::<usize>()).max().unwrap_or(0);
-    Some(order + SMOOTH).filter(|degree| *degree <= HIGHEST_DEGREE)
+    let smoother = order + if schema.coordinates.len() == 2 { SMOOTHER } else { SMOOTH };
+    (order + SMOOTH <= HIGHEST_DEGREE).then(|| smoother.min(HIGHEST_DEGREE))
 }
 
 /// The lattices of all heads, over cells as fine as the points of the equations can tell; and how many cells these are along
