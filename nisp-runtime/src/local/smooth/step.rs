@@ -1,5 +1,7 @@
 //! Gauss-Newton steps: the normal equations about a state, where they lead, and what their rows say of noise and roughness.
 
+use std::ops::Range;
+
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -202,31 +204,27 @@ impl Solver<'_> {
             let terms = self.groups[*at].schema.terms.iter().enumerate();
             for (number, term) in terms.filter(|(_, term)| term.kind == TermKind::Observation) {
                 let tally = &mut tallies[self.classes[*at][number]];
-                let mut probes = vec![(vec![0.0; step.len()], vec![0.0; shared.len()]); PROBES];
-                for (p, block) in blocks.iter().enumerate() {
-                    for row in (term.first..term.first + term.rows).filter(|&row| counts[row][p]) {
-                        tally.count += 1.0;
-                        tally.squares += block.after(row, step, shared).powi(2);
-                        probes.iter_mut().for_each(|(by, below)| block.add_signed(row, random.random(), by, below));
-                    }
-                }
-                for (by, below) in &probes {
-                    let (x, y) = factor.solve(by, below)?;
-                    tally.used += (vector::dot(by, &x) + vector::dot(below, &y)) / PROBES as f64;
-                }
+                let rows = blocks.iter().enumerate().flat_map(|(p, block)| {
+                    let own = (term.first..term.first + term.rows).filter(|&row| counts[row][p]);
+                    own.map(|row| (block, row)).collect::<Vec<_>>()
+                });
+                let rows: Vec<(&Block, usize)> = rows.collect();
+                tally.count = rows.len() as f64;
+                tally.squares = rows.iter().map(|(block, row)| block.after(*row, step, shared).powi(2)).sum();
+                tally.used = used(&rows, factor, (step.len(), shared.len()), &mut random)?;
             }
         }
         for head in self.judged(state.phase) {
-            let range = self.heads.first[head]..self.heads.first[head + 1];
-            let covariance = factor.covariance(range.clone())?;
+            let blocks = self.prior_rows(state, head);
+            let rows: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
             let tally = &mut tallies[self.roughness[head]];
             tally.count = self.priors[head].rank as f64;
-            for block in self.prior_rows(state, head) {
-                tally.squares += block.after(0, step, shared).powi(2);
-                let terms = || block.dofs.iter().map(|&at| at as usize - range.start).zip(&block.slopes);
-                tally.used +=
-                    terms().map(|(i, a)| terms().map(|(j, b)| a * b * covariance[(i, j)]).sum::<f64>()).sum::<f64>();
-            }
+            tally.squares = blocks.iter().map(|block| block.after(0, step, shared).powi(2)).sum();
+            tally.used = match state.phase {
+                // What data leave of a field is no small difference.
+                Phase::Regress => used(&rows, factor, (step.len(), shared.len()), &mut random)?,
+                Phase::Solve => used_exactly(&blocks, factor, self.heads.first[head]..self.heads.first[head + 1])?,
+            };
         }
         Some(tallies)
     }
@@ -234,4 +232,27 @@ impl Solver<'_> {
 
 fn is_any(counts: &[Vec<bool>]) -> bool {
     counts.iter().any(|row| row.contains(&true))
+}
+
+/// How many unknowns rows settle, in the mean over random combinations of them (Hutchinson); of so many coefficients and learned
+/// scalars.
+fn used(rows: &[(&Block, usize)], factor: &Factor, lens: (usize, usize), random: &mut StdRng) -> Option<f64> {
+    let mut used = 0.0;
+    for _ in 0..PROBES {
+        let (mut by, mut below) = (vec![0.0; lens.0], vec![0.0; lens.1]);
+        rows.iter().for_each(|(block, row)| block.add_signed(*row, random.random(), &mut by, &mut below));
+        let (x, y) = factor.solve(&by, &below)?;
+        used += (vector::dot(&by, &x) + vector::dot(&below, &y)) / PROBES as f64;
+    }
+    Some(used)
+}
+
+/// The same of blocks of a row over some neighbouring coefficients, from the covariance of these.
+fn used_exactly(blocks: &[Block], factor: &Factor, range: Range<usize>) -> Option<f64> {
+    let covariance = factor.covariance(range.clone())?;
+    let of = |block: &Block| {
+        let terms = || block.dofs.iter().map(|&at| at as usize - range.start).zip(&block.slopes);
+        terms().map(|(i, a)| terms().map(|(j, b)| a * b * covariance[(i, j)]).sum::<f64>()).sum::<f64>()
+    };
+    Some(blocks.iter().map(of).sum())
 }
