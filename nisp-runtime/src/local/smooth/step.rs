@@ -68,8 +68,8 @@ impl Solver<'_> {
         let mut blocks = group.blocks(&self.heads, evaluated, slopes);
         for (p, block) in blocks.iter_mut().enumerate() {
             let (width, learned) = (block.dofs.len(), slopes.len());
-            for row in 0..block.misfits.len() {
-                if !counts[row][p] {
+            for (row, counts) in counts.iter().enumerate() {
+                if !counts[p] {
                     block.misfits[row] = 0.0;
                     block.slopes[row * width..][..width].fill(0.0);
                     block.by_learned[row * learned..][..learned].fill(0.0);
@@ -107,8 +107,8 @@ impl Solver<'_> {
             }
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
             for (term, loss) in group.schema.terms.iter().zip(&self.bound.losses[at]) {
-                for row in term.first..term.first + term.rows {
-                    let there = (0..group.sites.count).filter(|&p| counts[row][p]);
+                for (row, counts) in counts.iter().enumerate().skip(term.first).take(term.rows) {
+                    let there = (0..group.sites.count).filter(|&p| counts[p]);
                     sum += there.map(|p| loss.rho(found.row(row, p) / group.sigma[row])).sum::<f64>();
                 }
             }
