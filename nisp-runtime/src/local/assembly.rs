@@ -11,8 +11,10 @@ use super::phase::Phase;
 use super::place::State;
 use super::prior::Sparse;
 use super::solver::Solver;
+use super::unseen::Unseen;
 use super::{Local, LocalError};
 use crate::problem::Bound;
+use crate::solve::driver::{Warning, WarningKind};
 use crate::solve::fault::Fault;
 
 /// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
@@ -115,11 +117,33 @@ impl Solver<'_> {
             if regress {
                 continue;
             }
+            // The answer is what the prior says where nothing was seen; its deviations are not.
+            let unseen = self.normal.draws.as_ref().and_then(|_| self.unseen(head));
             let Some(sparse) = sparse(self.bound, self.settings, &self.heads, head, noise / self.cell) else {
                 continue;
             };
+            let sparse = Sparse { unseen, ..sparse };
             sparse.add(&mut self.normal, theta, concave);
         }
+    }
+
+    /// Where no cloud saw a source's head.
+    fn unseen(&self, head: usize) -> Option<Unseen> {
+        Unseen::of(&self.surfaces, &self.heads.lattices[head])
+    }
+
+    /// Says which sources act where no cloud saw the surface.
+    pub(super) fn rests_on_the_prior(&self) -> Vec<Warning> {
+        let heads = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| head.source);
+        let unseen = heads.filter_map(|(at, head)| Some((head.name, self.unseen(at)?.share())));
+        let said = |(name, share): (&str, f64)| {
+            format!(
+                "clouds do not show {:.0} % of where `{name}` acts; it is what the prior says there, as little as can be, and its \
+                 deviations say how much it may be",
+                100.0 * share
+            )
+        };
+        unseen.map(|found| Warning { kind: WarningKind::Settled, message: said(found) }).collect()
     }
 
     /// What priors add to the loss, but for a constant.
@@ -151,7 +175,7 @@ impl Solver<'_> {
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state. The patch is taken as it is: what the prior
-    /// holds at zero stays there.
+    /// holds at zero stays there, where it was seen.
     pub(super) fn deviations(&mut self, state: &State) -> Option<Deviations> {
         self.find_feet(&state.theta, &state.learned);
         self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
@@ -168,7 +192,16 @@ fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, no
     let prior = settings.patches.filter(|_| declared.source)?;
     let sign = heads.bound[head].map_or(1.0, |(sign, _)| sign);
     let level = prior.level * bound.system.inward(&declared.unit) / heads.scale[head] * sign;
-    Some(Sparse { heads, head, prior, level, finer: settings.finer, dimensions: settings.source_dimensions, noise })
+    Some(Sparse {
+        heads,
+        head,
+        prior,
+        level,
+        finer: settings.finer,
+        dimensions: settings.source_dimensions,
+        noise,
+        unseen: None,
+    })
 }
 
 /// The loss of a block's rows; `fault` says of a row that it is not finite.
