@@ -127,8 +127,11 @@ impl Solver<'_> {
         }
     }
 
-    /// Where no cloud saw a source's head.
+    /// Where no cloud saw a source's head. One on a face of a body is told by the shape of the rest.
     fn unseen(&self, head: usize) -> Option<Unseen> {
+        if self.settings.source_dimensions < self.heads.lattices[head].dimensions() {
+            return None;
+        }
         Unseen::of(&self.surfaces, &self.heads.lattices[head])
     }
 
