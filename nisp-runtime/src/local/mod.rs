@@ -35,6 +35,7 @@ mod solver;
 mod sorted;
 mod surface;
 mod testing;
+mod unseen;
 
 use std::time::{Duration, Instant};
 
@@ -159,6 +160,7 @@ pub(crate) fn solve(
     if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
         end.warnings.extend(solver.unresolved(&end.state, settings.cells));
     }
+    end.warnings.extend(solver.rests_on_the_prior());
     let mut answer = solver.answer(&end.state);
     // An answer that nothing says against is asked what it rests on.
     if solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest)) {

@@ -180,6 +180,15 @@ impl Normal {
         }
     }
 
+    /// How stiff the rows hold a coefficient of a range: the median of those that they see, zero if they see none.
+    pub(super) fn typical(&self, range: Range<usize>) -> f64 {
+        // A column of the lower triangle begins with its diagonal.
+        let starts = self.pattern.col_ptr();
+        let mut seen: Vec<f64> = range.map(|at| self.values[starts[at]]).filter(|&value| value > 0.0).collect();
+        seen.sort_by(f64::total_cmp);
+        seen.get(seen.len() / 2).copied().unwrap_or(0.0)
+    }
+
     /// Adds to an entry, `row >= column`.
     fn add_entry(&mut self, row: usize, column: usize, value: f64) {
         let (starts, indices) = (self.pattern.col_ptr(), self.pattern.row_idx());
