@@ -55,6 +55,18 @@ impl Facts {
         rows.chunks_exact(self.stride).map(|row| row[..self.points].to_vec()).collect()
     }
 
+    /// Sums of the magnitudes of what the rows at all points add up, `[row][point]`.
+    pub(crate) fn magnitudes(
+        &self,
+        programs: &dyn Programs<f64>,
+        group: &schema::Group,
+        scalars: &[f64],
+    ) -> Vec<Vec<f64>> {
+        let mut rows = vec![0.0; group.rows * self.stride];
+        programs.magnitude(self.inputs(&self.jets, &self.columns, scalars, &[]), &mut rows);
+        rows.chunks_exact(self.stride).map(|row| row[..self.points].to_vec()).collect()
+    }
+
     /// Derivatives of a row by the jets, `[jet][point]`.
     pub(crate) fn slopes(
         &self,

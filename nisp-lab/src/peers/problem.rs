@@ -39,7 +39,7 @@ macro_rules! problem {
 }
 
 /// All of them.
-pub(super) fn problems() -> [Problem; 8] {
+pub(super) fn problems() -> [Problem; 10] {
     [
         problem!("elliptic", elliptic),
         problem!("rate", rate),
@@ -47,7 +47,9 @@ pub(super) fn problems() -> [Problem; 8] {
         problem!("diffusion", diffusion),
         problem!("lorenz", |_| lorenz(|_| 0.0)),
         problem!("forced_lorenz", |_| lorenz(|t| 10.0 * (2.0 * PI * t).sin())),
+        problem!("reaction", reaction),
         problem!("poisson", poisson),
+        problem!("wrong_poisson", poisson),
         problem!("heat", heat),
     ]
 }
@@ -109,6 +111,41 @@ fn lorenz(force: fn(f64) -> f64) -> Data {
     let rows = times.iter().zip(states).map(|(t, [x, y, z])| vec![*t, x, y, z]).collect();
     let truth = Truth::Parameters(["C1", "C2", "C3"].into_iter().zip(coefficients).collect());
     Data { columns: &["t", "x", "y", "z"], rows, truth }
+}
+
+/// Cells of the layer for its differences, and how many of them to a measurement.
+const CELLS: usize = 400;
+const EVERY: usize = 2;
+
+/// DeepXDE, reaction_inverse: second differences along the layer, both concentrations at 201 x 201 places and times.
+fn reaction(_: &mut Random) -> Data {
+    let [rate, diffusivity] = [0.1, 2.0];
+    let width = 1.0 / CELLS as f64;
+    let at = |cell: usize| cell as f64 * width;
+    // Of both substances what is between the ends, where they are held.
+    const INSIDE: usize = CELLS - 1;
+    let whole = |state: &[f64; 2 * INSIDE], substance: usize, cell: usize| match cell {
+        0 | CELLS => 1.0 - at(cell),
+        _ => state[substance * INSIDE + cell - 1],
+    };
+    let slope = |_: f64, state: [f64; 2 * INSIDE]| {
+        std::array::from_fn(|index| {
+            let (substance, cell) = (index / INSIDE, index % INSIDE + 1);
+            let [left, own, right] = [cell - 1, cell, cell + 1].map(|cell| whole(&state, substance, cell));
+            let reacts = rate * state[cell - 1] * state[INSIDE + cell - 1].powi(2);
+            1e-3 * diffusivity * (left - 2.0 * own + right) / (width * width) - (1 + substance) as f64 * reacts
+        })
+    };
+    let start = std::array::from_fn(|index| (-20.0 * at(index % INSIDE + 1)).exp());
+    let times = line(0.0, 10.0, 201);
+    let states = integrate(slope, start, &times);
+    let row = |(time, cell): (usize, usize)| {
+        let own = |substance| if time == 0 { (-20.0 * at(cell)).exp() } else { whole(&states[time], substance, cell) };
+        vec![at(cell), times[time], own(0), own(1)]
+    };
+    let cells = || (0..=CELLS).step_by(EVERY);
+    let rows = (0..times.len()).flat_map(|time| cells().map(move |cell| (time, cell))).map(row).collect();
+    Data { columns: &["x", "t", "a", "b"], rows, truth: Truth::Parameters(vec![("kf", rate), ("D", diffusivity)]) }
 }
 
 /// PINNacle, PoissonInv, with the source that its solution has.

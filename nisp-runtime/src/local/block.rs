@@ -106,6 +106,24 @@ impl Block {
         }
     }
 
+    /// A row after a step of the coefficients and of the learned scalars.
+    pub(super) fn after(&self, row: usize, step: &[f64], shared: &[f64]) -> f64 {
+        let slopes = &self.slopes[row * self.dofs.len()..];
+        let along: f64 = self.kept().map(|(at, dof)| slopes[at] * step[dof as usize]).sum();
+        let beside: f64 = self.by_learned[row * shared.len()..].iter().zip(shared).map(|(a, x)| a * x).sum();
+        self.misfits[row] + along + beside
+    }
+
+    /// Adds a row's derivatives, with the other sign if it is `negative`, to a vector of all coefficients and one of the learned
+    /// scalars.
+    pub(super) fn add_signed(&self, row: usize, negative: bool, by: &mut [f64], below: &mut [f64]) {
+        let sign = if negative { -1.0 } else { 1.0 };
+        let slopes = &self.slopes[row * self.dofs.len()..];
+        self.kept().for_each(|(at, dof)| by[dof as usize] += sign * slopes[at]);
+        let by_learned = &self.by_learned[row * below.len()..];
+        below.iter_mut().zip(by_learned).for_each(|(sum, slope)| *sum += sign * slope);
+    }
+
     /// Numbers of the coefficients that are kept.
     pub(super) fn kept(&self) -> impl Iterator<Item = (usize, u32)> + '_ {
         self.dofs.iter().enumerate().filter(|&(_, &dof)| dof != NONE).map(|(at, &dof)| (at, dof))

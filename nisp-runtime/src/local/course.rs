@@ -74,7 +74,7 @@ impl End {
 impl Solver<'_> {
     /// The state of another lattice on this one: its values at all points, by least squares.
     pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<Place, LocalError> {
-        let inputs = self.heads.lattices[0].dimensions();
+        let inputs = self.heads.lattices[0].inputs();
         let learned = state.learned.len();
         self.normal.clear();
         let mut rows = Vec::new();

@@ -7,6 +7,7 @@ use super::heads::Heads;
 use super::lattice::Exponents;
 use super::rows::Evaluated;
 use super::sites::Sites;
+use crate::facts::Facts;
 use crate::residual::Points;
 use crate::simd::Isa;
 
@@ -101,6 +102,18 @@ impl Group {
             }
         }
         Evaluated { stride, rows, bars }
+    }
+
+    /// What the heads say at the group's own points.
+    pub(super) fn facts(&self, heads: &Heads, theta: &[f64]) -> Facts {
+        Facts {
+            points: self.sites.count,
+            stride: self.sites.stride,
+            jets: self.jets_at(&self.sites, heads, theta).0,
+            coordinates: self.sites.coordinates.clone(),
+            columns: self.sites.columns.clone(),
+            means: self.means(),
+        }
     }
 
     /// Rows of the group at its own points, and their derivatives if `slopes`.

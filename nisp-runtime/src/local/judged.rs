@@ -2,7 +2,7 @@
 
 use super::place::State;
 use super::solver::Solver;
-use crate::facts::{Answer, CloudFacts, Facts};
+use crate::facts::{Answer, CloudFacts};
 
 /// Distances to a cloud that splines do not follow, as a share of a cell.
 const UNRESOLVED: f64 = 0.03;
@@ -11,17 +11,7 @@ impl Solver<'_> {
     /// What a state says.
     pub(super) fn answer(&mut self, state: &State) -> Answer {
         self.find_feet(&state.theta, &state.learned);
-        let facts = self.groups.iter().map(|group| {
-            let sites = &group.sites;
-            Facts {
-                points: sites.count,
-                stride: sites.stride,
-                jets: group.jets_at(sites, &self.heads, &state.theta).0,
-                coordinates: sites.coordinates.clone(),
-                columns: sites.columns.clone(),
-                means: group.means(),
-            }
-        });
+        let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta));
         let clouds = self.surfaces.iter().map(|surface| CloudFacts {
             group: surface.group,
             term: surface.term,

@@ -4,6 +4,7 @@ use super::draws::Deviations;
 use super::group::Group;
 use super::heads::{Heads, limits};
 use super::lattice::{Exponents, Lattice, MOST_COORDINATES};
+use super::meshes::axes;
 use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;
 use crate::loss::Loss;
@@ -39,7 +40,7 @@ impl KeptLattices {
 
     /// Values of a head at points in the engine's units, flat.
     pub(crate) fn evaluate(&self, head: usize, points: &[f64]) -> Vec<f64> {
-        let inputs = self.heads.lattices[head].dimensions();
+        let inputs = self.heads.lattices[head].inputs();
         points.chunks_exact(inputs).map(|point| self.heads.value(head, point, &self.theta)).collect()
     }
 
@@ -53,7 +54,7 @@ impl KeptLattices {
     /// A square root `X` of the covariance `X X^T` of a head's values at points in the engine's units, flat: a row for every
     /// point, a column for every draw.
     pub(crate) fn spread(&self, head: usize, points: &[f64]) -> Vec<f64> {
-        let inputs = self.heads.lattices[head].dimensions();
+        let inputs = self.heads.lattices[head].inputs();
         let draws = &self.draws.coefficients;
         let share = (draws.len() as f64).sqrt().recip();
         let row = |point| self.heads.values(head, point, draws).map(|x| share * x);
@@ -93,7 +94,7 @@ impl KeptLattices {
             let group = Group::new((schema, &losses), kernel, &self.heads, (points, &[]), Vec::new(), base);
             let found = group.evaluate(&self.heads, &self.theta, &scalars, has_bars);
             for row in heads..schema.rows {
-                for (p, point) in points.chunks_exact(self.heads.lattices[0].dimensions()).enumerate() {
+                for (p, point) in points.chunks_exact(self.heads.lattices[0].inputs()).enumerate() {
                     values.push(found.row(row, p));
                     if has_bars {
                         let slope = |bar: usize| found.bar(row, bar, p);
@@ -132,18 +133,20 @@ impl KeptLattices {
         let (inputs, count) = (schema.coordinates.len(), schema.heads.len());
         let lattice = |head: usize| {
             let name = |part: &str| format!("head {head} {part}");
-            let (low, spacing) = (state.sized(&name("low"), inputs)?, state.sized(&name("spacing"), inputs)?);
+            let axes = axes(schema, head);
+            let [low, spacing] = ["low", "spacing"].map(|part| state.sized(&name(part), axes.len()));
+            let (low, spacing) = (low?, spacing?);
             let (cells, full) = (state.indices(&name("cells"))?, state.indices(&name("functions"))?);
             let degree = state.counter(&name("degree"))? as usize;
             let wrong = || Fault::state(name("lattice"));
             let is_sound =
-                cells.len() == inputs && inputs <= MOST_COORDINATES && degree <= super::refuse::HIGHEST_DEGREE;
+                cells.len() == axes.len() && inputs <= MOST_COORDINATES && degree <= super::refuse::HIGHEST_DEGREE;
             let size = cells.iter().try_fold(1_usize, |size, n| size.checked_mul(n + degree));
             let is_small = size.is_some_and(|size| size <= MOST_FUNCTIONS);
             if !is_sound || !is_small || cells.contains(&0) {
                 return Err(wrong());
             }
-            Lattice::new(degree, low, spacing, cells).keeping(full).ok_or_else(wrong)
+            Lattice::new(degree, low, spacing, cells).spanning(axes, inputs).keeping(full).ok_or_else(wrong)
         };
         let lattices = (0..count).map(lattice).collect::<Result<Vec<_>, Fault>>()?;
         let (offset, scale) = (state.sized("offset", count)?, state.sized("scale", count)?);

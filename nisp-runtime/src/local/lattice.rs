@@ -15,6 +15,10 @@ pub(super) const NONE: u32 = u32::MAX;
 #[derive(Clone, Debug)]
 pub(super) struct Lattice {
     pub(super) degree: usize,
+    /// The coordinates that it spans; functions do not depend on the others.
+    axes: Vec<usize>,
+    /// Coordinates of a point.
+    inputs: usize,
     low: Vec<f64>,
     spacing: Vec<f64>,
     pub(super) cells: Vec<usize>,
@@ -42,7 +46,30 @@ impl Lattice {
     /// A lattice over the box from `low`, of `cells` cells of size `spacing` along each coordinate; all functions kept.
     pub(super) fn new(degree: usize, low: Vec<f64>, spacing: Vec<f64>, cells: Vec<usize>) -> Self {
         let all: usize = cells.iter().map(|n| n + degree).product();
-        Self { degree, low, spacing, cells, kept: (0..all as u32).collect(), full: (0..all).collect() }
+        let (axes, inputs) = ((0..cells.len()).collect(), cells.len());
+        Self { degree, axes, inputs, low, spacing, cells, kept: (0..all as u32).collect(), full: (0..all).collect() }
+    }
+
+    /// The same over some of the coordinates only; all functions kept.
+    pub(super) fn along(&self, axes: Vec<usize>) -> Self {
+        let of = |values: &[f64]| axes.iter().map(|&axis| values[axis]).collect();
+        let cells = axes.iter().map(|&axis| self.cells[axis]).collect();
+        Self::new(self.degree, of(&self.low), of(&self.spacing), cells).spanning(axes, self.inputs)
+    }
+
+    /// The same over these coordinates of points that have so many.
+    pub(super) fn spanning(self, axes: Vec<usize>, inputs: usize) -> Self {
+        Self { axes, inputs, ..self }
+    }
+
+    /// The coordinates that it spans.
+    pub(super) fn axes(&self) -> &[usize] {
+        &self.axes
+    }
+
+    /// Coordinates of a point.
+    pub(super) fn inputs(&self) -> usize {
+        self.inputs
     }
 
     /// A lattice of which the functions of these full numbers are kept, which must rise; nothing if there are no such functions.
@@ -126,8 +153,8 @@ impl Lattice {
     /// Where a point is; points outside count to the nearest cell.
     pub(super) fn place(&self, point: &[f64]) -> Place {
         let mut place = Place::default();
-        for (axis, x) in point.iter().enumerate().take(self.dimensions()) {
-            let along = (x - self.low[axis]) / self.spacing[axis];
+        for (axis, &coordinate) in self.axes.iter().enumerate() {
+            let along = (point[coordinate] - self.low[axis]) / self.spacing[axis];
             let cell = along.floor().clamp(0.0, (self.cells[axis] - 1) as f64);
             place.cell[axis] = cell as usize;
             place.within[axis] = along - cell;
@@ -198,8 +225,8 @@ impl Lattice {
         let mut line = [0.0; 16];
         out[0] = 1.0;
         let mut filled = 1;
-        for (axis, &order) in exponents.iter().enumerate().take(self.dimensions()) {
-            let order = usize::from(order);
+        for (axis, &coordinate) in self.axes.iter().enumerate() {
+            let order = usize::from(exponents[coordinate]);
             on_cell(self.degree, order, place.within[axis], &mut line);
             let scale = self.spacing[axis].powi(-(order as i32));
             for j in (0..count).rev() {

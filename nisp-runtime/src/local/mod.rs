@@ -30,6 +30,7 @@ mod resolved;
 mod rows;
 mod scores;
 mod sites;
+pub(crate) mod smooth;
 mod solver;
 mod sorted;
 mod surface;

@@ -35,6 +35,8 @@ pub(super) struct Normal {
 /// The factorised normal matrix.
 pub(super) struct Factor {
     factor: Llt<usize, f64>,
+    /// Number of coefficients.
+    len: usize,
     /// `H^-1` times the border.
     solved: Vec<Vec<f64>>,
     border: Vec<Vec<f64>>,
@@ -225,7 +227,14 @@ impl Normal {
         let schur = DMatrix::from_fn(self.border.len(), self.border.len(), |i, j| {
             self.corner[(i, j)] - dot(&self.border[i], &solved[j])
         });
-        Some(Factor { factor, solved, border: self.border.clone(), schur, learned: self.learned })
+        Some(Factor {
+            factor,
+            len: self.gradient.len(),
+            solved,
+            border: self.border.clone(),
+            schur,
+            learned: self.learned,
+        })
     }
 
     /// Of the matrix, or where rounding spoils its definiteness, with some more on the diagonal.
@@ -298,6 +307,21 @@ impl Factor {
     /// `vector . H^-1 vector`, of the coefficients alone.
     pub(super) fn inner(&self, vector: &[f64]) -> f64 {
         solve(&self.factor, vector).iter().zip(vector).map(|(a, b)| a * b).sum()
+    }
+
+    /// Covariance of neighbouring coefficients, a column for each.
+    pub(super) fn covariance(&self, range: Range<usize>) -> Option<DMatrix<f64>> {
+        let (first, count) = (range.start, range.len());
+        let units = Mat::from_fn(self.len, count, |row, column| f64::from(u8::from(row == first + column)));
+        let solutions = self.factor.solve(units);
+        let none = vec![0.0; self.border.len()];
+        let mut covariance = DMatrix::zeros(count, count);
+        for column in 0..count {
+            let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
+            self.share(&mut own, &none)?;
+            covariance.column_mut(column).copy_from_slice(&own[range.clone()]);
+        }
+        Some(covariance)
     }
 
     /// Variance of a learned scalar's parameter.

@@ -21,10 +21,11 @@ pub(super) struct Sites {
 #[derive(Default)]
 pub(super) struct Splines {
     pub(super) places: Vec<Place>,
-    /// Derivatives of the splines along each coordinate, `[point][coordinate][order][spline]`: those of the products of splines
+    /// Derivatives of the splines along each of their coordinates, `[point][coordinate][order][spline]`: those of the products of splines
     /// are products of these.
     lines: Vec<f64>,
-    dimensions: usize,
+    /// The coordinates that the splines go along.
+    axes: Vec<usize>,
     orders: usize,
     /// Splines along a coordinate that do not vanish on a cell.
     count: usize,
@@ -34,7 +35,7 @@ impl Sites {
     /// Points given flat, point by point, with columns `[column][point]`; `highest` has, by head, the highest derivative that
     /// is read, or nothing.
     pub(super) fn new(heads: &Heads, highest: &[Option<u8>], flat: &[f64], columns: &[Vec<f64>]) -> Self {
-        let inputs = heads.lattices[0].dimensions();
+        let inputs = heads.lattices[0].inputs();
         let count = flat.len() / inputs;
         let stride = count.next_multiple_of(LANES);
         let spread = |value: &dyn Fn(usize) -> f64| (0..stride).map(|p| value(p.min(count - 1))).collect::<Vec<_>>();
@@ -53,8 +54,9 @@ impl Sites {
 
 impl Splines {
     fn new(lattice: &Lattice, highest: usize, flat: &[f64]) -> Self {
-        let (dimensions, orders, count) = (lattice.dimensions(), highest + 1, lattice.degree + 1);
-        let places: Vec<Place> = flat.chunks_exact(dimensions).map(|point| lattice.place(point)).collect();
+        let (axes, orders, count) = (lattice.axes().to_vec(), highest + 1, lattice.degree + 1);
+        let dimensions = axes.len();
+        let places: Vec<Place> = flat.chunks_exact(lattice.inputs()).map(|point| lattice.place(point)).collect();
         let mut lines = vec![0.0; places.len() * dimensions * orders * count];
         for (at, line) in lines.chunks_exact_mut(count).enumerate() {
             let (order, axis, p) = (at % orders, at / orders % dimensions, at / orders / dimensions);
@@ -62,12 +64,12 @@ impl Splines {
             let scale = lattice.spacing(axis).powi(-(order as i32));
             line.iter_mut().for_each(|value| *value *= scale);
         }
-        Self { places, lines, dimensions, orders, count }
+        Self { places, lines, axes, orders, count }
     }
 
     /// A derivative of the splines along a coordinate.
     fn line(&self, p: usize, axis: usize, order: u8) -> &[f64] {
-        let at = (p * self.dimensions + axis) * self.orders + usize::from(order);
+        let at = (p * self.axes.len() + axis) * self.orders + usize::from(order);
         &self.lines[at * self.count..][..self.count]
     }
 
@@ -76,14 +78,14 @@ impl Splines {
     pub(super) fn factors<'a>(&'a self, p: usize, exponents: &Exponents, across: &mut Vec<f64>) -> &'a [f64] {
         across.clear();
         across.push(1.0);
-        for (axis, &order) in exponents.iter().enumerate().take(self.dimensions).skip(1) {
+        for (axis, &coordinate) in self.axes.iter().enumerate().skip(1) {
             let filled = across.len();
-            let line = self.line(p, axis, order);
+            let line = self.line(p, axis, exponents[coordinate]);
             for &factor in &line[1..] {
                 (0..filled).for_each(|i| across.push(across[i] * factor));
             }
             across[..filled].iter_mut().for_each(|product| *product *= line[0]);
         }
-        self.line(p, 0, exponents[0])
+        self.line(p, 0, exponents[self.axes[0]])
     }
 }

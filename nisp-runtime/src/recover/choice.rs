@@ -2,11 +2,12 @@
 
 use super::carried;
 use super::network::Network;
+use super::on_lattice::OnLattice;
 use super::on_splines::OnSplines;
 use super::settings::{Carrier, Optimizer, Settings};
-use crate::local::Local;
+use crate::local::{Local, smooth};
 use crate::problem::Bound;
-use crate::schema::Scene;
+use crate::schema::{Scene, TermKind};
 use crate::solve::state::State;
 use crate::splines;
 
@@ -17,7 +18,10 @@ const MANY: usize = 5000;
 #[derive(Clone, Copy, PartialEq)]
 enum Chosen {
     Network,
+    /// Over one coordinate.
     Splines,
+    /// Splines over several coordinates.
+    Lattice,
     Local(Local),
 }
 
@@ -33,6 +37,7 @@ impl Attempt {
         let carrier: Box<dyn carried::Carrier> = match chosen {
             Chosen::Network => Box::new(Network),
             Chosen::Splines => Box::new(OnSplines),
+            Chosen::Lattice => Box::new(OnLattice),
             Chosen::Local(local) => Box::new(local),
         };
         Self { carrier, seed, why }
@@ -44,10 +49,11 @@ impl Attempt {
 pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>) -> (Attempt, Vec<Attempt>) {
     let seed = settings.seed;
     let (chosen, why) = of(bound, settings);
-    let saved = |state: &State| match (state.method == splines::METHOD, chosen) {
-        (true, _) => Chosen::Splines,
-        (false, Chosen::Splines) => Chosen::Network,
-        (false, chosen) => chosen,
+    let saved = |state: &State| match (state.method.as_str(), chosen) {
+        (splines::METHOD, _) => Chosen::Splines,
+        (smooth::METHOD, _) => Chosen::Lattice,
+        (_, Chosen::Splines | Chosen::Lattice) => Chosen::Network,
+        (_, chosen) => chosen,
     };
     if let Some(chosen) = from.map(saved) {
         return (Attempt::new(chosen, seed, why), Vec::new());
@@ -58,7 +64,7 @@ pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>)
     let can_splines = splines::refused(bound.problem.scene().schema).is_none();
     let others = match chosen {
         _ if !is_free => Vec::new(),
-        Chosen::Local(_) => Vec::new(),
+        Chosen::Local(_) | Chosen::Lattice => Vec::new(),
         Chosen::Splines if most_rows(bound) > MANY => Vec::new(),
         Chosen::Splines => vec![network(seed, "a network instead of splines")],
         Chosen::Network if can_splines => {
@@ -74,6 +80,7 @@ fn of(bound: &Bound, settings: &Settings) -> (Chosen, String) {
     let asked = |chosen| (chosen, "asked for".to_string());
     match settings.carrier {
         Carrier::Network => asked(Chosen::Network),
+        Carrier::Splines if bound.problem.scene().schema.coordinates.len() > 1 => asked(Chosen::Lattice),
         Carrier::Splines => asked(Chosen::Splines),
         Carrier::Local(local) => (Chosen::Local(local), "the scene has edges, which they know".into()),
         Carrier::Auto if settings.optimizer != Optimizer::Auto => {
@@ -94,11 +101,24 @@ fn most_rows(bound: &Bound) -> usize {
 fn by_data(bound: &Bound) -> (Chosen, String) {
     let schema = bound.problem.scene().schema;
     let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
+    if schema.coordinates.len() > 1 {
+        return match smooth::refused(schema) {
+            Some(what) => (Chosen::Network, format!("splines do not do {what}")),
+            None if !is_measured(schema) => (Chosen::Network, "nothing is measured".into()),
+            None => (Chosen::Lattice, format!("{} coordinates", schema.coordinates.len())),
+        };
+    }
     match (splines::refused(schema), differentiated) {
         (Some(what), _) => (Chosen::Network, format!("splines do not do {what}")),
         (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, so that some of it may be open")),
         (None, None) => (Chosen::Splines, "one coordinate".into()),
     }
+}
+
+/// True if an observation compares with data.
+fn is_measured(schema: &Scene) -> bool {
+    let mut terms = schema.groups.iter().flat_map(|group| group.terms);
+    terms.any(|term| term.kind == TermKind::Observation)
 }
 
 /// A source of which an equation reads a derivative.

@@ -5,7 +5,8 @@ use super::course::Course;
 use super::{Optimizer, RecoverError, Settings, Width, undetermined};
 use crate::carrier::Kept;
 use crate::facts::Answer;
-use crate::local::{self, Local, LocalSolution};
+use crate::local::{self, Local, LocalSolution, smooth};
+use crate::noise;
 use crate::problem::Bound;
 
 impl Carrier for Local {
@@ -15,19 +16,43 @@ impl Carrier for Local {
 
     fn solve(&self, bound: &Bound, _: &Settings, mut course: Course<'_, '_>) -> Result<Solved, RecoverError> {
         let found = local::solve(bound, self, course.left(), course.from, &mut |progress| course.watch(progress))?;
-        let mut warnings = found.warnings.clone();
-        warnings.extend(undetermined::of_local(bound, &found));
-        Ok(Solved {
-            status: found.status,
-            loss: found.loss,
-            iterations: found.iterations,
-            warnings,
-            state: found.checkpoint.clone(),
-            optimizer: Optimizer::Marquardt,
-            method: "gauss-newton",
-            precision: Width::F64,
-            carried: Box::new(found),
-        })
+        Ok(solved(bound, found, Optimizer::Marquardt))
+    }
+}
+
+/// Splines on a lattice over several coordinates, for measured fields and smooth sources.
+pub(super) struct OnLattice;
+
+impl Carrier for OnLattice {
+    fn name(&self) -> &'static str {
+        smooth::METHOD
+    }
+
+    fn solve(&self, bound: &Bound, _: &Settings, mut course: Course<'_, '_>) -> Result<Solved, RecoverError> {
+        if let Some(what) = smooth::refused(bound.problem.scene().schema) {
+            return Err(RecoverError::Splines(what));
+        }
+        let (limits, from) = (course.left(), course.from);
+        let noise = noise::estimate(bound);
+        let found = smooth::solve(bound, &noise, limits, from, &mut |progress| course.watch(progress))?;
+        Ok(solved(bound, found, Optimizer::Evidence))
+    }
+}
+
+/// What local functions found.
+fn solved(bound: &Bound, found: LocalSolution, optimizer: Optimizer) -> Solved {
+    let mut warnings = found.warnings.clone();
+    warnings.extend(undetermined::of_local(bound, &found));
+    Solved {
+        status: found.status,
+        loss: found.loss,
+        iterations: found.iterations,
+        warnings,
+        state: found.checkpoint.clone(),
+        optimizer,
+        method: "gauss-newton",
+        precision: Width::F64,
+        carried: Box::new(found),
     }
 }
 

@@ -55,13 +55,13 @@ impl Default for Settings {
 /// What carries the heads of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Carrier {
-    /// Splines for records that they can carry and a small network cannot, else a network.
+    /// Splines where they can carry the scene and something is measured, else a network.
     Auto,
     /// A network.
     Network,
-    /// Splines over the only coordinate.
+    /// Splines over the only coordinate, or on a lattice over several.
     Splines,
-    /// Splines on a lattice of cells, over two or three coordinates.
+    /// Splines on a lattice of cells for sources with edges, over two or three coordinates.
     Local(Local),
 }
 

@@ -17,7 +17,7 @@ mod resolved;
 mod rows;
 mod solver;
 mod triangle;
-mod weighed;
+pub(crate) mod weighed;
 
 use std::time::Instant;
 

@@ -7,13 +7,13 @@ use crate::solve::state::State;
 
 /// Rows of one kind, over their size.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Class {
+pub(crate) struct Class {
     /// What rows are divided by.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// How the size is found; nothing if it is known.
-    pub(super) open: Option<Guess>,
+    pub(crate) open: Option<Guess>,
     /// What the last step gained in the logarithm of the evidence, to first order.
-    pub(super) gain: f64,
+    pub(crate) gain: f64,
     /// Logarithms of the last sizes, and how far the evidence wanted to go from each; the latest first.
     past: [[f64; 2]; DEPTH],
     /// How many of them there are.
@@ -22,22 +22,22 @@ pub(super) struct Class {
 
 /// What is believed of a size before any row is seen.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Guess {
+pub(crate) struct Guess {
     /// Its value.
-    pub(super) size: f64,
+    pub(crate) size: f64,
     /// Worth as much as so many rows.
-    pub(super) count: f64,
+    pub(crate) count: f64,
     /// No size is smaller.
-    pub(super) least: f64,
+    pub(crate) least: f64,
 }
 
 /// Sum of squares of a class's rows at their present size, how many there are, and how many of them the answer used up: the
 /// trace of its influence matrix.
 #[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Tally {
-    pub(super) squares: f64,
-    pub(super) count: f64,
-    pub(super) used: f64,
+pub(crate) struct Tally {
+    pub(crate) squares: f64,
+    pub(crate) count: f64,
+    pub(crate) used: f64,
 }
 
 /// Rows that are left over at least, as a share: fewer say nothing of a size.
@@ -50,7 +50,7 @@ const RIDGE: f64 = 1e-6;
 const DEPTH: usize = 2;
 
 /// Classes as plain numbers.
-pub(super) fn save_classes(classes: &[Class], saved: State, prefix: &str) -> State {
+pub(crate) fn save_classes(classes: &[Class], saved: State, prefix: &str) -> State {
     let sizes: Vec<f64> = classes.iter().map(|class| class.size).collect();
     let past: Vec<f64> = classes.iter().flat_map(|class| class.past.as_flattened()).copied().collect();
     let known: Vec<f64> = classes.iter().map(|class| class.known as f64).collect();
@@ -59,7 +59,7 @@ pub(super) fn save_classes(classes: &[Class], saved: State, prefix: &str) -> Sta
 }
 
 /// Takes over what [`save_classes`] gave of the same problem.
-pub(super) fn restore_classes(classes: &mut [Class], saved: &State, prefix: &str) -> Result<(), Fault> {
+pub(crate) fn restore_classes(classes: &mut [Class], saved: &State, prefix: &str) -> Result<(), Fault> {
     let of = |name: &str, each: usize| saved.sized::<f64>(&format!("{prefix}{name}"), each * classes.len());
     let (sizes, past, known) = (of("sizes", 1)?, of("past", 2 * DEPTH)?, of("known", 1)?);
     let all = sizes.into_iter().zip(known).zip(past.chunks_exact(2 * DEPTH));
@@ -72,7 +72,7 @@ pub(super) fn restore_classes(classes: &mut [Class], saved: &State, prefix: &str
 
 /// Moves sizes toward those at which the evidence is stationary (MacKay 1992). His steps are short where two sizes of one source
 /// make up for each other, so that they are extrapolated from the last ones (Anderson 1965).
-pub(super) fn renew(classes: &mut [Class], tallies: &[Tally], is_held: impl Fn(usize) -> bool) {
+pub(crate) fn renew(classes: &mut [Class], tallies: &[Tally], is_held: impl Fn(usize) -> bool) {
     let wished: Vec<f64> = classes
         .iter()
         .zip(tallies)
@@ -120,16 +120,16 @@ fn extrapolated(classes: &[Class], wished: &[f64]) -> Option<Vec<f64>> {
 }
 
 impl Class {
-    pub(super) fn known(size: f64) -> Self {
+    pub(crate) fn known(size: f64) -> Self {
         Self { size, open: None, gain: 0.0, past: [[0.0; 2]; DEPTH], known: 0 }
     }
 
-    pub(super) fn open(size: f64, guess: Guess) -> Self {
+    pub(crate) fn open(size: f64, guess: Guess) -> Self {
         Self { open: Some(guess), ..Self::known(size.max(guess.least)) }
     }
 
     /// Begins anew from a size.
-    pub(super) fn restart(&mut self, size: f64) {
+    pub(crate) fn restart(&mut self, size: f64) {
         *self = Self { open: self.open, ..Self::known(size) };
     }
 

@@ -1,0 +1,74 @@
+//! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
+
+use super::solver::Solver;
+use super::state::{Phase, State};
+use crate::facts::Answer;
+use crate::local::draws::{Deviations, Draws};
+use crate::local::group::Group;
+use crate::local::misfits::Misfits;
+use crate::schema::{self, TermKind};
+
+/// Steps to an answer under another belief.
+pub(super) const DOUBTS: u64 = 4;
+
+impl Solver<'_> {
+    /// Deviations of all unknowns from an answer. How an answer changes with what is believed of its sources is unknown as well:
+    /// draws are from the posterior under another belief, about the answer under that one.
+    pub(super) fn doubted(&mut self, state: &State) -> Option<Deviations> {
+        let mut other = state.clone();
+        if !self.judged(Phase::Solve).is_empty() {
+            self.doubt(&mut other);
+            for _ in 0..DOUBTS {
+                other = self.step(&other).ok()?.next;
+            }
+        }
+        let mut deviations = self.deviations(&other)?;
+        let add = |draws: &mut [Vec<f64>], ours: &[f64], theirs: &[f64]| {
+            // Signs in turns, so that draws stay draws about nothing.
+            for (draw, sign) in draws.iter_mut().zip([1.0, -1.0].into_iter().cycle()) {
+                draw.iter_mut()
+                    .zip(ours.iter().zip(theirs))
+                    .for_each(|(x, (ours, theirs))| *x += sign * (theirs - ours));
+            }
+        };
+        add(&mut deviations.coefficients, &state.theta, &other.theta);
+        add(&mut deviations.learned, &state.learned, &other.learned);
+        Some(deviations)
+    }
+
+    /// Deviations of all unknowns, drawn from the posterior about a state.
+    fn deviations(&mut self, state: &State) -> Option<Deviations> {
+        let slopes = self.set_learned(&state.learned);
+        self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
+        let assembled = self.assemble(state, &slopes);
+        let draws = self.normal.draws.take()?;
+        assembled.ok()?;
+        self.normal.factor()?.deviations(&draws)
+    }
+
+    /// What a state says, for the verdict.
+    pub(super) fn answer(&mut self, state: &State) -> Answer {
+        self.set_learned(&state.learned);
+        let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta)).collect();
+        Answer { facts, clouds: Vec::new(), scalars: self.scalars.clone(), scores: Vec::new() }
+    }
+
+    /// Misfits of all terms, by group, and the noise of observations.
+    pub(super) fn misfits(&mut self, state: &State) -> Vec<Vec<Misfits>> {
+        self.set_learned(&state.learned);
+        let of = |(at, group): (usize, &Group)| {
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            let counts = self.counts(at, Phase::Solve);
+            let term = |(number, term): (usize, &schema::Term)| {
+                let places = |row: usize| {
+                    (0..group.sites.count).filter(|&p| counts[row][p]).map(|p| found.row(row, p)).collect::<Vec<f64>>()
+                };
+                let is_data = term.kind == TermKind::Observation;
+                let noise = is_data.then(|| state.classes[self.classes[at][number]].size);
+                ((term.first..term.first + term.rows).flat_map(places).collect(), noise)
+            };
+            group.schema.terms.iter().enumerate().map(term).collect()
+        };
+        self.groups.iter().enumerate().map(of).collect()
+    }
+}

@@ -1,0 +1,71 @@
+//! Which lattices carry fields and smooth sources, and which of their coefficients meet in a row.
+
+use crate::local::heads::Heads;
+use crate::local::lattice::{Lattice, NONE, Place};
+use crate::local::meshes::{axes, base};
+use crate::local::refuse::HIGHEST_DEGREE;
+use crate::problem::Bound;
+use crate::schema::{self, TermKind};
+
+/// Degrees of splines above the order of their highest derivative, at least, and over two coordinates: what is left of an equation
+/// falls with the fourth power of a cell, or with the sixth. Over more coordinates too many functions would meet on a cell.
+const SMOOTH: usize = 3;
+const SMOOTHER: usize = 5;
+/// Points of an equation to an unknown of a field, at least: as many more as let no pattern of coefficients escape.
+const POINTS: f64 = 2.0;
+/// Functions that hardly any point sees, as a share of what the others see, are left out.
+const UNSEEN: f64 = 1e-9;
+/// Cells along a coordinate at most.
+const MOST_CELLS: usize = 40;
+
+/// Degree of a head's splines, or nothing if it would be too high.
+pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
+    let jets = schema.groups.iter().flat_map(|group| group.jets).filter(|jet| jet.head == head);
+    let order = jets.map(|jet| jet.degree.iter().map(|&n| usize::from(n)).sum::<usize>()).max().unwrap_or(0);
+    let smoother = order + if schema.coordinates.len() == 2 { SMOOTHER } else { SMOOTH };
+    (order + SMOOTH <= HIGHEST_DEGREE).then(|| smoother.min(HIGHEST_DEGREE))
+}
+
+/// The lattices of all heads, over cells as fine as the points of the equations can tell; and how many cells these are along
+/// every coordinate.
+pub(super) fn lattices(bound: &Bound) -> (Vec<Lattice>, Vec<usize>) {
+    let schema = bound.problem.scene().schema;
+    let inputs = schema.coordinates.len();
+    let degrees: Vec<usize> = (0..schema.heads.len()).map(|head| degree(schema, head).unwrap_or(0)).collect();
+    let highest = degrees.iter().copied().max().unwrap_or(0);
+    let is_equation =
+        |group: &schema::Group| group.order > 0 && group.terms.iter().any(|term| term.kind == TermKind::Residual);
+    let groups = schema.groups.iter().zip(&bound.coordinates).filter(|(group, _)| is_equation(group));
+    let points = groups.map(|(_, points)| points.len() / inputs).max().unwrap_or(0);
+    let functions = |lattice: &Lattice| lattice.cells.iter().map(|n| (n + highest) as f64).product::<f64>();
+    let meshes = (1..=MOST_CELLS).map(|cells| base(bound, cells, 0));
+    let resolved = |mesh: &Lattice| POINTS * functions(mesh) <= points as f64;
+    let base = meshes.take_while(resolved).last().unwrap_or_else(|| self::base(bound, 1, 0));
+    let lattice = |head: usize| {
+        let mut lattice = base.refined(degrees[head], 1).along(axes(schema, head));
+        let seen =
+            schema.groups.iter().zip(&bound.coordinates).filter(|(g, _)| g.jets.iter().any(|jet| jet.head == head));
+        let points = seen.flat_map(|(_, points)| points.chunks_exact(inputs));
+        let places: Vec<Place> = points.map(|point| lattice.place(point)).collect();
+        lattice.keep(places.into_iter(), UNSEEN);
+        lattice
+    };
+    ((0..schema.heads.len()).map(lattice).collect(), base.cells.clone())
+}
+
+/// Coefficients that may occur in the same row: those that do not vanish on the same cell.
+pub(super) fn together(heads: &Heads, cells: &[usize]) -> Vec<Vec<u32>> {
+    let on_cell = |number: usize| {
+        let mut rest = number;
+        let cell: Vec<usize> = cells.iter().map(|n| (rest % n, rest /= n).0).collect();
+        let mut dofs = Vec::new();
+        for (head, lattice) in heads.lattices.iter().enumerate() {
+            let mut place = Place::default();
+            lattice.axes().iter().enumerate().for_each(|(axis, &coordinate)| place.cell[axis] = cell[coordinate]);
+            dofs.extend(heads.dofs(head, lattice.cell_span(&place)).filter(|&n| n != NONE));
+        }
+        dofs.sort_unstable();
+        dofs
+    };
+    (0..cells.iter().product()).map(on_cell).collect()
+}

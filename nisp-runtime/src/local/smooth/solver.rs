@@ -1,0 +1,176 @@
+//! A problem on its lattices: what is set up once, and what rows are divided by.
+
+use super::meshes::{lattices, together};
+use super::prior::Prior;
+use super::state::{Phase, State};
+use crate::local::LocalError;
+use crate::local::group::Group;
+use crate::local::heads::Heads;
+use crate::local::normal::Normal;
+use crate::noise::Noise;
+use crate::problem::Bound;
+use crate::schema::{self, TermKind};
+use crate::splines::weighed::{Class, Guess};
+
+/// How far equations may be off in the end, beside the sum of the magnitudes of their terms: a hundredth of what noise is of the
+/// data, and no less than normal equations can hold, which are squares.
+const SHARE: f64 = 1e-2;
+const STRICTEST: f64 = 1e-5;
+const EASIEST: f64 = 1e-3;
+/// The same in the first step: a state that is far off finds its way along loose equations.
+pub(super) const LOOSE: f64 = 1e-2;
+/// What is left of an equation, beside the sum of the magnitudes of its terms, where these balance each other.
+const BALANCED: f64 = 0.5;
+/// Rows that the noise's estimate from neighbouring data is worth.
+const NOISE_COUNT: f64 = 2.0;
+/// Least noise, as a share of the spread of the data: rounding.
+const LEAST_NOISE: f64 = 1e-10;
+/// Least roughness.
+const LEAST_ROUGHNESS: f64 = 1e-12;
+
+/// A problem on its lattices.
+pub(super) struct Solver<'a> {
+    pub(super) bound: &'a Bound,
+    pub(super) heads: Heads,
+    pub(super) groups: Vec<Group>,
+    /// By group and term, the number of its class.
+    pub(super) classes: Vec<Vec<usize>>,
+    /// By head, the number of the class of its roughness.
+    pub(super) roughness: Vec<usize>,
+    pub(super) priors: Vec<Prior>,
+    /// Sizes of equations, by group and row.
+    sizes: Vec<Vec<f64>>,
+    pub(super) normal: Normal,
+    pub(super) scalars: Vec<f64>,
+    /// How far equations may be off in the end.
+    pub(super) tolerance: f64,
+}
+
+impl<'a> Solver<'a> {
+    /// The scene must not be refused.
+    pub(super) fn new(bound: &'a Bound, noise: &Noise) -> Result<Self, LocalError> {
+        let schema = bound.problem.scene().schema;
+        let (lattices, cells) = lattices(bound);
+        let base = lattices[0].clone();
+        let heads = Heads::new(bound, lattices);
+        let kernels = bound.problem.scene().double();
+        let group = |(at, kernel)| {
+            let columns = bound.filled_columns(at);
+            let points = (bound.coordinates[at].as_slice(), columns.as_slice());
+            Group::new((&schema.groups[at], &bound.losses[at]), kernel, &heads, points, Vec::new(), (&base, 0))
+        };
+        let groups: Vec<Group> = kernels.into_iter().take(schema.groups.len()).enumerate().map(group).collect();
+        let mut numbers = 0..;
+        let mut next = || numbers.next().unwrap_or(0);
+        let classes = schema.groups.iter().map(|g| g.terms.iter().map(|_| next()).collect()).collect();
+        let roughness = schema.heads.iter().map(|_| next()).collect();
+        let priors = (0..schema.heads.len()).map(|head| Prior::straight(&heads, head)).collect();
+        let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
+        let together = together(&heads, &cells);
+        let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
+        let shares = noise.observations.iter().map(|found| found.deviation / found.spread.max(found.deviation));
+        let tolerance = (SHARE * shares.fold(0.0, f64::max)).clamp(STRICTEST, EASIEST);
+        let scalars = bound.scalars.clone();
+        Ok(Self { bound, heads, groups, classes, roughness, priors, sizes, normal, scalars, tolerance })
+    }
+
+    pub(super) fn schema(&self) -> &'static schema::Scene {
+        self.bound.problem.scene().schema
+    }
+
+    /// Where the solver starts: heads at their offsets, noise as neighbouring data say.
+    pub(super) fn first(&self, noise: &Noise) -> State {
+        let mut classes = Vec::new();
+        for (at, group) in self.schema().groups.iter().enumerate() {
+            for (term, declared) in group.terms.iter().enumerate() {
+                let known = self.bound.sizes[at][term] / declared.weight.sqrt();
+                classes.push(match noise.of(at, term) {
+                    Some(found) if declared.within.is_none() => {
+                        let least = LEAST_NOISE * found.spread.max(f64::MIN_POSITIVE);
+                        let size = found.deviation.max(least);
+                        Class::open(size, Guess { size, count: NOISE_COUNT, least })
+                    }
+                    None if declared.within.is_none() && declared.kind == TermKind::Observation => {
+                        let size = 1e-2 * known;
+                        Class::open(size, Guess { size, count: NOISE_COUNT, least: 1e-9 * known })
+                    }
+                    _ => Class::known(known),
+                });
+            }
+        }
+        let guess = Guess { size: 0.0, count: 0.0, least: LEAST_ROUGHNESS };
+        classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess)));
+        State {
+            theta: vec![0.0; self.heads.len()],
+            learned: vec![0.0; self.bound.learned.len()],
+            classes,
+            tolerance: LOOSE,
+            phase: Phase::Regress,
+            step: 0,
+            since: 0,
+        }
+    }
+
+    /// Believes from now on that sources change little, instead of bending little, and begins the search for how little anew.
+    pub(super) fn doubt(&mut self, state: &mut State) {
+        for head in self.judged(Phase::Solve) {
+            self.priors[head] = Prior::flat(&self.heads, head);
+            state.classes[self.roughness[head]].restart(self.priors[head].natural);
+        }
+    }
+
+    /// Takes over learned scalars; returns their derivatives by their parameters.
+    pub(super) fn set_learned(&mut self, parameters: &[f64]) -> Vec<f64> {
+        let found = self.bound.learned.iter().zip(parameters).map(|(learned, &parameter)| learned.map.at(parameter));
+        let found: Vec<(f64, f64)> = found.collect();
+        for (learned, (value, _)) in self.bound.learned.iter().zip(&found) {
+            self.scalars[learned.slot] = *value;
+        }
+        found.into_iter().map(|(_, slope)| slope).collect()
+    }
+
+    /// Sizes of equations as the sum of the magnitudes of their terms at a state; at least what units and data say where nothing
+    /// balances these terms yet, or ever, as in a quantity that vanishes.
+    pub(super) fn size(&mut self, state: &State) {
+        for at in 0..self.groups.len() {
+            let group = &self.groups[at];
+            let facts = group.facts(&self.heads, &state.theta);
+            let magnitudes = facts.magnitudes(group.kernel.programs, group.schema, &self.scalars);
+            let misfits = facts.plain_rows(group.kernel.programs, group.schema, &self.scalars);
+            for (term, &natural) in group.schema.terms.iter().zip(&self.bound.sizes[at]) {
+                for row in term.first..term.first + term.rows {
+                    let [size, misfit] = [&magnitudes, &misfits].map(|rows| root_mean_square(&rows[row]));
+                    let is_size = size.is_finite() && term.within.is_none();
+                    let is_balanced = misfit < BALANCED * size;
+                    let size = if is_size && is_balanced {
+                        size
+                    } else if is_size {
+                        size.max(natural)
+                    } else {
+                        natural
+                    };
+                    self.sizes[at][row] = size / term.weight.sqrt();
+                }
+            }
+        }
+    }
+
+    /// Gives all rows what they are divided by at a state.
+    pub(super) fn set_sigmas(&mut self, state: &State) {
+        for (at, group) in self.groups.iter_mut().enumerate() {
+            for (number, term) in group.schema.terms.iter().enumerate() {
+                for row in term.first..term.first + term.rows {
+                    group.sigma[row] = match term.kind {
+                        TermKind::Observation => state.classes[self.classes[at][number]].size,
+                        _ if term.within.is_some() => self.sizes[at][row],
+                        _ => state.tolerance * self.sizes[at][row],
+                    };
+                }
+            }
+        }
+    }
+}
+
+fn root_mean_square(values: &[f64]) -> f64 {
+    (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
+}

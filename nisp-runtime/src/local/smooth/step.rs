@@ -1,0 +1,258 @@
+//! Gauss-Newton steps: the normal equations about a state, where they lead, and what their rows say of noise and roughness.
+
+use std::ops::Range;
+
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+use super::solver::{LOOSE, Solver};
+use super::state::{Phase, State};
+use crate::local::LocalError;
+use crate::local::block::Block;
+use crate::local::normal::Factor;
+use crate::local::rows::Evaluated;
+use crate::schema::{self, TermKind};
+use crate::solve::fault::Fault;
+use crate::solve::vector;
+use crate::splines::weighed::{Tally, renew};
+
+/// How fast the tolerance of equations falls from step to step.
+const TIGHTER: f64 = 0.1;
+/// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
+const RIDGE: f64 = 1e-6;
+/// Standard deviation of the learned scalars' parameters before any row is seen.
+const LEARNED: f64 = 10.0;
+/// Largest change of a learned parameter in a step.
+const FARTHEST: f64 = 1.0;
+/// Random vectors for the trace of the influence matrix (Hutchinson).
+const PROBES: usize = 16;
+/// A step is halved so often before it is given up.
+const HALVINGS: u32 = 8;
+
+/// What a step found.
+pub(super) struct Found {
+    pub(super) next: State,
+    /// Half the sum of squares of all rows before the step.
+    pub(super) loss: f64,
+    /// Largest change of a coefficient or parameter.
+    pub(super) change: f64,
+    /// What the loss is less after the whole step; infinite if only a part of it was taken.
+    pub(super) gain: f64,
+    pub(super) factor: Factor,
+}
+
+impl Solver<'_> {
+    /// By row of a group and point, whether it counts in a phase: equations wait until data and conditions on values are
+    /// regressed, and of what was not measured nothing is known.
+    pub(super) fn counts(&self, at: usize, phase: Phase) -> Vec<Vec<bool>> {
+        let group = &self.groups[at];
+        let mut counts = vec![vec![false; group.sites.count]; group.schema.rows];
+        let is_of_values = |&jet: &usize| group.schema.jets[jet].degree.iter().all(|&degree| degree == 0);
+        let takes_part = |term: &&schema::Term| phase == Phase::Solve || term.jets.iter().all(is_of_values);
+        for term in group.schema.terms.iter().filter(takes_part) {
+            let measured = self.bound.lacking(at, term).unwrap_or_else(|| vec![true; group.sites.count]);
+            counts[term.first..term.first + term.rows].fill(measured);
+        }
+        counts
+    }
+
+    /// The rows of a group about a state, those that do not count as zeros.
+    fn blocks(
+        &self,
+        at: usize,
+        counts: &[Vec<bool>],
+        evaluated: &Evaluated,
+        slopes: &[f64],
+    ) -> Result<Vec<Block>, LocalError> {
+        let group = &self.groups[at];
+        let mut blocks = group.blocks(&self.heads, evaluated, slopes);
+        for (p, block) in blocks.iter_mut().enumerate() {
+            let (width, learned) = (block.dofs.len(), slopes.len());
+            for (row, counts) in counts.iter().enumerate() {
+                if !counts[p] {
+                    block.misfits[row] = 0.0;
+                    block.slopes[row * width..][..width].fill(0.0);
+                    block.by_learned[row * learned..][..learned].fill(0.0);
+                } else if !block.misfits[row].is_finite() {
+                    return Err(LocalError::Fault(Fault::residual(group.name(row), Some(p))));
+                }
+            }
+        }
+        Ok(blocks)
+    }
+
+    /// The heads whose roughness the evidence finds in a phase: sources, or measured fields while only data are regressed.
+    pub(super) fn judged(&self, phase: Phase) -> Vec<usize> {
+        let observations = self.schema().groups.iter().flat_map(|group| {
+            let terms = group.terms.iter().filter(|term| term.kind == TermKind::Observation);
+            terms.flat_map(|term| term.jets).map(|&jet| group.jets[jet].head)
+        });
+        let observed: Vec<usize> = observations.collect();
+        let heads = self.schema().heads.iter().enumerate();
+        let is_judged = |&(head, declared): &(usize, &schema::Head)| match phase {
+            Phase::Regress => !declared.source && observed.contains(&head),
+            Phase::Solve => declared.source,
+        };
+        heads.filter(is_judged).map(|(head, _)| head).collect()
+    }
+
+    /// Half the sum of squares of all rows, robust ones by what they cost.
+    fn loss(&mut self, state: &State) -> f64 {
+        self.set_learned(&state.learned);
+        let mut sum = 0.0;
+        for (at, group) in self.groups.iter().enumerate() {
+            let counts = self.counts(at, state.phase);
+            if !is_any(&counts) {
+                continue;
+            }
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            for (term, loss) in group.schema.terms.iter().zip(&self.bound.losses[at]) {
+                for (row, counts) in counts.iter().enumerate().skip(term.first).take(term.rows) {
+                    let there = (0..group.sites.count).filter(|&p| counts[p]);
+                    sum += there.map(|p| loss.rho(found.row(row, p) / group.sigma[row])).sum::<f64>();
+                }
+            }
+        }
+        let priors = (0..self.priors.len()).flat_map(|head| self.prior_rows(state, head));
+        sum + priors.map(|block| 0.5 * block.misfits[0].powi(2)).sum::<f64>()
+    }
+
+    fn prior_rows(&self, state: &State, head: usize) -> Vec<Block> {
+        // Equations say of fields what the prior says of sources: it lets fields go as equations tighten.
+        let is_free = state.phase == Phase::Solve && !self.schema().heads[head].source;
+        let times = if is_free { LOOSE / state.tolerance } else { 1.0 };
+        let roughness = times * state.classes[self.roughness[head]].size;
+        self.priors[head].blocks(&state.theta, roughness, state.learned.len())
+    }
+
+    /// One step.
+    pub(super) fn step(&mut self, state: &State) -> Result<Found, LocalError> {
+        let slopes = self.set_learned(&state.learned);
+        self.size(state);
+        self.set_sigmas(state);
+        let loss = self.loss(state);
+        let blocks = self.assemble(state, &slopes)?;
+        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
+        let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
+        let tallies = self.tallies(state, &blocks, (&step, &shared), &factor).ok_or(LocalError::Factorisation)?;
+        let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
+        let mut next = state.clone();
+        let mut gain = f64::INFINITY;
+        for halvings in 0..HALVINGS {
+            next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
+            next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
+            let after = self.loss(&next);
+            if after.is_finite() && after <= loss * (1.0 + 1e-9) + 1e-12 {
+                gain = if halvings == 0 { (loss - after).abs() } else { f64::INFINITY };
+                break;
+            }
+            share *= 0.5;
+        }
+        let change = step.iter().chain(&shared).fold(0.0, |most: f64, x| most.max((share * x).abs()));
+        // While equations are loose, they need no source.
+        let is_loose = state.phase == Phase::Solve && state.tolerance > self.tolerance;
+        let judged: Vec<usize> = self.judged(state.phase).into_iter().map(|head| self.roughness[head]).collect();
+        let is_held = |class| self.roughness.contains(&class) && (is_loose || !judged.contains(&class));
+        renew(&mut next.classes, &tallies, is_held);
+        if state.phase == Phase::Solve {
+            next.tolerance = (state.tolerance * TIGHTER).max(self.tolerance);
+        }
+        (next.step, next.since) = (state.step + 1, state.since + 1);
+        Ok(Found { next, loss, change, gain, factor })
+    }
+
+    /// The normal equations about a state; returns the rows of all groups that take part, with the group's number.
+    pub(super) fn assemble(&mut self, state: &State, slopes: &[f64]) -> Result<Vec<(usize, Vec<Block>)>, LocalError> {
+        self.normal.clear();
+        let mut all = Vec::new();
+        for (at, group) in self.groups.iter().enumerate() {
+            let counts = self.counts(at, state.phase);
+            if !is_any(&counts) {
+                continue;
+            }
+            let evaluated = group.evaluate(&self.heads, &state.theta, &self.scalars, true);
+            let blocks = self.blocks(at, &counts, &evaluated, slopes)?;
+            self.normal.add_all(&blocks);
+            all.push((at, blocks));
+        }
+        for head in 0..self.priors.len() {
+            self.normal.add_all(&self.prior_rows(state, head));
+        }
+        for (at, theta) in state.theta.iter().enumerate() {
+            self.normal.add_stiffness(at, RIDGE.powi(2));
+            self.normal.gradient[at] += RIDGE.powi(2) * theta;
+        }
+        let precision = LEARNED.powi(-2);
+        for (at, parameter) in state.learned.iter().enumerate() {
+            self.normal.add_learned(at, precision, precision * parameter);
+        }
+        Ok(all)
+    }
+
+    /// By class, what is left of its rows after a step, how many there are, and how many of them the answer used up.
+    fn tallies(
+        &self,
+        state: &State,
+        blocks: &[(usize, Vec<Block>)],
+        (step, shared): (&[f64], &[f64]),
+        factor: &Factor,
+    ) -> Option<Vec<Tally>> {
+        let mut tallies = vec![Tally::default(); state.classes.len()];
+        let mut random = StdRng::seed_from_u64(0);
+        for (at, blocks) in blocks {
+            let counts = self.counts(*at, state.phase);
+            let terms = self.groups[*at].schema.terms.iter().enumerate();
+            for (number, term) in terms.filter(|(_, term)| term.kind == TermKind::Observation) {
+                let tally = &mut tallies[self.classes[*at][number]];
+                let rows = blocks.iter().enumerate().flat_map(|(p, block)| {
+                    let own = (term.first..term.first + term.rows).filter(|&row| counts[row][p]);
+                    own.map(|row| (block, row)).collect::<Vec<_>>()
+                });
+                let rows: Vec<(&Block, usize)> = rows.collect();
+                tally.count = rows.len() as f64;
+                tally.squares = rows.iter().map(|(block, row)| block.after(*row, step, shared).powi(2)).sum();
+                tally.used = used(&rows, factor, (step.len(), shared.len()), &mut random)?;
+            }
+        }
+        for head in self.judged(state.phase) {
+            let blocks = self.prior_rows(state, head);
+            let rows: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
+            let tally = &mut tallies[self.roughness[head]];
+            tally.count = self.priors[head].rank as f64;
+            tally.squares = blocks.iter().map(|block| block.after(0, step, shared).powi(2)).sum();
+            tally.used = match state.phase {
+                // What data leave of a field is no small difference.
+                Phase::Regress => used(&rows, factor, (step.len(), shared.len()), &mut random)?,
+                Phase::Solve => used_exactly(&blocks, factor, self.heads.first[head]..self.heads.first[head + 1])?,
+            };
+        }
+        Some(tallies)
+    }
+}
+
+fn is_any(counts: &[Vec<bool>]) -> bool {
+    counts.iter().any(|row| row.contains(&true))
+}
+
+/// How many unknowns rows settle, in the mean over random combinations of them (Hutchinson); of so many coefficients and learned
+/// scalars.
+fn used(rows: &[(&Block, usize)], factor: &Factor, lens: (usize, usize), random: &mut StdRng) -> Option<f64> {
+    let mut used = 0.0;
+    for _ in 0..PROBES {
+        let (mut by, mut below) = (vec![0.0; lens.0], vec![0.0; lens.1]);
+        rows.iter().for_each(|(block, row)| block.add_signed(*row, random.random(), &mut by, &mut below));
+        let (x, y) = factor.solve(&by, &below)?;
+        used += (vector::dot(&by, &x) + vector::dot(&below, &y)) / PROBES as f64;
+    }
+    Some(used)
+}
+
+/// The same of blocks of a row over some neighbouring coefficients, from the covariance of these.
+fn used_exactly(blocks: &[Block], factor: &Factor, range: Range<usize>) -> Option<f64> {
+    let covariance = factor.covariance(range.clone())?;
+    let of = |block: &Block| {
+        let terms = || block.dofs.iter().map(|&at| at as usize - range.start).zip(&block.slopes);
+        terms().map(|(i, a)| terms().map(|(j, b)| a * b * covariance[(i, j)]).sum::<f64>()).sum::<f64>()
+    };
+    Some(blocks.iter().map(of).sum())
+}

@@ -1,0 +1,204 @@
+//! Splines on a lattice against closed forms: a conductivity from a noisy field, a source that does not change, and the same
+//! answers from a compiled scene and from its text.
+
+use std::f64::consts::PI;
+use std::time::Duration;
+
+use nisp::solve::driver::{Flow, Status};
+use nisp::{Carrier, Problem, SavedAnswer, SceneRef, Settings, Solution, recover, resume, scene};
+
+nisp::pde! {
+    /// A conductivity that varies over a square.
+    pub mod conduction {
+        units: off;
+        coordinates: x, y;
+        fields: u;
+        sources: a;
+        parameters: turn = 1;
+        let known_a = 1 + 0.5 * sin(2 * x) * y;
+        let known_u = x^2 + turn * x * y + cos(y);
+        on inside { balance: div(a * grad(u)) == div(known_a * grad(known_u)); }
+        on edge { known: a == known_a; }
+        on samples { observe u; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A rod that something heats always in the same way.
+    pub mod heated {
+        units: off;
+        coordinates: x, t;
+        fields: T;
+        sources: q(x);
+        parameters: k = 0.5;
+        on rod { balance: d(T, t) == k * d(T, x, 2) + q; }
+        on ends { held: T == 0; }
+        on start { cold: T == 0; }
+        on samples { observe T; }
+        scene recover { }
+        scene with_conductivity { learn k; }
+    }
+}
+
+/// This file, whose equations are read here once more.
+const TEXT: &str = include_str!("lattice.rs");
+
+/// A scene, interpreted: from the braces of the `pde!` that declares its module.
+fn interpreted(scene: SceneRef) -> SceneRef {
+    let module = format!("mod {} {{", scene.schema.module);
+    let text = TEXT.split("pde! {").find(|text| text.contains(&module)).unwrap();
+    let (text, _) = text.split_once("\n}\n").unwrap();
+    let equation = nisp_interpreter::read(text, "unnamed").unwrap_or_else(|mistakes| panic!("{mistakes}"));
+    equation.scenes.into_iter().find(|read| read.schema.name == scene.schema.name).unwrap()
+}
+
+/// Points at the centres of a lattice's cells, or at its corners.
+fn grid(counts: [usize; 2], sides: [f64; 2], corners: bool) -> Vec<f64> {
+    let along = |axis: usize, i: usize| {
+        let count = counts[axis] as f64;
+        sides[axis] * if corners { i as f64 / (count - 1.0) } else { (i as f64 + 0.5) / count }
+    };
+    (0..counts[0]).flat_map(|i| (0..counts[1]).flat_map(move |j| [along(0, i), along(1, j)])).collect()
+}
+
+fn pairs(points: &[f64]) -> impl Iterator<Item = [f64; 2]> {
+    points.as_chunks::<2>().0.iter().copied()
+}
+
+/// Normal numbers, about: sums of twelve uniform ones.
+fn normals(seed: u64) -> impl FnMut() -> f64 {
+    let mut state = seed;
+    let mut uniform = move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 11) as f64 / (1u64 << 53) as f64
+    };
+    move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+}
+
+fn conductivity([x, y]: [f64; 2]) -> f64 {
+    1.0 + 0.5 * (2.0 * x).sin() * y
+}
+
+/// The square with a field that is measured with noise; `turn` is what the equation takes for the field's.
+fn conduction(scene: SceneRef, noise: f64, turn: f64) -> Problem {
+    let mut normal = normals(5);
+    let samples = grid([24, 24], [1.0, 1.0], true);
+    let field = pairs(&samples).map(|[x, y]| x * x + x * y + y.cos() + noise * normal()).collect();
+    let edge = (0..25).map(|i| f64::from(i) / 24.0).flat_map(|s| [s, 0.0, s, 1.0, 0.0, s, 1.0, s]);
+    let mut problem = Problem::new(scene);
+    problem.set_parameter("turn", turn).unwrap();
+    problem.set_group("inside", grid([24, 24], [1.0, 1.0], false).into(), Vec::new()).unwrap();
+    problem.set_group("edge", edge.collect::<Vec<f64>>().into(), Vec::new()).unwrap();
+    problem.set_group("samples", samples.into(), vec![field]).unwrap();
+    problem
+}
+
+/// The rod: with `q = k pi^2 sin(pi x)` its temperature is `(1 - exp(-k pi^2 t)) sin(pi x)`.
+fn heated(scene: SceneRef) -> Problem {
+    let samples = grid([15, 15], [1.0, 0.4], true);
+    let rate = 0.5 * PI * PI;
+    let warm = pairs(&samples).map(|[x, t]| (1.0 - (-rate * t).exp()) * (PI * x).sin()).collect();
+    let times = (0..25).map(|i| 0.4 * f64::from(i) / 24.0).flat_map(|t| [0.0, t, 1.0, t]).collect::<Vec<f64>>();
+    let places = (0..25).flat_map(|i| [f64::from(i) / 24.0, 0.0]).collect::<Vec<f64>>();
+    let mut problem = Problem::new(scene);
+    problem.set_group("rod", grid([24, 24], [1.0, 0.4], false).into(), Vec::new()).unwrap();
+    problem.set_group("ends", times.into(), Vec::new()).unwrap();
+    problem.set_group("start", places.into(), Vec::new()).unwrap();
+    problem.set_group("samples", samples.into(), vec![warm]).unwrap();
+    problem
+}
+
+fn settings() -> Settings {
+    Settings { budget: Some(Duration::from_secs(100)), threads: 2, ..Settings::default() }
+}
+
+fn solve(problem: &Problem) -> Solution {
+    recover(problem, &settings(), &mut |_| Flow::Continue).unwrap()
+}
+
+/// Values and deviations of a source or field at points.
+fn values(solution: &mut Solution, name: &str, points: &[f64]) -> (Vec<f64>, Option<Vec<f64>>) {
+    let estimates = solution.evaluate_with_errors(points);
+    let own = estimates.into_iter().find(|estimate| estimate.name == name).unwrap();
+    (own.values, own.deviations)
+}
+
+fn root_mean_square(values: impl Iterator<Item = f64>) -> f64 {
+    let squares: Vec<f64> = values.map(|x| x * x).collect();
+    (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
+}
+
+#[test]
+fn a_conductivity_is_found_with_bars_that_hold() {
+    let mut solution = solve(&conduction(scene::<conduction::recover::Scene>(), 0.01, 1.0));
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
+    let places = grid([20, 20], [1.0, 1.0], false);
+    let (found, deviations) = values(&mut solution, "a", &places);
+    let off: Vec<f64> = found.iter().zip(pairs(&places)).map(|(a, place)| a - conductivity(place)).collect();
+    assert!(root_mean_square(off.iter().copied()) < 0.03, "{}", root_mean_square(off.iter().copied()));
+    let deviations = deviations.unwrap();
+    let within = off.iter().zip(&deviations).filter(|(off, deviation)| off.abs() <= 2.0 * **deviation).count();
+    assert!(within as f64 > 0.8 * off.len() as f64, "{within} of {}", off.len());
+}
+
+#[test]
+fn an_equation_that_the_data_contradict_is_inconsistent() {
+    let solution = solve(&conduction(scene::<conduction::recover::Scene>(), 0.01, -1.0));
+    assert!(!solution.verdict.passed() && solution.status != Status::Converged);
+}
+
+#[test]
+fn a_source_that_does_not_change_is_found_from_exact_data() {
+    let mut solution = solve(&heated(scene::<heated::recover::Scene>()));
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
+    let places = grid([20, 3], [1.0, 0.4], false);
+    let (found, _) = values(&mut solution, "q", &places);
+    let exact = |[x, _]: [f64; 2]| 0.5 * PI * PI * (PI * x).sin();
+    let off = root_mean_square(found.iter().zip(pairs(&places)).map(|(q, place)| q - exact(place)));
+    assert!(off < 2e-3 * root_mean_square(pairs(&places).map(exact)), "{off}");
+    // The saved answer has the same values, which do not depend on the time.
+    let saved = SavedAnswer::from_bytes(&solution.saved().unwrap().to_bytes()).unwrap();
+    let opened = saved.open(scene::<heated::recover::Scene>()).unwrap();
+    let again = opened.evaluate(&places);
+    let own = again.iter().find(|quantity| quantity.name == "q").unwrap();
+    assert_eq!(own.values, found);
+}
+
+#[test]
+fn a_text_has_the_answer_of_the_compiled_scene() {
+    let answers = |compiled: SceneRef, bind: &dyn Fn(SceneRef) -> Problem, name: &str| {
+        let places = grid([9, 9], [1.0, 0.4], false);
+        let [compiled, read] = [compiled, interpreted(compiled)].map(|scene| {
+            let mut solution = solve(&bind(scene));
+            (values(&mut solution, name, &places), solution.learned(), solution.iterations)
+        });
+        assert_eq!(compiled.2, read.2);
+        let size = root_mean_square(compiled.0.0.iter().copied());
+        let apart = root_mean_square(compiled.0.0.iter().zip(&read.0.0).map(|(a, b)| a - b));
+        assert!(apart < 1e-6 * size, "{name}: {apart:e} of {size:e}");
+        for (a, b) in compiled.1.iter().zip(&read.1) {
+            assert!((a.value - b.value).abs() < 1e-6 * a.value.abs(), "{}: {} {}", a.name, a.value, b.value);
+        }
+    };
+    answers(scene::<conduction::recover::Scene>(), &|scene| conduction(scene, 0.01, 1.0), "a");
+    answers(scene::<heated::recover::Scene>(), &heated, "q");
+}
+
+#[test]
+fn a_resumed_run_has_the_bits_of_one_that_did_not_stop() {
+    let problem = conduction(scene::<conduction::recover::Scene>(), 0.01, 1.0);
+    let settings = Settings { carrier: Carrier::Splines, ..settings() };
+    let mut whole = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
+    let mut kept = None;
+    let _ = recover(&problem, &settings, &mut |report| {
+        if report.iteration == 7 {
+            kept = Some((report.checkpoint)());
+            return Flow::Stop;
+        }
+        Flow::Continue
+    });
+    let mut resumed = resume(&problem, &settings, &kept.unwrap(), &mut |_| Flow::Continue).unwrap();
+    let places = grid([5, 5], [1.0, 1.0], false);
+    assert_eq!(values(&mut whole, "a", &places).0, values(&mut resumed, "a", &places).0);
+}
