@@ -6,7 +6,9 @@ use super::heads::Heads;
 use super::triangle::{Covariance, Row};
 use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;
+use crate::facts::Told;
 use crate::problem::Frame;
+use crate::schema::Scene;
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
 
@@ -15,6 +17,8 @@ pub(crate) const CARRIER: &str = "splines";
 
 /// Places whose rows are held at a time.
 const PART: usize = 4096;
+/// Parts of the domain at whose ends a source is compared with its deviations.
+const TELLING: usize = 200;
 
 /// Heads as splines, and what is known of them.
 #[derive(Clone, Debug)]
@@ -57,6 +61,19 @@ impl KeptSplines {
             self.deviation(first, &slopes, &shared)
         };
         (!self.spreads.is_empty()).then(|| places.iter().map(deviation).collect())
+    }
+
+    /// How much is told of every source; nothing without deviations.
+    pub(super) fn told(&self, schema: &Scene) -> Vec<Told> {
+        let ends = self.heads.bases[0].breakpoints();
+        let (first, length) = (ends[0], ends[ends.len() - 1] - ends[0]);
+        let places: Vec<f64> = (0..=TELLING).map(|at| first + length * at as f64 / TELLING as f64).collect();
+        let of = |head: usize| {
+            let (values, deviations) = (self.evaluate(head, &places), self.deviations(head, &places)?);
+            let squares: f64 = values.iter().zip(&deviations).map(|(value, deviation)| (value / deviation).powi(2)).sum();
+            Some(Told { head, size: (squares / places.len() as f64).sqrt() })
+        };
+        (0..schema.heads.len()).filter(|&head| schema.heads[head].source).filter_map(of).collect()
     }
 
     /// Parameters of the learned scalars, and their standard deviations.

@@ -39,6 +39,8 @@ use solver::{Phase, Solver, State, TOLERANCE};
 
 /// Logarithm of the evidence by which a kind of smoothness may fall behind and still count.
 const NEAR: f64 = 8.0;
+/// How far differences of the evidence are trusted: all kinds are approximations of what the source is like.
+const TRUST: f64 = 0.3;
 /// Steps that regress the data at most.
 const REGRESS: u64 = 12;
 /// Gain of the logarithm of the evidence that no longer matters.
@@ -184,9 +186,11 @@ pub(crate) fn solve(
     let misfits = solver.misfits(&place.state);
     let State { theta, learned, step: iterations, .. } = place.state;
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
-    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new() };
+    let kept = KeptSplines { heads, theta, learned, spreads };
+    let told = kept.told(schema);
+    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told };
     Ok(SplineSolution {
-        kept: KeptSplines { heads, theta, learned, spreads },
+        kept,
         status,
         iterations,
         loss,
@@ -303,7 +307,7 @@ impl Place {
     fn likely(&self) -> Vec<(f64, Tried)> {
         let Some(best) = self.best() else { return Vec::new() };
         let near = || self.tried.iter().filter(|tried| tried.evidence >= best.evidence - NEAR);
-        let weight = |tried: &Tried| (tried.evidence - best.evidence).exp();
+        let weight = |tried: &Tried| (TRUST * (tried.evidence - best.evidence)).exp();
         let all: f64 = near().map(weight).sum();
         near().map(|tried| (weight(tried) / all, tried.clone())).collect()
     }

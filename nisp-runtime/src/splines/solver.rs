@@ -487,8 +487,10 @@ impl<'a> Solver<'a> {
             let (rough, Some(amplitude)) = (self.roughness[head], self.amplitude[head]) else { continue };
             let worth = self.priors[head].worth(state.classes[rough].size, state.classes[amplitude].size);
             log_determinant += worth.log_determinant;
-            tallies[rough].count = tallies[amplitude].count - worth.amplitude;
-            tallies[amplitude].count = worth.amplitude;
+            // Rounding where waves are much longer than cells.
+            let small = worth.amplitude.clamp(0.0, tallies[amplitude].count);
+            tallies[rough].count = tallies[amplitude].count - small;
+            tallies[amplitude].count = small;
         }
         let unknowns = (self.heads.len() + self.bound.learned.len()) as f64;
         let is_rough = |class: usize| self.roughness.contains(&class);

@@ -1,0 +1,24 @@
+//! Sources that a record does not tell from none: they are smaller than what is left open of them.
+
+use super::Check;
+use crate::facts::Told;
+use crate::problem::Bound;
+
+/// Standard deviations that a source is large at least, in the mean over the domain. Of simulated sources that are smaller most
+/// are farther off than none would be.
+const LEAST: f64 = 1.5;
+
+/// One check for every source that its carrier tells of.
+pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
+    let heads = bound.problem.scene().schema.heads;
+    let check = |told: &Told| {
+        let name = heads[told.head].name;
+        let said = format!(
+            "the measurements do not tell `{name}` from none: what is found of it is {:.2} times its own standard deviation; \
+             measure more often, more exactly, or for longer",
+            told.size
+        );
+        Check::new("told", ("", name), (told.size.recip(), 1.0 / LEAST), said)
+    };
+    told.iter().map(check).collect()
+}
