@@ -5,6 +5,7 @@ use super::network::Network;
 use super::on_splines::OnSplines;
 use super::settings::{Carrier, Optimizer, Settings};
 use crate::local::Local;
+use crate::noise;
 use crate::problem::Bound;
 use crate::schema::Scene;
 use crate::solve::state::State;
@@ -89,14 +90,15 @@ fn most_rows(bound: &Bound) -> usize {
     groups.filter(|(group, _)| !group.columns.is_empty()).map(|(_, points)| points.len()).max().unwrap_or(0)
 }
 
-/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. An equation
-/// that differentiates a source leaves some of it open, which is told of networks only.
+/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. Exact data of
+/// an equation that differentiates its source ask for more digits than splines meet equations to.
 fn by_data(bound: &Bound) -> (Chosen, String) {
     let schema = bound.problem.scene().schema;
-    let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
+    let is_exact = || most_rows(bound) <= MANY && noise::estimate(bound).is_exact();
+    let differentiated = differentiated(schema).filter(|_| is_exact());
     match (splines::refused(schema), differentiated) {
         (Some(what), _) => (Chosen::Network, format!("splines do not do {what}")),
-        (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, so that some of it may be open")),
+        (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the data are exact")),
         (None, None) => (Chosen::Splines, "one coordinate".into()),
     }
 }
