@@ -5,7 +5,6 @@ use super::network::Network;
 use super::on_splines::OnSplines;
 use super::settings::{Carrier, Optimizer, Settings};
 use crate::local::Local;
-use crate::noise;
 use crate::problem::Bound;
 use crate::schema::Scene;
 use crate::solve::state::State;
@@ -90,15 +89,14 @@ fn most_rows(bound: &Bound) -> usize {
     groups.filter(|(group, _)| !group.columns.is_empty()).map(|(_, points)| points.len()).max().unwrap_or(0)
 }
 
-/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. Exact data of
-/// an equation that differentiates its source ask for more digits than splines meet equations to.
+/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. Of a source
+/// that is differentiated a network finds more on short records, where it has the time.
 fn by_data(bound: &Bound) -> (Chosen, String) {
     let schema = bound.problem.scene().schema;
-    let is_exact = || most_rows(bound) <= MANY && noise::estimate(bound).is_exact();
-    let differentiated = differentiated(schema).filter(|_| is_exact());
+    let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
     match (splines::refused(schema), differentiated) {
         (Some(what), _) => (Chosen::Network, format!("splines do not do {what}")),
-        (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the data are exact")),
+        (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short")),
         (None, None) => (Chosen::Splines, "one coordinate".into()),
     }
 }
