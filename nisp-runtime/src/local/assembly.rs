@@ -18,8 +18,8 @@ use crate::solve::fault::Fault;
 /// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
 const RIDGE: f64 = 1e-6;
 const STIFFNESS: f64 = 1e-3;
-/// Stiffness of differences in the first step, which only regresses the data: so much that noise cannot crease the state.
-const ROUGH: f64 = 1000.0;
+/// Length over which the first step, which only regresses the data, smooths them, in cells: noise cannot crease the state.
+const SMOOTHED: f64 = 2.0;
 /// Random vectors for the trace of the influence matrix (Hutchinson).
 const PROBES: usize = 2;
 /// Stiffness of a parameter that is held.
@@ -83,15 +83,15 @@ impl Solver<'_> {
             rows += surface.misfits().count();
             loss += surface.loss(sigma);
         }
-        for at in 0..theta.len() {
-            self.normal.add_stiffness(at, RIDGE);
-        }
         for (at, parameter) in state.learned.iter().enumerate() {
             // Parameters wait until the state is one of the equations' solutions. Their own scale is of the order of one.
             let stiffness = if matches!(phase, Phase::Regress | Phase::Convex { held: true }) { HELD } else { 1e-2 };
             self.normal.add_learned(at, stiffness, 1e-2 * parameter);
         }
         self.add_priors(theta, noise, regress, phase == Phase::Concave);
+        for at in 0..theta.len() {
+            self.normal.add_stiffness(at, RIDGE);
+        }
         Ok((loss, rows, probes))
     }
 
@@ -100,7 +100,12 @@ impl Solver<'_> {
         let schema = self.bound.problem.scene().schema;
         for (head, declared) in schema.heads.iter().enumerate() {
             let first = self.heads.first[head];
-            let stiffness = if regress { ROUGH } else { STIFFNESS };
+            let stiffness = if regress {
+                let seen = self.normal.typical(first..self.heads.first[head + 1]);
+                (SMOOTHED * SMOOTHED * seen).max(STIFFNESS)
+            } else {
+                STIFFNESS
+            };
             for axis in (0..schema.coordinates.len()).filter(|_| regress || !declared.source) {
                 for (a, b) in self.heads.lattices[head].neighbours(axis) {
                     let (i, j) = (first + a as usize, first + b as usize);
