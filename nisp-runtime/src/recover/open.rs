@@ -9,8 +9,8 @@ use crate::solve::posterior::{Direction, leading};
 use crate::solve::vector;
 
 /// Share of a head's variance that an open direction has at least, and standard deviation along it at least, beside the head
-/// itself: from one that stands alone to one that drowns the head.
-const OPEN: [(f64, f64); 3] = [(0.99, 0.05), (0.95, 0.2), (0.9, 1.0)];
+/// itself: one that stands alone, or one that drowns the head.
+const OPEN: [(f64, f64); 2] = [(0.99, 0.05), (0.9, 1.0)];
 
 /// The same of the parameters of learned scalars, which are of the order of one: a factor of e, most of a range.
 const OPEN_LEARNED: (f64, f64) = (0.9, 1.0);
