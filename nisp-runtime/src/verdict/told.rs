@@ -14,7 +14,7 @@ pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
     let check = |told: &Told| {
         let name = heads[told.head].name;
         let said = format!(
-            "the measurements do not tell `{name}` from none: what is found of it is {:.2} times its own standard deviation; \
+            "`{name}` is {:.2} times as large as its standard deviation, and is told from none from {LEAST} on; below that, \
              measure more often, more exactly, or for longer",
             told.size
         );
