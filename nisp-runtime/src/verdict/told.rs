@@ -4,8 +4,8 @@ use super::Check;
 use crate::facts::Told;
 use crate::problem::Bound;
 
-/// Standard deviations that a source is large at least, in the mean over the domain. Of simulated sources that are smaller most
-/// are farther off than none would be.
+/// Standard deviations that a source is large at least, in the mean over the domain. Of simulated sources that are smaller one in
+/// four is farther off than none would be, or outside of its bars; of larger ones one in fifty.
 const LEAST: f64 = 1.5;
 
 /// One check for every source that its carrier tells of.
