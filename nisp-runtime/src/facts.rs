@@ -140,6 +140,13 @@ pub(crate) struct Score {
     pub(crate) change: f64,
 }
 
+/// How much is told of a source: its root mean square over the domain, in standard deviations of each place.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Told {
+    pub(crate) head: usize,
+    pub(crate) size: f64,
+}
+
 /// The middle of a cloud, and its radius: the root mean square of the distances from there.
 pub(crate) fn spread(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone) -> (Vector3<f64>, f64) {
     let count = points.len().max(1) as f64;
@@ -158,4 +165,6 @@ pub(crate) struct Answer {
     pub(crate) scalars: Vec<f64>,
     /// What is known, doubted; empty where the carrier does not tell.
     pub(crate) scores: Vec<Score>,
+    /// How much is told of sources; empty where the carrier does not say.
+    pub(crate) told: Vec<Told>,
 }

@@ -21,6 +21,12 @@ impl Solver<'_> {
             signed: true,
             resolution: UNRESOLVED * self.cell,
         });
-        Answer { facts: facts.collect(), clouds: clouds.collect(), scalars: self.scalars.clone(), scores: Vec::new() }
+        Answer {
+            facts: facts.collect(),
+            clouds: clouds.collect(),
+            scalars: self.scalars.clone(),
+            scores: Vec::new(),
+            told: Vec::new(),
+        }
     }
 }

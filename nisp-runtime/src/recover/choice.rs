@@ -96,8 +96,8 @@ fn most_rows(bound: &Bound) -> usize {
     groups.filter(|(group, _)| !group.columns.is_empty()).map(|(_, points)| points.len()).max().unwrap_or(0)
 }
 
-/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. An equation
-/// that differentiates a source leaves some of it open, which is told of networks only.
+/// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. Of a source
+/// that is differentiated a network finds more on short records, where it has the time.
 fn by_data(bound: &Bound) -> (Chosen, String) {
     let schema = bound.problem.scene().schema;
     let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
@@ -110,7 +110,7 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
     }
     match (splines::refused(schema), differentiated) {
         (Some(what), _) => (Chosen::Network, format!("splines do not do {what}")),
-        (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, so that some of it may be open")),
+        (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short")),
         (None, None) => (Chosen::Splines, "one coordinate".into()),
     }
 }

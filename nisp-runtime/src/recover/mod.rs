@@ -185,7 +185,7 @@ fn solve(
             let course = Course::new(fingerprint, limits, start, from, &mut *monitor);
             let solved = attempt.carrier.solve(&bound, settings, course)?;
             let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
-            let is_over = solution.is_sound() || solution.status == Status::Interrupted;
+            let is_over = solution.is_clear() || solution.status == Status::Interrupted;
             let solution = if is_over { solution } else { first.take().unwrap_or(solution) };
             match attempts.next().filter(|_| !is_over && has_time_again(settings, start)) {
                 Some(next) => (attempt, first) = (next, Some(solution)),

@@ -2,6 +2,7 @@
 
 use super::carried::{Carried, Carrier, Solved, Values, heads, learned};
 use super::course::Course;
+use super::undetermined;
 use super::{Optimizer, RecoverError, Settings, Width};
 use crate::carrier::Kept;
 use crate::facts::Answer;
@@ -22,8 +23,10 @@ impl Carrier for OnSplines {
             return Err(RecoverError::Splines(what));
         }
         let (limits, from) = (course.left(), course.from);
-        let noise = noise::estimate(bound);
-        let found = splines::solve(bound, &noise, limits, from, &mut |progress| course.watch(progress))?;
+        let (noise, conditions) = (noise::estimate(bound), undetermined::conditions(bound));
+        let mut found =
+            splines::solve(bound, &noise, &conditions, limits, from, &mut |progress| course.watch(progress))?;
+        found.warnings.extend(undetermined::of_splines(bound, &found));
         Ok(Solved {
             status: found.status,
             loss: found.loss,

@@ -208,6 +208,11 @@ impl Solution {
         self.verdict.passed()
     }
 
+    /// True where another carrier would say no more: all that is wrong is that the data do not tell a source from none.
+    pub(super) fn is_clear(&self) -> bool {
+        self.verdict.failed().all(|check| check.check == "told")
+    }
+
     /// The scene that was solved.
     pub fn scene(&self) -> &'static schema::Scene {
         self.bound.problem.scene().schema

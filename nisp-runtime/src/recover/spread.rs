@@ -5,6 +5,7 @@ use crate::network::Architecture;
 use crate::problem::Bound;
 use crate::solve::curvature::Curvature;
 use crate::solve::posterior;
+use crate::splines::{Root, SplineSolution};
 
 /// Points that an answer is looked at, at most.
 const SAMPLE: usize = 64;
@@ -51,6 +52,16 @@ impl Spread {
         let heads = 0..bound.problem.scene().schema.heads.len();
         let heads = heads.map(|head| (found.kept.evaluate(head, &inward), found.kept.spread(head, &inward))).collect();
         Self { points, heads, learned: found.kept.spread_of_learned(), scalars: found.kept.learned.len() }
+    }
+
+    /// Of splines, by one of their roots.
+    pub(super) fn of_splines(bound: &Bound, found: &SplineSolution, root: &Root) -> Self {
+        let points = sample(bound);
+        let inward = bound.inward(&points);
+        let kept = &found.kept;
+        let head = |head| (kept.evaluate(head, &inward), kept.spread(&root.triangle, head, &inward));
+        let heads = (0..bound.problem.scene().schema.heads.len()).map(head).collect();
+        Self { points, heads, learned: kept.spread_of_learned(&root.triangle), scalars: bound.learned.len() }
     }
 }
 

@@ -17,6 +17,7 @@ use crate::solve::curvature::Curvature;
 use crate::solve::driver::{Warning, WarningKind};
 use crate::solve::objective::LeastSquares;
 use crate::solve::prior::WeightPrior;
+use crate::splines::SplineSolution;
 
 /// A place to look from: the solution, with rows over their standard deviations.
 pub(super) struct View<'a> {
@@ -63,8 +64,7 @@ impl View<'_> {
         if group.is_beliefs() {
             return Some(format!("what is believed of `{}`", schema.name));
         }
-        (few && schema.kind == TermKind::Residual)
-            .then(|| format!("the condition `{}: {}`", self.engine.blocks()[block].term, schema.equation))
+        (few && schema.kind == TermKind::Residual).then(|| condition(group.name, schema.name, schema.equation))
     }
 
     /// None where the curvature cannot be had.
@@ -79,6 +79,38 @@ pub(super) fn of_local(bound: &Bound, found: &LocalSolution) -> Vec<Warning> {
     let learned =
         bound.learned.iter().zip(&found.kept.learned).map(|(learned, &parameter)| learned.map.at(parameter)).collect();
     undetermined(&Words { bound, learned }, &Spread::of_local(bound, found))
+}
+
+/// Conditions that hold at few points and could be left out, by group and term.
+pub(super) fn conditions(bound: &Bound) -> Vec<(usize, usize)> {
+    let groups = bound.problem.scene().schema.groups.iter().zip(&bound.coordinates).enumerate();
+    let few = groups.filter(|(_, (group, points))| points.len() * group.rows <= FEW_ROWS && !points.is_empty());
+    let terms = few.flat_map(|(at, (group, _))| group.terms.iter().enumerate().map(move |(term, own)| (at, term, own)));
+    terms.filter(|(_, _, own)| own.kind == TermKind::Residual).map(|(at, term, _)| (at, term)).collect()
+}
+
+/// Directions that are open in a solution by splines, and conditions that close directions which are open without them.
+pub(super) fn of_splines(bound: &Bound, found: &SplineSolution) -> Vec<Warning> {
+    let learned = bound.learned.iter().zip(&found.kept.learned);
+    let words = Words { bound, learned: learned.map(|(learned, &parameter)| learned.map.at(parameter)).collect() };
+    let mut warnings = Vec::new();
+    for root in &found.roots {
+        let spread = Spread::of_splines(bound, found, root);
+        let Some((group, term)) = root.without else {
+            warnings.extend(undetermined(&words, &spread));
+            if warnings.is_empty() { continue } else { break }
+        };
+        let group = &bound.problem.scene().schema.groups[group];
+        let condition = condition(group.name, group.terms[term].name, group.terms[term].equation);
+        let settled = Open::all(&spread).into_iter().map(|open| words.settled(&open, &spread, &condition));
+        warnings.extend(settled.map(|message| Warning { kind: WarningKind::Settled, message }));
+    }
+    warnings
+}
+
+/// A condition in words.
+fn condition(group: &str, term: &str, equation: &str) -> String {
+    format!("the condition `{group}.{term}: {equation}`")
 }
 
 fn undetermined(words: &Words<'_>, spread: &Spread) -> Vec<Warning> {

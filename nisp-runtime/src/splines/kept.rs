@@ -3,10 +3,12 @@
 use super::basis::HIGHEST_DEGREE;
 use super::group::Group;
 use super::heads::Heads;
-use super::triangle::{Covariance, Row};
+use super::triangle::{Covariance, Row, Triangle};
 use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;
+use crate::facts::Told;
 use crate::problem::Frame;
+use crate::schema::Scene;
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
 
@@ -15,6 +17,8 @@ pub(crate) const CARRIER: &str = "splines";
 
 /// Places whose rows are held at a time.
 const PART: usize = 4096;
+/// Parts of the domain at whose ends a source is compared with its deviations.
+const TELLING: usize = 200;
 
 /// Heads as splines, and what is known of them.
 #[derive(Clone, Debug)]
@@ -22,7 +26,7 @@ pub(crate) struct KeptSplines {
     pub(super) heads: Heads,
     pub(super) theta: Vec<f64>,
     /// Parameters of learned scalars.
-    pub(super) learned: Vec<f64>,
+    pub(crate) learned: Vec<f64>,
     /// One for each kind of smoothness that may be the right one.
     pub(super) spreads: Vec<Spread>,
 }
@@ -57,6 +61,37 @@ impl KeptSplines {
             self.deviation(first, &slopes, &shared)
         };
         (!self.spreads.is_empty()).then(|| places.iter().map(deviation).collect())
+    }
+
+    /// A square root of the covariance of a head's values at places, row by row, where this is that of the coefficients.
+    pub(crate) fn spread(&self, root: &Triangle, head: usize, places: &[f64]) -> Vec<f64> {
+        let shared = vec![0.0; self.learned.len()];
+        let row = |&at: &f64| {
+            let (first, slopes) = self.heads.value_row(head, at);
+            root.root(first, &slopes, &shared)
+        };
+        places.iter().flat_map(row).collect()
+    }
+
+    /// The same of the parameters of learned scalars.
+    pub(crate) fn spread_of_learned(&self, root: &Triangle) -> Vec<f64> {
+        let count = self.learned.len();
+        let unit = |at: usize| (0..count).map(|other| f64::from(at == other)).collect::<Vec<f64>>();
+        (0..count).flat_map(|at| root.root(0, &[], &unit(at))).collect()
+    }
+
+    /// How much is told of every source; nothing without deviations.
+    pub(super) fn told(&self, schema: &Scene) -> Vec<Told> {
+        let ends = self.heads.bases[0].breakpoints();
+        let (first, length) = (ends[0], ends[ends.len() - 1] - ends[0]);
+        let places: Vec<f64> = (0..=TELLING).map(|at| first + length * at as f64 / TELLING as f64).collect();
+        let of = |head: usize| {
+            let (values, deviations) = (self.evaluate(head, &places), self.deviations(head, &places)?);
+            let squares: f64 =
+                values.iter().zip(&deviations).map(|(value, deviation)| (value / deviation).powi(2)).sum();
+            Some(Told { head, size: (squares / places.len() as f64).sqrt() })
+        };
+        (0..schema.heads.len()).filter(|&head| schema.heads[head].source).filter_map(of).collect()
     }
 
     /// Parameters of the learned scalars, and their standard deviations.

@@ -35,10 +35,16 @@ use crate::solve::state;
 
 use kept::Spread;
 use prior::KINDS;
+pub(crate) use triangle::Triangle;
+
 use solver::{Phase, Solver, State, TOLERANCE};
 
 /// Logarithm of the evidence by which a kind of smoothness may fall behind and still count.
 const NEAR: f64 = 8.0;
+/// How far differences of the evidence are trusted: all kinds are approximations of what the source is like.
+const TRUST: f64 = 0.3;
+/// Coefficients up to which it is looked for what is open.
+const MANY: usize = 20_000;
 /// Steps that regress the data at most.
 const REGRESS: u64 = 12;
 /// Gain of the logarithm of the evidence that no longer matters.
@@ -84,6 +90,8 @@ pub(crate) enum SplineError {
 /// A problem solved by splines.
 pub(crate) struct SplineSolution {
     pub(crate) kept: KeptSplines,
+    /// What is open is read from here.
+    pub(crate) roots: Vec<Root>,
     pub(crate) status: Status,
     pub(crate) iterations: u64,
     pub(crate) loss: f64,
@@ -93,6 +101,13 @@ pub(crate) struct SplineSolution {
     pub(crate) answer: Answer,
     /// By group and term: how far rows are off, and the noise that the evidence found.
     pub(crate) misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
+}
+
+/// A square root of the inverse of the coefficients' covariance: of the whole problem, or without a condition.
+pub(crate) struct Root {
+    /// Group and term of the condition.
+    pub(crate) without: Option<(usize, usize)>,
+    pub(crate) triangle: Triangle,
 }
 
 /// Where a run stands: which kind of smoothness is tried, from which iterate, and what came of those before.
@@ -115,10 +130,12 @@ struct Tried {
     state: State,
 }
 
-/// Solves a bound problem within its limits, from the start or from a saved state.
+/// Solves a bound problem within its limits, from the start or from a saved state. Conditions, by group and term, are those that
+/// might be left out.
 pub(crate) fn solve(
     bound: &Bound,
     noise: &Noise,
+    conditions: &[(usize, usize)],
     limits: Limits,
     from: Option<&state::State>,
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
@@ -160,6 +177,7 @@ pub(crate) fn solve(
         place.state = State { step: place.state.step, ..state };
     }
     let mut spreads = Vec::new();
+    let mut roots = Vec::new();
     // Only a minimum has error bars.
     let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
     if run.has_time_for(likely.len()) {
@@ -176,6 +194,16 @@ pub(crate) fn solve(
         let message = "no time was left for error bars; give a larger budget".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
     }
+    if status == Status::Converged
+        && solver.heads.len() <= MANY
+        && let Some(best) = place.best()
+    {
+        solver.set_smoothness(KINDS[best.kind]);
+        for without in std::iter::once(None).chain(conditions.iter().copied().map(Some)) {
+            let triangle = if run.has_time_for(1) { solver.root(&place.state, without)? } else { None };
+            roots.extend(triangle.map(|triangle| Root { without, triangle }));
+        }
+    }
     if status == Status::NotConverged {
         let message = "the data and the equations leave some of the unknowns open: give more conditions or data".into();
         warnings.push(Warning { kind: WarningKind::Undetermined, message });
@@ -184,17 +212,10 @@ pub(crate) fn solve(
     let misfits = solver.misfits(&place.state);
     let State { theta, learned, step: iterations, .. } = place.state;
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
-    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new() };
-    Ok(SplineSolution {
-        kept: KeptSplines { heads, theta, learned, spreads },
-        status,
-        iterations,
-        loss,
-        warnings,
-        checkpoint,
-        answer,
-        misfits,
-    })
+    let kept = KeptSplines { heads, theta, learned, spreads };
+    let told = kept.told(schema);
+    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told };
+    Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })
 }
 
 /// Kinds of smoothness that are tried.
@@ -303,7 +324,7 @@ impl Place {
     fn likely(&self) -> Vec<(f64, Tried)> {
         let Some(best) = self.best() else { return Vec::new() };
         let near = || self.tried.iter().filter(|tried| tried.evidence >= best.evidence - NEAR);
-        let weight = |tried: &Tried| (tried.evidence - best.evidence).exp();
+        let weight = |tried: &Tried| (TRUST * (tried.evidence - best.evidence)).exp();
         let all: f64 = near().map(weight).sum();
         near().map(|tried| (weight(tried) / all, tried.clone())).collect()
     }

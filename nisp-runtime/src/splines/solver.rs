@@ -78,6 +78,8 @@ pub(super) struct Solver<'a> {
     amplitude: Vec<Option<usize>>,
     /// By head, its prior: that of sources while everything is solved, that of fields while data are regressed.
     priors: Vec<Prior>,
+    /// The class of a condition that is left out.
+    left_out: Option<usize>,
     /// Sizes of equations, by group and row.
     sizes: Vec<Vec<f64>>,
     scalars: Vec<f64>,
@@ -125,7 +127,20 @@ impl<'a> Solver<'a> {
         let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len());
         let scalars = bound.scalars.clone();
         let length = breakpoints[breakpoints.len() - 1] - breakpoints[0];
-        Self { bound, heads, groups, classes, roughness, amplitude, priors, sizes, scalars, length, triangle }
+        Self {
+            bound,
+            heads,
+            groups,
+            classes,
+            roughness,
+            amplitude,
+            priors,
+            left_out: None,
+            sizes,
+            scalars,
+            length,
+            triangle,
+        }
     }
 
     /// Bytes that splines over these cells take, about: the triangle and its inverse, a row for every measurement and equation
@@ -270,6 +285,9 @@ impl<'a> Solver<'a> {
             }
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, Some(shared));
             for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| takes_part(term)) {
+                if self.left_out == Some(self.classes[at][number]) {
+                    continue;
+                }
                 let loss = self.bound.losses[at][number];
                 let lacking = self.bound.lacking(at, term);
                 let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
@@ -366,6 +384,18 @@ impl<'a> Solver<'a> {
             }
         }
         sum + self.add_priors(state, phase, &mut |_, _| {})
+    }
+
+    /// The triangle of all rows about a state, those of a condition left out, by its group and term, if one is given; nothing
+    /// where the rest leaves unknowns open.
+    pub(super) fn root(&mut self, state: &State, without: Option<(usize, usize)>) -> Result<Option<Triangle>, Fault> {
+        self.size(state);
+        self.left_out = without.map(|(group, term)| self.classes[group][term]);
+        let rows = self.rows(state, Phase::Solve);
+        self.left_out = None;
+        let mut triangle = Triangle::new(self.heads.len(), self.heads.band, state.learned.len());
+        triangle.add_all(rows?.0.walk());
+        Ok(triangle.solve().map(|_| triangle))
     }
 
     /// One step.
@@ -487,8 +517,10 @@ impl<'a> Solver<'a> {
             let (rough, Some(amplitude)) = (self.roughness[head], self.amplitude[head]) else { continue };
             let worth = self.priors[head].worth(state.classes[rough].size, state.classes[amplitude].size);
             log_determinant += worth.log_determinant;
-            tallies[rough].count = tallies[amplitude].count - worth.amplitude;
-            tallies[amplitude].count = worth.amplitude;
+            // Rounding where waves are much longer than cells.
+            let small = worth.amplitude.clamp(0.0, tallies[amplitude].count);
+            tallies[rough].count = tallies[amplitude].count - small;
+            tallies[amplitude].count = small;
         }
         let unknowns = (self.heads.len() + self.bound.learned.len()) as f64;
         let is_rough = |class: usize| self.roughness.contains(&class);

@@ -26,7 +26,7 @@ pub(super) trait Source {
 
 /// The triangle `R` of `min |J x + r|`, and `-Q^T r` beside it.
 #[derive(Clone, Debug)]
-pub(super) struct Triangle {
+pub(crate) struct Triangle {
     len: usize,
     /// Unknowns that a row may see, from its first on.
     band: usize,
@@ -180,6 +180,28 @@ impl Triangle {
             x[at] = (self.right[at] - after - beside) / row[0];
         }
         x.iter().all(|x| x.is_finite()).then_some((x, shared))
+    }
+
+    /// `R^-T v` of a row `v` of the unknowns: products of two such are covariances of what the rows say.
+    pub(super) fn root(&self, first: usize, slopes: &[f64], shared: &[f64]) -> Vec<f64> {
+        let mut found = vec![0.0; self.len + self.shared];
+        found[first..first + slopes.len()].copy_from_slice(slopes);
+        found[self.len..].copy_from_slice(shared);
+        let (banded, beside) = found.split_at_mut(self.len);
+        for at in first..self.len {
+            let row = &self.rows[at * self.band..][..self.band];
+            let own = banded[at] / row[0];
+            banded[at] = own;
+            banded[at + 1..].iter_mut().zip(&row[1..]).for_each(|(x, r)| *x -= r * own);
+            beside.iter_mut().zip(&self.border[at * self.shared..]).for_each(|(x, r)| *x -= r * own);
+        }
+        for at in 0..self.shared {
+            let row = &self.corner[at * self.shared..][..self.shared];
+            let own = beside[at] / row[at];
+            beside[at] = own;
+            beside[at + 1..].iter_mut().zip(&row[at + 1..]).for_each(|(x, r)| *x -= r * own);
+        }
+        found
     }
 
     fn solve_shared(&self) -> Option<Vec<f64>> {
@@ -384,6 +406,16 @@ mod tests {
             assert!((found - exact).abs() < 1e-10 * exact.abs().max(1.0), "{found} {exact}");
         }
         assert!((2.0 * triangle.log_determinant() - normal.determinant().ln()).abs() < 1e-9);
+        let [one, other] = [(2, &[0.4, -1.0, 0.3][..], &[1.0, 0.5][..]), (3, &[2.0][..], &[0.0, -0.7][..])];
+        let wide = |(first, slopes, shared): (usize, &[f64], &[f64])| {
+            let mut row = DVector::zeros(12);
+            slopes.iter().enumerate().for_each(|(k, x)| row[first + k] = *x);
+            shared.iter().enumerate().for_each(|(k, x)| row[10 + k] = *x);
+            row
+        };
+        let root = |(first, slopes, shared)| DVector::from_vec(triangle.root(first, slopes, shared));
+        let exact = (wide(one).transpose() * &inverse * wide(other))[0];
+        assert!((root(one).dot(&root(other)) - exact).abs() < 1e-10 * exact.abs());
         let covariance = triangle.covariance();
         for row in &rows {
             let dense = DVector::from_fn(12, |j, _| match j {

@@ -13,6 +13,7 @@ mod outliers;
 mod outside;
 mod slow;
 mod smooth;
+mod told;
 
 use crate::facts::Answer;
 use crate::noise::Noise;
@@ -22,7 +23,7 @@ use crate::problem::Bound;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`,
-    /// `outliers`, `outside`, `given`, `distance`, `seen`, `patch`, `determined` or `range`.
+    /// `outliers`, `outside`, `given`, `told`, `distance`, `seen`, `patch`, `determined` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars.
     pub group: &'static str,
@@ -81,6 +82,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         checks.extend(observations::checks(bound, at, &rows, noise));
     }
     checks.extend(outside::checks(bound));
+    checks.extend(told::checks(bound, &answer.told));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));
     Verdict { checks }

@@ -1,0 +1,24 @@
+//! Sources that a record does not tell from none: they are smaller than what is left open of them.
+
+use super::Check;
+use crate::facts::Told;
+use crate::problem::Bound;
+
+/// Standard deviations that a source is large at least, in the mean over the domain. Of simulated sources that are smaller one in
+/// four is farther off than none would be, or outside of its bars; of larger ones one in fifty.
+const LEAST: f64 = 1.5;
+
+/// One check for every source that its carrier tells of.
+pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
+    let heads = bound.problem.scene().schema.heads;
+    let check = |told: &Told| {
+        let name = heads[told.head].name;
+        let said = format!(
+            "`{name}` is {:.2} times as large as its standard deviation, and is told from none from {LEAST} on; below that, \
+             measure more often, more exactly, or for longer",
+            told.size
+        );
+        Check::new("told", ("", name), (told.size.recip(), 1.0 / LEAST), said)
+    };
+    told.iter().map(check).collect()
+}
