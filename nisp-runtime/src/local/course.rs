@@ -71,7 +71,7 @@ impl End {
     }
 }
 
-impl Solver<'_> {
+impl Solver {
     /// The state of another lattice on this one: its values at all points, by least squares.
     pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<Place, LocalError> {
         let inputs = self.heads.lattices[0].dimensions();
@@ -219,7 +219,7 @@ impl Solver<'_> {
     }
 
     /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.
-    fn doubts(&self, loss: f64, rows: usize, steps: u64) -> Vec<Warning> {
+    pub(super) fn doubts(&self, loss: f64, rows: usize, steps: u64) -> Vec<Warning> {
         let mut doubts = Vec::new();
         if steps < CONVEX_STEPS {
             doubts.push("it ended before the equations were solved: give more --budget or --iterations".to_string());
@@ -248,7 +248,7 @@ impl Solver<'_> {
     }
 
     /// Largest change of a field's coefficient or a learned parameter; sources may flicker at their edges for long.
-    fn change(&self, before: &State, after: &State) -> f64 {
+    pub(super) fn change(&self, before: &State, after: &State) -> f64 {
         let fields = self.fields().flat_map(|range| range.map(|at| (before.theta[at], after.theta[at])));
         fields.map(|(a, b)| (a - b).abs()).fold(learned_change(before, after), f64::max)
     }
@@ -256,10 +256,10 @@ impl Solver<'_> {
 
 /// The loss before a step, from so many rows, what the step gained, and the factorised matrix.
 pub(super) struct Found {
-    loss: f64,
+    pub(super) loss: f64,
     gain: f64,
-    rows: usize,
-    factor: Factor,
+    pub(super) rows: usize,
+    pub(super) factor: Factor,
 }
 
 /// Largest change of a learned scalar's parameter.

@@ -4,20 +4,24 @@ use rayon::prelude::*;
 
 use super::group::Group;
 use super::heads::Heads;
-use super::lattice::Exponents;
+use super::lattice::{Exponents, contracted};
 use super::rows::Evaluated;
 use super::sites::Sites;
 use crate::residual::Points;
 use crate::simd::Isa;
 
 impl Group {
-    /// Jets at points, `[jet][point]`; of values of bounded heads, by jet and point, the derivative of what a program reads by
-    /// the head, and what the program does not see of it.
-    pub(super) fn jets_at(&self, sites: &Sites, heads: &Heads, theta: &[f64]) -> (Vec<f64>, Vec<Vec<(f64, f64)>>) {
+    /// Jets at points, `[jet][point]`, from [`Group::spread`]; of values of bounded heads, by jet and point, the derivative
+    /// of what a program reads by the head, and what the program does not see of it.
+    pub(super) fn jets_at(
+        &self,
+        sites: &Sites,
+        heads: &Heads,
+        spread: &[Vec<f64>],
+    ) -> (Vec<f64>, Vec<Vec<(f64, f64)>>) {
         let stride = sites.stride;
         let count = self.schema.jets.len();
         let mut jets = vec![0.0; count * stride];
-        let spread: Vec<Vec<f64>> = (0..heads.lattices.len()).map(|head| heads.spread(head, theta)).collect();
         let mut bounded: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
         jets.par_chunks_mut(stride).zip(&mut bounded).enumerate().for_each(|(at, (jets, bounded))| {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
@@ -48,18 +52,23 @@ impl Group {
         (jets, bounded)
     }
 
-    /// Rows of the group at other points, and their derivatives if `slopes`.
+    /// Coefficients of the heads that the group reads, by the full numbers of their functions.
+    pub(super) fn spread(&self, heads: &Heads, theta: &[f64]) -> Vec<Vec<f64>> {
+        heads.spread_of(&self.highest, theta)
+    }
+
+    /// Rows of the group at other points, from [`Group::spread`], and their derivatives if `slopes`.
     pub(super) fn evaluate_at(
         &self,
         sites: &Sites,
         heads: &Heads,
-        theta: &[f64],
+        spread: &[Vec<f64>],
         scalars: &[f64],
         slopes: bool,
     ) -> Evaluated {
         let stride = sites.stride;
         let count = self.schema.jets.len();
-        let (jets, bounded) = self.jets_at(sites, heads, theta);
+        let (jets, bounded) = self.jets_at(sites, heads, spread);
         let points = Points {
             count: sites.count,
             stride,
@@ -105,14 +114,6 @@ impl Group {
 
     /// Rows of the group at its own points, and their derivatives if `slopes`.
     pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
-        self.evaluate_at(&self.sites, heads, theta, scalars, slopes)
+        self.evaluate_at(&self.sites, heads, &self.spread(heads, theta), scalars, slopes)
     }
-}
-
-/// Sum of a cell's coefficients, of which `lines` says where each line begins, times splines along and across the lines.
-fn contracted(cell: &[f64], lines: &[usize], across: &[f64], along: &[f64]) -> f64 {
-    let line = |(&first, across): (&usize, &f64)| {
-        across * cell[first..first + along.len()].iter().zip(along).map(|(c, value)| c * value).sum::<f64>()
-    };
-    lines.iter().zip(across).map(line).sum()
 }

@@ -7,7 +7,7 @@ use crate::facts::{Answer, CloudFacts, Facts};
 /// Distances to a cloud that splines do not follow, as a share of a cell.
 const UNRESOLVED: f64 = 0.03;
 
-impl Solver<'_> {
+impl Solver {
     /// What a state says.
     pub(super) fn answer(&mut self, state: &State) -> Answer {
         self.find_feet(&state.theta, &state.learned);
@@ -16,7 +16,7 @@ impl Solver<'_> {
             Facts {
                 points: sites.count,
                 stride: sites.stride,
-                jets: group.jets_at(sites, &self.heads, &state.theta).0,
+                jets: group.jets_at(sites, &self.heads, &group.spread(&self.heads, &state.theta)).0,
                 coordinates: sites.coordinates.clone(),
                 columns: sites.columns.clone(),
                 means: group.means(),

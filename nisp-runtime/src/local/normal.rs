@@ -11,6 +11,7 @@ use super::block::Block;
 use super::draws::{Deviations, Draws};
 use super::sorted::Sorted;
 use crate::simd::Isa;
+use crate::solve::vector;
 
 /// Pieces that the matrix is summed up in, at the same time: a fixed number, many enough for all threads.
 const PIECES: usize = 32;
@@ -287,6 +288,12 @@ impl Factor {
     /// `vector . H^-1 vector`, of the coefficients alone.
     pub(super) fn inner(&self, vector: &[f64]) -> f64 {
         solve(&self.factor, vector).iter().zip(vector).map(|(a, b)| a * b).sum()
+    }
+
+    /// Variance of a sum of coefficients, each times its weight.
+    pub(super) fn variance_of_sum(&self, weights: &[f64]) -> Option<f64> {
+        let (solution, _) = self.solve(weights, &vec![0.0; self.border.len()])?;
+        Some(vector::dot(&solution, weights))
     }
 
     /// Variance of a learned scalar's parameter.

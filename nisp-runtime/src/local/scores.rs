@@ -47,7 +47,7 @@ impl Sums {
     }
 }
 
-impl Solver<'_> {
+impl Solver {
     /// Scores of all given numbers, and of the place, the direction and the size of every cloud that has a frame of its own;
     /// none where the matrix cannot be factorised.
     pub(super) fn scores(&mut self, state: &State) -> Option<Vec<Score>> {

@@ -5,29 +5,39 @@ use super::course::Course;
 use super::{Optimizer, RecoverError, Settings, Width, undetermined};
 use crate::carrier::Kept;
 use crate::facts::Answer;
-use crate::local::{self, Local, LocalSolution};
+use crate::local::{self, Live, Local, LocalSolution};
 use crate::problem::Bound;
+use crate::solve::driver::Warning;
 
 impl Carrier for Local {
     fn name(&self) -> &'static str {
         local::CARRIER
     }
 
-    fn solve(&self, bound: &Bound, _: &Settings, mut course: Course<'_, '_>) -> Result<Solved, RecoverError> {
-        let found = local::solve(bound, self, course.left(), course.from, &mut |progress| course.watch(progress))?;
-        let mut warnings = found.warnings.clone();
-        warnings.extend(undetermined::of_local(bound, &found));
-        Ok(Solved {
-            status: found.status,
-            loss: found.loss,
-            iterations: found.iterations,
-            warnings,
-            state: found.checkpoint.clone(),
-            optimizer: Optimizer::Marquardt,
-            method: "gauss-newton",
-            precision: Width::F64,
-            carried: Box::new(found),
-        })
+    fn solve(&self, bound: &Bound, _: &Settings, course: Course<'_, '_>) -> Result<Solved, RecoverError> {
+        sought(bound, self, course).map(|(solved, _)| solved)
+    }
+}
+
+/// A problem solved within the limits of a course; also what goes on from its answer to other data.
+pub(super) fn sought(bound: &Bound, local: &Local, mut course: Course<'_, '_>) -> Result<(Solved, Live), RecoverError> {
+    let (found, live) = local::solve(bound, local, course.left(), course.from, &mut |progress| course.watch(progress))?;
+    let open = undetermined::of_local(bound, &found);
+    Ok((solved(found, open), live))
+}
+
+/// An answer on its lattices, of which `open` says what the data leave open.
+pub(super) fn solved(found: LocalSolution, open: Vec<Warning>) -> Solved {
+    Solved {
+        status: found.status,
+        loss: found.loss,
+        iterations: found.iterations,
+        warnings: found.warnings.iter().cloned().chain(open).collect(),
+        state: found.checkpoint.clone(),
+        optimizer: Optimizer::Marquardt,
+        method: "gauss-newton",
+        precision: Width::F64,
+        carried: Box::new(found),
     }
 }
 
@@ -45,7 +55,7 @@ impl Carried for LocalSolution {
     }
 
     fn deviation_of_sum(&self, bound: &Bound, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
-        self.kept.deviation_of_sum(head, &bound.inward(points), weights)
+        LocalSolution::deviation_of_sum(self, head, &bound.inward(points), weights)
     }
 
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {
