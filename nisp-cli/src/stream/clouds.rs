@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::terminal::{NOT_WRITTEN, note};
 use crate::{interrupt, processors};
 use nisp::solve::driver::Flow;
-use nisp::{Carrier, RecoverError, Session, Settings, Solution};
+use nisp::{RecoverError, Session, Settings, Solution};
 use nisp_data::Cloud;
 use nisp_data::atomic::write_atomic;
 use nisp_equations::Frames;
@@ -20,8 +20,8 @@ use crate::args::stream::StreamOptions;
 use crate::report::{learned, patch, status};
 use crate::results::contact_map;
 
-/// How much coarser than for a single answer the lattice is: steps take a third of the time.
-const COARSER: f64 = 1.5;
+/// Cells of the lattice along the body, fewer than a single answer has: steps take a third of the time.
+const CELLS: usize = 40;
 
 /// Answers every frame.
 pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode, String> {
@@ -123,18 +123,16 @@ impl Sensor {
             sample: options.sample.clone(),
             calibration: options.calibration.clone(),
             unit: options.unit,
+            cells: Some(CELLS),
             parameters: [&options.set, parameters].concat(),
             ..Request::default()
         };
         let mut prepared = entry.prepare(&request)?;
-        let mut settings = prepared.suited(Settings {
+        let settings = prepared.suited(Settings {
             budget: Some(Duration::from_secs_f64(options.budget)),
             threads: options.threads.unwrap_or_else(processors),
             ..Settings::default()
         });
-        if let Carrier::Local(local) = &mut settings.carrier {
-            local.cells = (local.cells as f64 / COARSER).round() as usize;
-        }
         let (Some(frames), Some(contact)) = (prepared.frames.take(), prepared.contact.take()) else { return Ok(None) };
         let session = Session::new(prepared.problem.clone(), settings)?;
         Ok(Some(Self { prepared, frames, contact, session }))

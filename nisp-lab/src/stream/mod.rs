@@ -8,7 +8,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use nisp::solve::driver::Flow;
-use nisp::{Carrier, Session, Settings, Solution, recover};
+use nisp::{Session, Settings, Solution, recover};
 use nisp_cli::interrupt;
 use nisp_cli::options::{count, number, seed};
 use nisp_cli::terminal::{print, progress};
@@ -94,14 +94,11 @@ fn follow(motion: &Motion, options: &Options) -> Result<String, String> {
             force: membrane.force(&pressures),
         };
         let cloud = seen(&membrane, options, &mut random);
-        let fresh = prepared(&cloud)?;
+        let fresh = prepared(&cloud, None)?;
         if session.is_none() {
-            let mut settings = suited(&fresh, options);
-            if let (Carrier::Local(local), Some(cells)) = (&mut settings.carrier, options.cells) {
-                local.cells = cells;
-            }
-            let of = Session::new(fresh.problem.clone(), settings).map_err(|error| error.to_string())?;
-            session = Some((of, prepared(&cloud)?));
+            let own = prepared(&cloud, options.cells)?;
+            let of = Session::new(own.problem.clone(), suited(&own, options)).map_err(|error| error.to_string())?;
+            session = Some((of, own));
         }
         let Some((session, first)) = &mut session else { continue };
         let (Some(frames), Some(contact)) = (&first.frames, &first.contact) else { continue };
@@ -175,13 +172,14 @@ fn seen(membrane: &Membrane, options: &Options, random: &mut Random) -> Cloud {
     Cloud { points, warnings: Vec::new() }
 }
 
-fn prepared(cloud: &Cloud) -> Result<Prepared, String> {
+fn prepared(cloud: &Cloud, cells: Option<usize>) -> Result<Prepared, String> {
     let entry = crate::entry("membrane")?;
     let parameters =
         [("p", PRESSURE), ("E", YOUNG), ("t", 1e3 * THICKNESS), ("nu", POISSON), ("a", AXES[0]), ("b", AXES[1])];
     let request = Request {
         frame: Some(("frame".into(), cloud.clone())),
         parameters: parameters.map(|(name, value)| (name.into(), value)).to_vec(),
+        cells,
         ..Request::default()
     };
     entry.prepare(&request).map_err(|error| error.to_string())
