@@ -6,41 +6,51 @@ use super::phase::CONVEX_STEPS;
 use super::place::State;
 use super::solver::Solver;
 use super::{LocalError, LocalSolution};
+use crate::facts::{Known, Score};
 use crate::problem::Bound;
 use crate::solve::driver::Status;
 
-/// Steps at most, and the change of a field in natural sizes after which no more are taken.
-const STEPS: u64 = 2;
-const STILL: f64 = 5e-3;
-
 /// A solver with its answer: its lattice, the places of its points and the pattern of its equations stay.
 pub(crate) struct Live {
-    pub(super) solver: Solver,
-    pub(super) state: State,
+    solver: Solver,
+    state: State,
+    /// What the problem takes for known, and the last score of each; no scores before all were asked for.
+    known: Vec<Known>,
+    scores: Vec<Option<Score>>,
+    /// Whose turn it is to be asked about.
+    turn: usize,
 }
 
 impl Live {
-    /// The answer to a problem of the same points, from the last one.
+    /// From an answer, with the scores of all that is known if it was asked for them.
+    pub(super) fn new(solver: Solver, state: State, scores: Vec<Option<Score>>) -> Self {
+        let known = solver.known();
+        Self { solver, state, known, scores, turn: 0 }
+    }
+
+    /// The answer to a problem of the same points, from the last one. Edges of patches that have moved are let go of under the
+    /// convex prior, and found again under the other.
     pub(crate) fn update(&mut self, bound: Bound) -> Result<LocalSolution, LocalError> {
+        if self.solver.bound.scalars != bound.scalars {
+            self.scores.clear();
+        }
         self.solver.renew(bound);
-        let mut steps = 0;
-        let (found, place) = loop {
-            let place = self.solver.place(&self.state, steps);
-            let (next, found) = self.solver.step(&self.state, CONVEX_STEPS + 1 + steps, false)?;
-            let change = self.solver.change(&self.state, &next);
-            self.state = next;
-            steps += 1;
-            if steps == STEPS || change < STILL {
-                break (found, place);
-            }
+        // What nothing is known of is asked about; then one after the other, since that takes as long as a step for all.
+        let turns = match self.scores.len() {
+            len if len == self.known.len() => self.turn..(self.turn + 1).min(len),
+            _ => 0..self.known.len(),
         };
+        let (convex, _) = self.solver.step(&self.state, CONVEX_STEPS, false, &[])?;
+        let place = self.solver.place(&convex, 1);
+        let (state, found) = self.solver.step(&convex, CONVEX_STEPS + 1, false, &self.known[turns.clone()])?;
+        self.state = state;
+        self.scores.resize(self.known.len(), None);
+        self.scores[turns.clone()].copy_from_slice(&found.scores);
+        self.turn = turns.end % self.known.len().max(1);
         let warnings = self.solver.doubts(found.loss, found.rows, CONVEX_STEPS);
         let status = if warnings.is_empty() { Status::Converged } else { Status::NotConverged };
         let mut answer = self.solver.answer(&self.state);
-        // An answer that nothing says against is asked what it rests on.
-        if status == Status::Converged {
-            answer.scores = self.solver.scores(&self.state).unwrap_or_default();
-        }
+        answer.scores = self.scores.iter().copied().flatten().collect();
         Ok(LocalSolution {
             kept: KeptLattices {
                 heads: self.solver.heads.clone(),
@@ -49,7 +59,7 @@ impl Live {
                 draws: Deviations::default(),
             },
             status,
-            iterations: steps,
+            iterations: 2,
             loss: found.loss,
             warnings,
             factor: Some(found.factor),

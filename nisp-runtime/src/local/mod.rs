@@ -164,9 +164,9 @@ pub(crate) fn solve(
     }
     let mut answer = solver.answer(&end.state);
     // An answer that nothing says against is asked what it rests on.
-    if solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest)) {
-        answer.scores = solver.scores(&end.state).unwrap_or_default();
-    }
+    let is_asked = solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest));
+    let scores = if is_asked { solver.scores(&end.state).unwrap_or_default() } else { Vec::new() };
+    answer.scores = scores.iter().copied().flatten().collect();
     let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     let kept = KeptLattices {
@@ -176,7 +176,7 @@ pub(crate) fn solve(
         draws: deviations,
     };
     let solution = LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits };
-    Ok((solution, Live { solver, state }))
+    Ok((solution, Live::new(solver, state, scores)))
 }
 
 /// The lattice of a saved state, and the steps before it.

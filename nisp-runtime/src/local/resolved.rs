@@ -24,7 +24,7 @@ impl Solver {
         let fewer = (cells as f64 / COARSER).round() as usize;
         let mut coarse = Solver::new(&self.bound, &self.settings, fewer).ok()?;
         let start = coarse.taken_over(&self.heads, state).ok()?.state;
-        let (found, _) = coarse.step(&start, CONVEX_STEPS + 1, false).ok()?;
+        let (found, _) = coarse.step(&start, CONVEX_STEPS + 1, false, &[]).ok()?;
         let changes: Vec<(&str, f64)> = self
             .leading()
             .into_iter()

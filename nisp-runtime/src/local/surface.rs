@@ -207,21 +207,24 @@ impl Surface {
         if self.feet.is_empty() {
             self.begin(&shape);
         }
+        let mut moving: Vec<usize> = (0..self.cloud.len()).collect();
         for _ in 0..STEPS {
-            let ways = self.look(&shape);
-            if !self.walk(&ways) {
+            let ways = self.look(&shape, &moving);
+            moving = self.walk(&moving, &ways);
+            if moving.is_empty() {
                 return true;
             }
         }
-        self.look(&shape);
+        self.look(&shape, &moving);
         false
     }
 
-    /// Looks around all feet: the normals there, what is left of the points, and how far feet are to move along both tangents.
-    fn look(&mut self, shape: &Shape<'_>) -> Vec<Option<Vector2<f64>>> {
+    /// Looks around some feet: the normals there, what is left of the points, and how far feet are to move along both tangents.
+    fn look(&mut self, shape: &Shape<'_>, moving: &[usize]) -> Vec<Option<Vector2<f64>>> {
         let small = 1e-3 * self.reach;
-        let mut around = Vec::with_capacity(5 * self.feet.len());
-        for (i, foot) in self.feet.chunks_exact(self.inputs).enumerate() {
+        let mut around = Vec::with_capacity(5 * self.inputs * moving.len());
+        for &i in moving {
+            let foot = &self.feet[i * self.inputs..(i + 1) * self.inputs];
             around.extend_from_slice(foot);
             for tangent in self.tangents[self.nearest[i]].chunks_exact(self.inputs) {
                 for sign in [small, -small] {
@@ -230,7 +233,7 @@ impl Surface {
             }
         }
         let positions = shape.positions(&around, self.inputs);
-        let way = |(i, near): (usize, &[Vector3<f64>])| {
+        let way = |(&i, near): (&usize, &[Vector3<f64>])| {
             let slope = |k: usize| (near[1 + 2 * k] - near[2 + 2 * k]) / (2.0 * small);
             let (a, b) = (slope(0), slope(1));
             let normal = a.cross(&b);
@@ -247,19 +250,21 @@ impl Surface {
             let inverse = Matrix3::from_columns(&[a, b, view]).try_inverse()?;
             self.found[i].then(|| (inverse * (self.cloud[i] - near[0])).xy())
         };
-        positions.chunks_exact(5).enumerate().map(way).collect()
+        moving.iter().zip(positions.chunks_exact(5)).map(way).collect()
     }
 
-    /// A step of Newton's method for all feet. False where none had to move.
-    fn walk(&mut self, ways: &[Option<Vector2<f64>>]) -> bool {
-        let mut has_moved = false;
-        for (i, way) in ways.iter().enumerate() {
+    /// A step of Newton's method for some feet; returns those that it has moved.
+    fn walk(&mut self, moving: &[usize], ways: &[Option<Vector2<f64>>]) -> Vec<usize> {
+        let mut moved = Vec::new();
+        for (&i, way) in moving.iter().zip(ways) {
             let Some(way) = way else { continue };
             let far = way.norm();
             let scale = if far > self.reach { self.reach / far } else { 1.0 };
-            has_moved |= far > STILL * self.reach && self.step(i, way.x * scale, way.y * scale);
+            if far > STILL * self.reach && self.step(i, way.x * scale, way.y * scale) {
+                moved.push(i);
+            }
         }
-        has_moved
+        moved
     }
 
     /// Moves a foot along the surface at rest, but not off it: false where it stays.

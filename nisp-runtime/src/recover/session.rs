@@ -9,6 +9,7 @@ use super::{Monitor, RecoverError, Settings, Solution, checkpoint, limits, on_la
 use crate::local::{Live, Local};
 use crate::problem::{Bound, Problem};
 use crate::solve::driver::{Status, Warning, WarningKind};
+use crate::verdict::Check;
 
 /// A problem whose data change, with its last answer.
 ///
@@ -130,7 +131,11 @@ impl Kept {
     }
 }
 
-/// The checks that an answer does not pass.
+/// The checks that an answer does not pass. That of what is given is one for the whole problem, and names what would gain most.
 fn faults(solution: &Solution) -> Vec<Fault> {
-    solution.verdict.failed().map(|check| (check.check, check.group, check.term)).collect()
+    let fault = |check: &Check| match check.check {
+        given @ "given" => (given, "", ""),
+        own => (own, check.group, check.term),
+    };
+    solution.verdict.failed().map(fault).collect()
 }
