@@ -10,7 +10,7 @@
 use std::time::Duration;
 
 use nisp::local::{Local, Patches};
-use nisp::solve::driver::{Flow, Status};
+use nisp::solve::driver::{Flow, Status, WarningKind};
 use nisp::{Carrier, Points, Problem, SceneRef, Session, Settings, Solution, recover, scene};
 
 nisp::pde! {
@@ -180,6 +180,34 @@ fn error_bars_cover_the_truth_and_no_more() {
     let inside = of("f").filter(|(_, c)| c[0].hypot(c[1]) < 0.8 * a);
     let covered = share(inside.map(|((p, sd), _)| (p - f).abs() < 2.0 * sd && *sd < f).collect());
     assert!(covered > 0.8, "{covered} of the pressures");
+}
+
+/// A camera that shows one half: what presses on the other is anybody's guess, and the deviations say so.
+#[test]
+fn what_no_cloud_saw_is_not_known() {
+    let (f, a) = (12_000.0, 12.0);
+    let mut problem = Problem::new(scene::<drum::pressed::Scene>());
+    problem.set_parameter("T", T).unwrap();
+    bind(&mut problem, f, a, 0.0);
+    let patches = Some(Patches { level: P, edges: 0.15, area: 0.75 });
+    let guesses = |solution: &Solution| solution.warnings.iter().any(|warning| warning.kind == WarningKind::Settled);
+    let deviations = |solution: &mut Solution, points: &[f64]| {
+        let found = solution.evaluate_with_errors(points);
+        found.into_iter().find(|estimate| estimate.name == "f").unwrap().deviations.unwrap()
+    };
+    let (far, near) = ([-25.0, 0.0], [25.0, 0.0]);
+    let mut whole = solve(&problem, patches, 2);
+    assert!(!guesses(&whole), "{:?}", whole.warnings);
+    let known = deviations(&mut whole, &[far, near].concat());
+    let unit = 1e-3 / problem.scene().schema.groups[1].terms[0].unit.factor;
+    let seen = disc(1500);
+    let half = seen.chunks(2).filter(|c| c[0] > 0.0).flat_map(|c| [c[0], c[1], height(c[0].hypot(c[1]), f, a)]);
+    problem.set_cloud("surface", "cloud", half.map(|x| unit * x).collect()).unwrap();
+    let mut one_sided = solve(&problem, patches, 2);
+    assert!(guesses(&one_sided), "{:?}", one_sided.warnings);
+    let found = deviations(&mut one_sided, &[far, near].concat());
+    assert!(found[0] > 0.5 * P && found[0] > 3.0 * known[0], "{found:?} {known:?}");
+    assert!(found[1] < 2.0 * known[1], "{found:?} {known:?}");
 }
 
 /// A pressure of the contact takes over what a gas pressure a fifth too high leaves, and the surface fits.

@@ -150,18 +150,18 @@ nisp::pde! {
             without interior.balance_x; without interior.balance_y; without interior.balance_z; without surface.posed;
             without rim.no_contact;
         }
-        /// Modulus, semi-axes and pose of the rim, from clouds of the inflated bubble that nothing touches.
+        /// Modulus, stretch at rest, semi-axes and pose of the rim, from clouds of the inflated bubble that nothing touches.
         scene calibrate {
             f = 0;
-            learn E, widen_a within 0.03, widen_b within 0.03, shift_x within 2, shift_y within 2, shift_z within 2,
+            learn E, stretch within 0.1, widen_a within 0.03, widen_b within 0.03, shift_x within 2, shift_y within 2, shift_z within 2,
                 turn_x within 0.03, turn_y within 0.03, turn_z within 0.03;
             without interior.rubber_x; without interior.rubber_y; without interior.rubber_z; without surface.cloud;
             without rim.no_contact;
         }
-        /// Modulus, semi-axes and pose of the rim of a bubble of rubber (neo-Hookean, incompressible).
+        /// Modulus, stretch at rest, semi-axes and pose of the rim of a bubble of rubber (neo-Hookean, incompressible).
         scene calibrate_rubber {
             f = 0;
-            learn E, widen_a within 0.03, widen_b within 0.03, shift_x within 2, shift_y within 2, shift_z within 2,
+            learn E, stretch within 0.1, widen_a within 0.03, widen_b within 0.03, shift_x within 2, shift_y within 2, shift_z within 2,
                 turn_x within 0.03, turn_y within 0.03, turn_z within 0.03;
             without interior.balance_x; without interior.balance_y; without interior.balance_z; without surface.cloud;
             without rim.no_contact;

@@ -37,6 +37,7 @@ impl References {
             thickness_m: given.of("t")?,
             young: None,
             poisson: given.of("nu")?,
+            stretch: None,
             pressure: given.of("p")?,
         };
         let regions = std::f64::consts::PI * a * b / (2.0 * a.max(b) / REGIONS).powi(2);
@@ -76,6 +77,7 @@ impl References {
             a_m: Some(widen[0] * a),
             b_m: Some(widen[1] * b),
             young: Some(of("E")?),
+            stretch: Some(of("stretch")?),
             pressure: None,
             ..self.given
         };

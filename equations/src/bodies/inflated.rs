@@ -183,16 +183,19 @@ fn stiff(given: &Given<'_>) -> Result<f64, PrepareError> {
 }
 
 fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
-    let Membrane { a_m, b_m, thickness_m, young, poisson, pressure } = sample.tables::<Tables>()?.membrane;
+    let Membrane { a_m, b_m, thickness_m, young, poisson, stretch, pressure } = sample.tables::<Tables>()?.membrane;
     let number = |name, key, value| Number { name, key, value };
-    Ok(vec![
+    let mut numbers = vec![
         number("a", "[membrane] a_m", a_m),
         number("b", "[membrane] b_m", b_m),
         number("t", "[membrane] thickness_m", thickness_m),
         number("E", "[membrane] young_Pa", young),
         number("nu", "[membrane] poisson", poisson),
         number("p", "[membrane] gauge_pressure_Pa", pressure),
-    ])
+    ];
+    // Most samples have none.
+    numbers.extend(stretch.map(|stretch| number("stretch", "[membrane] stretch", Some(stretch))));
+    Ok(numbers)
 }
 
 /// Points on a regular grid around the origin.

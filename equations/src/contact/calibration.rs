@@ -62,6 +62,8 @@ pub struct Membrane {
     pub young: Option<f64>,
     /// Poisson's ratio.
     pub poisson: Option<f64>,
+    /// Stretch that it has at rest over its rim; one where nothing is said.
+    pub stretch: Option<f64>,
     /// Gauge pressure.
     #[serde(rename = "gauge_pressure_Pa")]
     pub pressure: Option<f64>,

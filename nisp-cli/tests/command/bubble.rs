@@ -85,6 +85,7 @@ fn a_calibrated_sensor_finds_the_force() {
     for learned in sensor["learned"].as_array().unwrap() {
         let truth = match learned["name"].as_str().unwrap() {
             "E" => 341_260.0,
+            "stretch" => 1.0,
             "widen_a" => 0.06 / 0.061,
             "widen_b" => 0.04 / 0.0395,
             "turn_x" => TURN[0],

@@ -187,6 +187,20 @@ fn units_and_missing_points_are_taken_care_of() {
     assert_eq!(metres["errors"].as_object().unwrap().len(), 1, "{metres}");
 }
 
+/// A high bulge is no load: the first surface has to be where the cloud is, or `f = p` on a flat membrane explains all.
+#[test]
+fn nothing_presses_a_free_membrane() {
+    let place = Place::new();
+    let ran = place.run(&format!(
+        "solve membrane --sample {} --cloud 2 --iterations 24 --budget 600 --json",
+        data("membrane/inflated_1.toml").display()
+    ));
+    assert_eq!(ran.code, Some(0), "{} {}", ran.stderr, ran.stdout);
+    let found = object(&ran.stdout);
+    assert!(found["errors"]["force_N"].as_f64().unwrap() < 0.3, "{}", found["errors"]);
+    assert!(found["patches"].as_array().unwrap().is_empty(), "{}", found["patches"]);
+}
+
 /// Not the best that the solver reaches: so many steps that a wrong turn would show.
 #[test]
 fn local_functions_find_the_patch_and_the_modulus() {

@@ -11,15 +11,17 @@ use super::phase::Phase;
 use super::place::State;
 use super::prior::Sparse;
 use super::solver::Solver;
+use super::unseen::Unseen;
 use super::{Local, LocalError};
 use crate::problem::Bound;
+use crate::solve::driver::{Warning, WarningKind};
 use crate::solve::fault::Fault;
 
 /// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
 const RIDGE: f64 = 1e-6;
 const STIFFNESS: f64 = 1e-3;
-/// Stiffness of differences in the first step, which only regresses the data: so much that noise cannot crease the state.
-const ROUGH: f64 = 1000.0;
+/// Length over which the first step, which only regresses the data, smooths them, in cells: noise cannot crease the state.
+const SMOOTHED: f64 = 2.0;
 /// Random vectors for the trace of the influence matrix (Hutchinson).
 const PROBES: usize = 2;
 /// Stiffness of a parameter that is held.
@@ -83,15 +85,15 @@ impl Solver {
             rows += surface.misfits().count();
             loss += surface.loss(sigma);
         }
-        for at in 0..theta.len() {
-            self.normal.add_stiffness(at, RIDGE);
-        }
         for (at, parameter) in state.learned.iter().enumerate() {
             // Parameters wait until the state is one of the equations' solutions. Their own scale is of the order of one.
             let stiffness = if matches!(phase, Phase::Regress | Phase::Convex { held: true }) { HELD } else { 1e-2 };
             self.normal.add_learned(at, stiffness, 1e-2 * parameter);
         }
         self.add_priors(theta, noise, regress, phase == Phase::Concave);
+        for at in 0..theta.len() {
+            self.normal.add_stiffness(at, RIDGE);
+        }
         Ok((loss, rows, probes))
     }
 
@@ -100,7 +102,12 @@ impl Solver {
         let schema = self.bound.problem.scene().schema;
         for (head, declared) in schema.heads.iter().enumerate() {
             let first = self.heads.first[head];
-            let stiffness = if regress { ROUGH } else { STIFFNESS };
+            let stiffness = if regress {
+                let seen = self.normal.typical(first..self.heads.first[head + 1]);
+                (SMOOTHED * SMOOTHED * seen).max(STIFFNESS)
+            } else {
+                STIFFNESS
+            };
             for axis in (0..schema.coordinates.len()).filter(|_| regress || !declared.source) {
                 for (a, b) in self.heads.lattices[head].neighbours(axis) {
                     let (i, j) = (first + a as usize, first + b as usize);
@@ -110,11 +117,36 @@ impl Solver {
             if regress {
                 continue;
             }
+            // The answer is what the prior says where nothing was seen; its deviations are not.
+            let unseen = self.normal.draws.as_ref().and_then(|_| self.unseen(head));
             let Some(sparse) = sparse(&self.bound, &self.settings, &self.heads, head, noise / self.cell) else {
                 continue;
             };
+            let sparse = Sparse { unseen, ..sparse };
             sparse.add(&mut self.normal, theta, concave);
         }
+    }
+
+    /// Where no cloud saw a source's head. One on a face of a body is told by the shape of the rest.
+    fn unseen(&self, head: usize) -> Option<Unseen> {
+        if self.settings.source_dimensions < self.heads.lattices[head].dimensions() {
+            return None;
+        }
+        Unseen::of(&self.surfaces, &self.heads.lattices[head])
+    }
+
+    /// Says which sources act where no cloud saw the surface.
+    pub(super) fn rests_on_the_prior(&self) -> Vec<Warning> {
+        let heads = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| head.source);
+        let unseen = heads.filter_map(|(at, head)| Some((head.name, self.unseen(at)?.share())));
+        let said = |(name, share): (&str, f64)| {
+            format!(
+                "clouds do not show {:.0} % of where `{name}` acts; it is what the prior says there, as little as can be, and its \
+                 deviations say how much it may be",
+                100.0 * share
+            )
+        };
+        unseen.map(|found| Warning { kind: WarningKind::Settled, message: said(found) }).collect()
     }
 
     /// What priors add to the loss, but for a constant.
@@ -138,7 +170,7 @@ impl Solver {
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state. The patch is taken as it is: what the prior
-    /// holds at zero stays there.
+    /// holds at zero stays there, where it was seen.
     pub(super) fn deviations(&mut self, state: &State) -> Option<Deviations> {
         self.find_feet(&state.theta, &state.learned);
         self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
@@ -155,7 +187,16 @@ fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, no
     let prior = settings.patches.filter(|_| declared.source)?;
     let sign = heads.bound[head].map_or(1.0, |(sign, _)| sign);
     let level = prior.level * bound.system.inward(&declared.unit) / heads.scale[head] * sign;
-    Some(Sparse { heads, head, prior, level, finer: settings.finer, dimensions: settings.source_dimensions, noise })
+    Some(Sparse {
+        heads,
+        head,
+        prior,
+        level,
+        finer: settings.finer,
+        dimensions: settings.source_dimensions,
+        noise,
+        unseen: None,
+    })
 }
 
 /// The loss of a block's rows; `fault` says of a row that it is not finite.

@@ -99,6 +99,20 @@ impl Lattice {
         self.cells.iter().map(|n| n + self.degree).product()
     }
 
+    /// Middle of a kept function's support, in three coordinates.
+    pub(super) fn middle(&self, number: usize) -> [f64; 3] {
+        let mut full = self.full[number];
+        let mut middle = [0.0; 3];
+        for (axis, x) in middle.iter_mut().enumerate().take(self.dimensions()) {
+            let count = self.cells[axis] + self.degree;
+            // The first function is spread over `degree` cells before the box and one in it.
+            let cells = (full % count) as f64 + 0.5 * (1.0 - self.degree as f64);
+            *x = self.low[axis] + self.spacing[axis] * cells;
+            full /= count;
+        }
+        middle
+    }
+
     /// Functions that do not vanish on a cell.
     pub(super) fn per_cell(&self) -> usize {
         (self.degree + 1).pow(self.dimensions() as u32)

@@ -47,9 +47,13 @@ impl Live {
         self.scores.resize(self.known.len(), None);
         self.scores[turns.clone()].copy_from_slice(&found.scores);
         self.turn = turns.end % self.known.len().max(1);
-        let warnings = self.solver.doubts(found.loss, found.rows, CONVEX_STEPS);
+        let mut warnings = self.solver.doubts(found.loss, found.rows, CONVEX_STEPS);
         let status = if warnings.is_empty() { Status::Converged } else { Status::NotConverged };
         let mut answer = self.solver.answer(&self.state);
+        // The matrix holds sources at zero where no cloud saw the surface, so that its deviations say too little.
+        let on_prior = self.solver.rests_on_the_prior();
+        let factor = Some(found.factor).filter(|_| on_prior.is_empty());
+        warnings.extend(on_prior);
         answer.scores = self.scores.iter().copied().flatten().collect();
         Ok(LocalSolution {
             kept: KeptLattices {
@@ -62,7 +66,7 @@ impl Live {
             iterations: 2,
             loss: found.loss,
             warnings,
-            factor: Some(found.factor),
+            factor,
             checkpoint: place.save(0, 1),
             answer,
             misfits: self.solver.misfits(&self.state),

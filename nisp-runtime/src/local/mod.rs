@@ -37,6 +37,7 @@ mod sorted;
 mod surface;
 mod tabled;
 mod testing;
+mod unseen;
 
 use std::time::{Duration, Instant};
 
@@ -162,6 +163,7 @@ pub(crate) fn solve(
     if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
         end.warnings.extend(solver.unresolved(&end.state, settings.cells));
     }
+    end.warnings.extend(solver.rests_on_the_prior());
     let mut answer = solver.answer(&end.state);
     // An answer that nothing says against is asked what it rests on.
     let is_asked = solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest));

@@ -1,5 +1,7 @@
 //! Normal equations of sparse rows, bordered by the few unknowns that all rows share.
 
+use std::ops::Range;
+
 use faer::prelude::Solve;
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
@@ -175,6 +177,15 @@ impl Normal {
         if let Some(draws) = &mut self.draws {
             draws.add(&[(i, -weight.sqrt()), (j, weight.sqrt())]);
         }
+    }
+
+    /// How stiff the rows hold a coefficient of a range: the median of those that they see, zero if they see none.
+    pub(super) fn typical(&self, range: Range<usize>) -> f64 {
+        // A column of the lower triangle begins with its diagonal.
+        let starts = self.pattern.col_ptr();
+        let mut seen: Vec<f64> = range.map(|at| self.values[starts[at]]).filter(|&value| value > 0.0).collect();
+        seen.sort_by(f64::total_cmp);
+        seen.get(seen.len() / 2).copied().unwrap_or(0.0)
     }
 
     /// Adds to an entry, `row >= column`.

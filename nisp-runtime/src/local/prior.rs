@@ -8,6 +8,7 @@
 use super::heads::Heads;
 use super::lattice::Lattice;
 use super::normal::Normal;
+use super::unseen::Unseen;
 
 /// A prior for a source that is zero nearly everywhere. Its penalties are those for clouds that are as noisy as a cell is
 /// wide: finer data can pretend smaller patches, so that penalties rise as noise falls, that of an area as the square of that
@@ -47,6 +48,8 @@ pub(super) struct Sparse<'a> {
     pub(super) dimensions: usize,
     /// Noise of the clouds over the size of a cell.
     pub(super) noise: f64,
+    /// Where it is not at work, as nothing is known there.
+    pub(super) unseen: Option<Unseen>,
 }
 
 impl Sparse<'_> {
@@ -69,8 +72,9 @@ impl Sparse<'_> {
         let steepness = self.steepness(&f);
         let (edges, patch) = self.penalties();
         let square = 1.0 / (self.level * self.level);
+        let seen = |at: usize| self.unseen.as_ref().is_none_or(|unseen| !unseen.functions[at]);
         for axis in 0..self.lattice().dimensions() {
-            for (a, b) in self.lattice().neighbours(axis) {
+            for (a, b) in self.lattice().neighbours(axis).filter(|(a, b)| seen(*a as usize) && seen(*b as usize)) {
                 let (i, j) = (a as usize, b as usize);
                 let slope = if concave { compression(0.5 * (f[i] + f[j])) } else { 1.0 };
                 let weight = edges * length * slope / steepness[i].max(SMOOTH);
@@ -78,13 +82,16 @@ impl Sparse<'_> {
                 normal.add_difference([first + i, first + j], weight * square, difference);
             }
         }
-        for (at, &f) in f.iter().enumerate() {
+        for (at, &f) in f.iter().enumerate().filter(|(at, _)| seen(*at)) {
             let slope = patch * area * if concave { small(f) } else { 1.0 };
             normal.gradient[first + at] += slope / self.level;
             if f < 0.0 {
                 normal.gradient[first + at] += WALL * area * f / self.level;
                 normal.add_stiffness(first + at, WALL * area * square);
             }
+        }
+        if let Some(unseen) = &self.unseen {
+            unseen.add(normal, self.heads, self.head, self.level);
         }
     }
 

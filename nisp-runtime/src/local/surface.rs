@@ -157,6 +157,12 @@ impl Surface {
         self.feet.chunks_exact(self.inputs).map(padded).collect()
     }
 
+    /// The feet that were found.
+    pub(super) fn found_places(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        let feet = self.feet.chunks_exact(self.inputs).zip(&self.found);
+        feet.filter(|(_, found)| **found).map(|(foot, _)| padded(foot))
+    }
+
     /// Signed distances of all points across the surface; nothing where the foot was lost.
     pub(super) fn signed(&self) -> Vec<Option<f64>> {
         let across = self.misfits.iter().zip(&self.normals).map(|(misfit, normal)| misfit / normal.norm());
