@@ -32,8 +32,8 @@ pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene, scene_in_both_
 pub use nisp_runtime::live::{FixedLagSmoother, LagSettings, LiveError, RowColumn, Smoothed};
 pub use nisp_runtime::problem::{BindError, Points, Problem};
 pub use nisp_runtime::recover::{
-    Carrier, Checkpoint, CheckpointError, LearnedValue, Misfits, Optimizer, RecoverError, Report, Settings, Solution,
-    TermReport, Width, recover, resume,
+    Carrier, Checkpoint, CheckpointError, LearnedValue, Misfits, Optimizer, RecoverError, Report, Session, Settings,
+    Solution, TermReport, Width, recover, resume,
 };
 pub use nisp_runtime::saved::{OpenAnswer, SavedAnswer, SavedError, SavedParameter};
 pub use nisp_runtime::verdict::{Check, Verdict};

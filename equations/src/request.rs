@@ -30,6 +30,8 @@ pub struct Request {
     pub truth: Option<PathBuf>,
     /// A network even where local functions suit the scene better.
     pub network: bool,
+    /// Cells of local functions along the longest coordinate, if not as many as a single answer has.
+    pub cells: Option<usize>,
     /// Names and the headers that hold them; the last word on a name counts.
     pub columns: Vec<(String, String)>,
     /// About how many points groups shall have that lie in domains; the last word on a name counts.

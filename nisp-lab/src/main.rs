@@ -9,6 +9,7 @@ mod peers;
 mod random;
 mod records;
 mod rk4;
+mod stream;
 
 use std::process::ExitCode;
 
@@ -36,6 +37,8 @@ enum Command {
     Records(records::Options),
     /// Solve problems that others publish with their programs, from texts and data made anew.
     Peers(cases::Cases),
+    /// Follow tools that move over the membrane: time of an update, patch and force beside single answers.
+    Stream(stream::Options),
 }
 
 /// The program's name, in its messages.
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
         Ok(Args { command: Command::Honesty(options) }) => honesty::honesty(&options),
         Ok(Args { command: Command::Records(options) }) => records::records(&options),
         Ok(Args { command: Command::Peers(options) }) => peers::peers(&options),
+        Ok(Args { command: Command::Stream(options) }) => stream::stream(&options),
         Err(error) => show(&error),
     };
     end(NAME, result)

@@ -97,9 +97,18 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     let level = given.of("p")?.filter(|_| pressure.is_some());
     let patches = level.map(|level| Patches { level, ..PATCHES });
     // What a calibration leaves must not be the error of a coarser lattice than later frames are solved on.
-    let cells = if patches.is_some() || calibrates { CELLS_FOR_PATCHES } else { LOCAL.cells };
+    let usual = if patches.is_some() || calibrates { CELLS_FOR_PATCHES } else { LOCAL.cells };
+    let cells = request.cells.unwrap_or(usual);
     let local = (!request.network).then_some(Local { cells, patches, ..LOCAL });
-    let (counts, sampling) = if local.is_some() { (LOCAL_POINTS, Sampling::Grid) } else { (POINTS, Sampling::Sobol) };
+    // Cells of another size have as many points each.
+    let scaled = |count: usize, dimensions| (count as f64 * (cells as f64 / usual as f64).powi(dimensions)) as usize;
+    let (counts, sampling) = match local {
+        Some(_) => {
+            let (inner, surface, rim) = LOCAL_POINTS;
+            ((scaled(inner, 2), scaled(surface, 2), scaled(rim, 1)), Sampling::Grid)
+        }
+        None => (POINTS, Sampling::Sobol),
+    };
     for group in schema.groups {
         let points = match group.name {
             "rim" => ellipse.boundary(counts.2),

@@ -127,7 +127,8 @@ Answers to frames, one JSON object a line:
   frame       name of the file, or number of the cloud
   t           when it came, in seconds from the stream's beginning
   status      converged, inconsistent (`failed` says why), budget, not_converged, or error (`error` says what is wrong)
-  force_N     net force on the body, force_sd_N the standard deviation of its magnitude
+  force_N     net force on the body, force_sd_N the standard deviation of its magnitude: null where the answer does not pass,
+              and where it goes on from another and the cloud leaves more than a tenth of the surface unseen
   patches     touched parts, the largest first: centre_m, area_m2 and force_N, each also at rest
   learned     learned parameters: value, deviation, unit
   seen        share of the surface that the cloud shows

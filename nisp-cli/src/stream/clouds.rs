@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 use crate::terminal::{NOT_WRITTEN, note};
 use crate::{interrupt, processors};
 use nisp::solve::driver::Flow;
-use nisp::{Settings, Solution, recover};
+use nisp::{RecoverError, Session, Settings, Solution};
 use nisp_data::Cloud;
 use nisp_data::atomic::write_atomic;
 use nisp_equations::Frames;
@@ -19,6 +19,9 @@ use super::line::{self, Head};
 use crate::args::stream::StreamOptions;
 use crate::report::{learned, patch, status};
 use crate::results::contact_map;
+
+/// Cells of the lattice along the body, fewer than a single answer has: steps take a third of the time.
+const CELLS: usize = 40;
 
 /// Answers every frame.
 pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode, String> {
@@ -80,7 +83,7 @@ fn see(
             Ok(None) => {
                 return Err(format!("`{}` cannot be followed: every frame has data beside its cloud", entry.name));
             }
-            Err(error) if error.is_of(Path::new(name)) => return Ok(Err(error.to_string())),
+            Err(Fault::Prepare(error)) if error.is_of(Path::new(name)) => return Ok(Err(error.to_string())),
             Err(error) => return Err(error.to_string()),
         }
     }
@@ -88,29 +91,39 @@ fn see(
     Ok(sensor.see(name, &parameters, cloud))
 }
 
+/// Why there is no sensor.
+#[derive(Debug, thiserror::Error)]
+enum Fault {
+    /// Options or a frame that do not fit.
+    #[error(transparent)]
+    Prepare(#[from] PrepareError),
+    /// A session that cannot begin.
+    #[error(transparent)]
+    Session(#[from] RecoverError),
+}
+
 /// A body whose clouds are answered one after the other.
 struct Sensor {
     prepared: Prepared,
     frames: Frames,
     contact: Contact,
-    settings: Settings,
-    /// Of the last frame that was answered.
-    solution: Option<Solution>,
+    session: Session,
 }
 
 impl Sensor {
-    /// Nothing where clouds alone are not enough.
+    /// A sensor as options and a frame describe it; nothing where clouds alone are not enough.
     fn new(
         entry: &Entry,
         options: &StreamOptions,
         (name, parameters, cloud): (&str, &[(String, f64)], &Cloud),
-    ) -> Result<Option<Self>, PrepareError> {
+    ) -> Result<Option<Self>, Fault> {
         let request = Request {
             scene: options.scene.clone(),
             frame: Some((PathBuf::from(name), cloud.clone())),
             sample: options.sample.clone(),
             calibration: options.calibration.clone(),
             unit: options.unit,
+            cells: Some(CELLS),
             parameters: [&options.set, parameters].concat(),
             ..Request::default()
         };
@@ -121,26 +134,26 @@ impl Sensor {
             ..Settings::default()
         });
         let (Some(frames), Some(contact)) = (prepared.frames.take(), prepared.contact.take()) else { return Ok(None) };
-        Ok(Some(Self { prepared, frames, contact, settings, solution: None }))
+        let session = Session::new(prepared.problem.clone(), settings)?;
+        Ok(Some(Self { prepared, frames, contact, session }))
     }
 
     /// Answers a frame. Parameters hold until a later frame has others.
     fn see(&mut self, name: &str, parameters: &[(String, f64)], cloud: Cloud) -> Result<Value, String> {
         self.prepared.source = name.into();
         for (parameter, value) in parameters {
-            self.prepared.problem.set_parameter(parameter, *value).map_err(|error| error.to_string())?;
+            self.session.problem().set_parameter(parameter, *value).map_err(|error| error.to_string())?;
         }
-        let cloud = self.frames.bind(&mut self.prepared.problem, Path::new(name), cloud);
+        let cloud = self.frames.bind(self.session.problem(), Path::new(name), cloud);
         let cloud = cloud.map_err(|error| error.to_string())?;
         let stop = || if interrupt::asked() { Flow::Stop } else { Flow::Continue };
-        let solution = recover(&self.prepared.problem, &self.settings, &mut |_| stop());
-        let solution = self.solution.insert(solution.map_err(|error| error.to_string())?);
+        let solution = self.session.update(&mut |_| stop()).map_err(|error| error.to_string())?;
         Ok(members(solution, &self.contact, |surface| self.frames.seen(surface, &cloud)))
     }
 
     /// Draws the last answer.
     fn map(&mut self, folder: &Path, name: &str) -> Result<String, String> {
-        let Some(solution) = &mut self.solution else { return Ok(String::new()) };
+        let Some(solution) = self.session.solution() else { return Ok(String::new()) };
         let stem = Path::new(name).file_stem().unwrap_or_default();
         let path = folder.join(stem).with_added_extension("svg");
         let picture = contact_map(&self.prepared, &self.contact, solution).map_err(|error| error.to_string())?;

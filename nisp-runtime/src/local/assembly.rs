@@ -27,7 +27,7 @@ const PROBES: usize = 2;
 /// Stiffness of a parameter that is held.
 const HELD: f64 = 1e30;
 
-impl Solver<'_> {
+impl Solver {
     /// The normal equations about a state whose feet are found; also the loss, how many rows there are, and random
     /// combinations of the clouds' rows.
     pub(super) fn assemble(
@@ -119,7 +119,7 @@ impl Solver<'_> {
             }
             // The answer is what the prior says where nothing was seen; its deviations are not.
             let unseen = self.normal.draws.as_ref().and_then(|_| self.unseen(head));
-            let Some(sparse) = sparse(self.bound, self.settings, &self.heads, head, noise / self.cell) else {
+            let Some(sparse) = sparse(&self.bound, &self.settings, &self.heads, head, noise / self.cell) else {
                 continue;
             };
             let sparse = Sparse { unseen, ..sparse };
@@ -155,7 +155,7 @@ impl Solver<'_> {
         let sources = schema.heads.iter().enumerate().filter(|(_, head)| head.source);
         let of_sources: f64 = sources
             .filter_map(|(head, _)| {
-                let sparse = sparse(self.bound, self.settings, &self.heads, head, noise / self.cell)?;
+                let sparse = sparse(&self.bound, &self.settings, &self.heads, head, noise / self.cell)?;
                 Some(sparse.value(&state.theta, concave))
             })
             .sum();
@@ -167,14 +167,6 @@ impl Solver<'_> {
         self.find_feet(&state.theta, &state.learned);
         let groups = self.groups.iter().map(|group| group.loss(&self.heads, &state.theta, &self.scalars));
         groups.sum::<f64>() + self.surfaces.iter().map(|surface| surface.loss(surface.sigma(noise))).sum::<f64>()
-    }
-
-    /// Finds the feet of all clouds on the present surface.
-    pub(super) fn find_feet(&mut self, theta: &[f64], learned: &[f64]) {
-        self.set_learned(learned);
-        for surface in &mut self.surfaces {
-            surface.find(&self.groups[surface.group], &self.heads, theta, &self.scalars);
-        }
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state. The patch is taken as it is: what the prior

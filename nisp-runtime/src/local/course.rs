@@ -8,6 +8,7 @@ use super::solver::{LEAST_DAMPING, Solver};
 use super::surface::Surface;
 use super::{LocalError, Stage};
 use crate::carrier::Progress;
+use crate::facts::{Known, Score};
 use crate::loss::deviation_of_clean;
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
@@ -71,7 +72,7 @@ impl End {
     }
 }
 
-impl Solver<'_> {
+impl Solver {
     /// The state of another lattice on this one: its values at all points, by least squares.
     pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<Place, LocalError> {
         let inputs = self.heads.lattices[0].inputs();
@@ -125,7 +126,7 @@ impl Solver<'_> {
                 break;
             }
             let place = self.place(&state, iteration);
-            let (next, found) = match self.step(&state, iteration + skipped, coarse) {
+            let (next, found) = match self.step(&state, iteration + skipped, coarse, &[]) {
                 Ok(found) => found,
                 // The step that led here was too long: it is taken back, and a part of it is tried.
                 Err(LocalError::Fault(fault)) if factor.is_some() => {
@@ -178,7 +179,14 @@ impl Solver<'_> {
 
     /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it: coefficients that
     /// hardly any row sees stay where they are, and a step that leads far uphill is taken again with more damping.
-    pub(super) fn step(&mut self, state: &State, iteration: u64, coarse: bool) -> Result<(State, Found), LocalError> {
+    /// Some of what is known is asked for its scores on the way.
+    pub(super) fn step(
+        &mut self,
+        state: &State,
+        iteration: u64,
+        coarse: bool,
+        asked: &[Known],
+    ) -> Result<(State, Found), LocalError> {
         let regress = iteration == 0;
         self.find_feet(&state.theta, &state.learned);
         let noise = if regress { state.noise } else { self.noise(state.used) };
@@ -187,7 +195,7 @@ impl Solver<'_> {
         let before = loss + self.penalty(state, noise, phase == Phase::Concave);
         let fields: Vec<usize> = self.fields().flatten().collect();
         let (mut damping, mut wanted) = (0.0, state.damping);
-        let (next, after, factor) = loop {
+        let (next, after, factor, scores) = loop {
             fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
             damping = wanted;
             let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
@@ -200,13 +208,14 @@ impl Solver<'_> {
             let mut next = State { noise, used, damping: calmer, ..state.clone() };
             next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
             next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
+            let scores = self.scores_of(asked, &State { noise, ..state.clone() }, &factor);
             let after = self.loss(&next, noise) + self.penalty(&next, noise, phase == Phase::Concave);
             if regress || after <= UPHILL * before || damping >= MOST_DAMPING {
-                break (next, after, factor);
+                break (next, after, factor, scores);
             }
             wanted *= STRONGER;
         };
-        Ok((next, Found { loss, gain: before - after, rows, factor }))
+        Ok((next, Found { loss, gain: before - after, rows, factor, scores }))
     }
 
     /// Standard deviation of the clouds about the surface, without outliers; the largest declared where all are.
@@ -219,7 +228,7 @@ impl Solver<'_> {
     }
 
     /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.
-    fn doubts(&self, loss: f64, rows: usize, steps: u64) -> Vec<Warning> {
+    pub(super) fn doubts(&self, loss: f64, rows: usize, steps: u64) -> Vec<Warning> {
         let mut doubts = Vec::new();
         if steps < CONVEX_STEPS {
             doubts.push("it ended before the equations were solved: give more --budget or --iterations".to_string());
@@ -248,18 +257,19 @@ impl Solver<'_> {
     }
 
     /// Largest change of a field's coefficient or a learned parameter; sources may flicker at their edges for long.
-    fn change(&self, before: &State, after: &State) -> f64 {
+    pub(super) fn change(&self, before: &State, after: &State) -> f64 {
         let fields = self.fields().flat_map(|range| range.map(|at| (before.theta[at], after.theta[at])));
         fields.map(|(a, b)| (a - b).abs()).fold(learned_change(before, after), f64::max)
     }
 }
 
-/// The loss before a step, from so many rows, what the step gained, and the factorised matrix.
+/// The loss before a step, from so many rows, what the step gained, the factorised matrix, and the scores that were asked for.
 pub(super) struct Found {
-    loss: f64,
+    pub(super) loss: f64,
     gain: f64,
-    rows: usize,
-    factor: Factor,
+    pub(super) rows: usize,
+    pub(super) factor: Factor,
+    pub(super) scores: Vec<Option<Score>>,
 }
 
 /// Largest change of a learned scalar's parameter.

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::group::Group;
 use super::heads::Heads;
-use super::lattice::Exponents;
+use super::lattice::{Exponents, contracted};
 use super::rows::Evaluated;
 use super::sites::Sites;
 use crate::facts::Facts;
@@ -12,13 +12,17 @@ use crate::residual::Points;
 use crate::simd::Isa;
 
 impl Group {
-    /// Jets at points, `[jet][point]`; of values of bounded heads, by jet and point, the derivative of what a program reads by
-    /// the head, and what the program does not see of it.
-    pub(super) fn jets_at(&self, sites: &Sites, heads: &Heads, theta: &[f64]) -> (Vec<f64>, Vec<Vec<(f64, f64)>>) {
+    /// Jets at points, `[jet][point]`, from [`Group::spread`]; of values of bounded heads, by jet and point, the derivative
+    /// of what a program reads by the head, and what the program does not see of it.
+    pub(super) fn jets_at(
+        &self,
+        sites: &Sites,
+        heads: &Heads,
+        spread: &[Vec<f64>],
+    ) -> (Vec<f64>, Vec<Vec<(f64, f64)>>) {
         let stride = sites.stride;
         let count = self.schema.jets.len();
         let mut jets = vec![0.0; count * stride];
-        let spread: Vec<Vec<f64>> = (0..heads.lattices.len()).map(|head| heads.spread(head, theta)).collect();
         let mut bounded: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
         jets.par_chunks_mut(stride).zip(&mut bounded).enumerate().for_each(|(at, (jets, bounded))| {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
@@ -49,18 +53,23 @@ impl Group {
         (jets, bounded)
     }
 
-    /// Rows of the group at other points, and their derivatives if `slopes`.
+    /// Coefficients of the heads that the group reads, by the full numbers of their functions.
+    pub(super) fn spread(&self, heads: &Heads, theta: &[f64]) -> Vec<Vec<f64>> {
+        heads.spread_of(&self.highest, theta)
+    }
+
+    /// Rows of the group at other points, from [`Group::spread`], and their derivatives if `slopes`.
     pub(super) fn evaluate_at(
         &self,
         sites: &Sites,
         heads: &Heads,
-        theta: &[f64],
+        spread: &[Vec<f64>],
         scalars: &[f64],
         slopes: bool,
     ) -> Evaluated {
         let stride = sites.stride;
         let count = self.schema.jets.len();
-        let (jets, bounded) = self.jets_at(sites, heads, theta);
+        let (jets, bounded) = self.jets_at(sites, heads, spread);
         let points = Points {
             count: sites.count,
             stride,
@@ -109,7 +118,7 @@ impl Group {
         Facts {
             points: self.sites.count,
             stride: self.sites.stride,
-            jets: self.jets_at(&self.sites, heads, theta).0,
+            jets: self.jets_at(&self.sites, heads, &self.spread(heads, theta)).0,
             coordinates: self.sites.coordinates.clone(),
             columns: self.sites.columns.clone(),
             means: self.means(),
@@ -118,14 +127,6 @@ impl Group {
 
     /// Rows of the group at its own points, and their derivatives if `slopes`.
     pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: bool) -> Evaluated {
-        self.evaluate_at(&self.sites, heads, theta, scalars, slopes)
+        self.evaluate_at(&self.sites, heads, &self.spread(heads, theta), scalars, slopes)
     }
-}
-
-/// Sum of a cell's coefficients, of which `lines` says where each line begins, times splines along and across the lines.
-fn contracted(cell: &[f64], lines: &[usize], across: &[f64], along: &[f64]) -> f64 {
-    let line = |(&first, across): (&usize, &f64)| {
-        across * cell[first..first + along.len()].iter().zip(along).map(|(c, value)| c * value).sum::<f64>()
-    };
-    lines.iter().zip(across).map(line).sum()
 }

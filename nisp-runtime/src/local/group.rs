@@ -36,7 +36,7 @@ pub(super) struct Group {
     /// Degree of the tests.
     degree: usize,
     /// By head, the highest derivative that the group reads; nothing of those that it does not read.
-    highest: Vec<Option<u8>>,
+    pub(super) highest: Vec<Option<u8>>,
 }
 
 impl Group {

@@ -1,7 +1,10 @@
 //! All heads of a scene on their lattices, and the vector of their coefficients.
 
+use rayon::prelude::*;
+
 use super::block::Block;
-use super::lattice::{Exponents, Lattice, NONE, Span};
+use super::lattice::{Exponents, Lattice, NONE, Span, contracted};
+use super::tabled::Splines;
 use crate::engine::Scaling;
 use crate::functions::{sigmoid, softplus};
 use crate::problem::{Bound, UnitSystem};
@@ -22,6 +25,8 @@ pub(super) struct Heads {
 /// Of a bounded head, values closer to the bound than this share of its scale are read as linear: the transformation
 /// that keeps a network within the bound has no inverse at the bound itself.
 const CLOSEST: f64 = 1e-6;
+/// Points whose values are computed together.
+const TOGETHER: usize = 1024;
 
 impl Heads {
     pub(super) fn new(bound: &Bound, lattices: Vec<Lattice>) -> Self {
@@ -56,6 +61,12 @@ impl Heads {
     pub(super) fn spread(&self, head: usize, theta: &[f64]) -> Vec<f64> {
         let own = &theta[self.first[head]..self.first[head + 1]];
         self.lattices[head].spread(own)
+    }
+
+    /// [`Heads::spread`] of the heads that are read, of which `highest` says something.
+    pub(super) fn spread_of(&self, highest: &[Option<u8>], theta: &[f64]) -> Vec<Vec<f64>> {
+        let spread = |(head, read): (usize, &Option<u8>)| read.map_or_else(Vec::new, |_| self.spread(head, theta));
+        highest.iter().enumerate().map(spread).collect()
     }
 
     /// Numbers of the coefficients of a box of a head's functions; [`NONE`] for those that are not kept.
@@ -98,15 +109,45 @@ impl Heads {
 
     /// Value of a head, within its bound.
     pub(super) fn value(&self, head: usize, point: &[f64], theta: &[f64]) -> f64 {
-        let value = self.sum(head, point, theta);
+        self.bounded(head, self.sum(head, point, theta))
+    }
+
+    /// A head's value from the sum of its functions: within its bound, with its offset.
+    fn bounded(&self, head: usize, value: f64) -> f64 {
         match self.bound[head] {
             Some((sign, bound)) => bound + sign * (sign * value).max(0.0),
             None => self.offset[head] + value,
         }
     }
 
+    /// Values of a head at points given flat, within its bound.
+    pub(super) fn values(&self, head: usize, points: &[f64], theta: &[f64]) -> Vec<f64> {
+        let (lattice, coefficients) = (&self.lattices[head], self.spread(head, theta));
+        let (inputs, lines) = (lattice.inputs(), lattice.lines());
+        let some = |points: &[f64]| {
+            let splines = Splines::new(lattice, 0, points);
+            let mut across = Vec::new();
+            let value = |p: usize| {
+                let along = splines.factors(p, &Exponents::default(), &mut across);
+                let cell = &coefficients[lattice.first(&splines.places[p])..];
+                self.bounded(head, self.scale[head] * contracted(cell, &lines, &across, along))
+            };
+            (0..splines.places.len()).map(value).collect::<Vec<_>>()
+        };
+        points.par_chunks(TOGETHER * inputs).flat_map_iter(some).collect()
+    }
+
+    /// The weight of every coefficient in a sum of a head's values at points given flat, each times its weight.
+    pub(super) fn sum_weights(&self, head: usize, points: &[f64], weights: &[f64]) -> Vec<f64> {
+        let mut sums = vec![0.0; self.len()];
+        for (point, weight) in points.chunks_exact(self.lattices[head].dimensions()).zip(weights) {
+            self.parts(head, point).into_iter().for_each(|(at, value)| sums[at] += weight * value);
+        }
+        sums
+    }
+
     /// Sums of a head's functions at a point, with each of several vectors of coefficients, times the scale.
-    pub(super) fn values<'a>(
+    pub(super) fn drawn<'a>(
         &self,
         head: usize,
         point: &[f64],

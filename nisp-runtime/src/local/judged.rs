@@ -7,7 +7,7 @@ use crate::facts::{Answer, CloudFacts};
 /// Distances to a cloud that splines do not follow, as a share of a cell.
 const UNRESOLVED: f64 = 0.03;
 
-impl Solver<'_> {
+impl Solver {
     /// What a state says.
     pub(super) fn answer(&mut self, state: &State) -> Answer {
         self.find_feet(&state.theta, &state.learned);

@@ -40,8 +40,7 @@ impl KeptLattices {
 
     /// Values of a head at points in the engine's units, flat.
     pub(crate) fn evaluate(&self, head: usize, points: &[f64]) -> Vec<f64> {
-        let inputs = self.heads.lattices[head].inputs();
-        points.chunks_exact(inputs).map(|point| self.heads.value(head, point, &self.theta)).collect()
+        self.heads.values(head, points, &self.theta)
     }
 
     /// Standard deviations of a head at points in the engine's units, flat: root mean squares of draws from the posterior.
@@ -57,18 +56,20 @@ impl KeptLattices {
         let inputs = self.heads.lattices[head].inputs();
         let draws = &self.draws.coefficients;
         let share = (draws.len() as f64).sqrt().recip();
-        let row = |point| self.heads.values(head, point, draws).map(|x| share * x);
+        let row = |point| self.heads.drawn(head, point, draws).map(|x| share * x);
         points.chunks_exact(inputs).flat_map(row).collect()
     }
 
-    /// Standard deviation of a weighted sum of a head's values at points in the engine's units, flat.
-    pub(crate) fn deviation_of_sum(&self, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
-        let draws = self.draws.coefficients.len();
-        let mut sums = vec![0.0; draws];
-        for (row, weight) in self.spread(head, points).chunks_exact(draws.max(1)).zip(weights) {
-            vector::add_scaled(&mut sums, *weight, row);
-        }
-        (draws > 0).then(|| vector::norm(&sums))
+    /// Standard deviation of a sum of coefficients, each times its weight, by the draws.
+    pub(crate) fn deviation_of_sum(&self, weights: &[f64]) -> Option<f64> {
+        let draws = &self.draws.coefficients;
+        let sums: Vec<f64> = draws.iter().map(|draw| vector::dot(draw, weights)).collect();
+        (!draws.is_empty()).then(|| vector::norm(&sums) / (draws.len() as f64).sqrt())
+    }
+
+    /// The weight of every coefficient in a weighted sum of a head's values at points in the engine's units, flat.
+    pub(crate) fn weights_of_sum(&self, head: usize, points: &[f64], weights: &[f64]) -> Vec<f64> {
+        self.heads.sum_weights(head, points, weights)
     }
 
     /// A square root of the covariance of the learned scalars' parameters, as [`KeptLattices::spread`] is of values.

@@ -251,6 +251,14 @@ impl Lattice {
     }
 }
 
+/// Sum of a cell's coefficients, of which `lines` says where each line begins, times splines along and across the lines.
+pub(super) fn contracted(cell: &[f64], lines: &[usize], across: &[f64], along: &[f64]) -> f64 {
+    let line = |(&first, across): (&usize, &f64)| {
+        across * cell[first..first + along.len()].iter().zip(along).map(|(c, value)| c * value).sum::<f64>()
+    };
+    lines.iter().zip(across).map(line).sum()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

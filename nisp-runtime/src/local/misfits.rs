@@ -7,7 +7,7 @@ use crate::schema::TermKind;
 /// Misfits of a term, in the engine's units, and the standard deviation that they count with, where it is that of data.
 pub(crate) type Misfits = (Vec<f64>, Option<f64>);
 
-impl Solver<'_> {
+impl Solver {
     /// Misfits of all terms, by group: of a cloud's points from the surface, of an integral from its target, of everything
     /// else at every point, or in the mean over every test.
     pub(super) fn misfits(&mut self, state: &State) -> Vec<Vec<Misfits>> {

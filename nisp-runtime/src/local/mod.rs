@@ -19,6 +19,7 @@ mod heads;
 mod judged;
 mod kept;
 mod lattice;
+mod live;
 mod meshes;
 mod misfits;
 mod normal;
@@ -29,11 +30,13 @@ mod refuse;
 mod resolved;
 mod rows;
 mod scores;
+mod shape;
 mod sites;
 pub(crate) mod smooth;
 mod solver;
 mod sorted;
 mod surface;
+mod tabled;
 mod testing;
 mod unseen;
 
@@ -49,6 +52,7 @@ use crate::solve::fault::Fault;
 use crate::solve::state::State;
 
 pub(crate) use kept::{CARRIER, KeptLattices};
+pub(crate) use live::Live;
 pub use prior::Patches;
 
 use course::End;
@@ -120,14 +124,14 @@ pub(crate) struct LocalSolution {
 /// Name of the method in saved states.
 const METHOD: &str = "local functions";
 
-/// Solves a bound problem within its limits, from the start or from a saved state.
+/// Solves a bound problem within its limits, from the start or from a saved state; also what goes on from the answer.
 pub(crate) fn solve(
     bound: &Bound,
     settings: &Local,
     limits: Limits,
     from: Option<&State>,
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
-) -> Result<LocalSolution, LocalError> {
+) -> Result<(LocalSolution, Live), LocalError> {
     let start = Instant::now();
     let coarse = settings.cells.div_ceil(settings.coarser.max(1)).max(FEWEST).min(settings.cells);
     let (lattice, before) = match from {
@@ -163,22 +167,19 @@ pub(crate) fn solve(
     end.warnings.extend(solver.rests_on_the_prior());
     let mut answer = solver.answer(&end.state);
     // An answer that nothing says against is asked what it rests on.
-    if solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest)) {
-        answer.scores = solver.scores(&end.state).unwrap_or_default();
-    }
+    let is_asked = solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest));
+    let scores = if is_asked { solver.scores(&end.state).unwrap_or_default() } else { Vec::new() };
+    answer.scores = scores.iter().copied().flatten().collect();
     let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
-    Ok(LocalSolution {
-        kept: KeptLattices { heads: solver.heads, theta: state.theta, learned: state.learned, draws: deviations },
-        status,
-        iterations,
-        loss,
-        warnings,
-        factor,
-        checkpoint,
-        answer,
-        misfits,
-    })
+    let kept = KeptLattices {
+        heads: solver.heads.clone(),
+        theta: state.theta.clone(),
+        learned: state.learned.clone(),
+        draws: deviations,
+    };
+    let solution = LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits };
+    Ok((solution, Live::new(solver, state, scores)))
 }
 
 /// The lattice of a saved state, and the steps before it.
@@ -209,5 +210,14 @@ impl LocalSolution {
     /// Standard deviation of a learned scalar's parameter.
     pub(crate) fn learned_deviation(&self, at: usize) -> Option<f64> {
         self.factor.as_ref()?.learned_variance(at).map(|variance| variance.max(0.0).sqrt())
+    }
+
+    /// Standard deviation of a weighted sum of a head's values at points in the engine's units, flat.
+    pub(crate) fn deviation_of_sum(&self, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
+        let weights = self.kept.weights_of_sum(head, points, weights);
+        self.kept.deviation_of_sum(&weights).or_else(|| {
+            let variance = self.factor.as_ref()?.variance_of_sum(&weights)?;
+            Some(variance.max(0.0).sqrt())
+        })
     }
 }

@@ -13,6 +13,7 @@ use super::block::Block;
 use super::draws::{Deviations, Draws};
 use super::sorted::Sorted;
 use crate::simd::Isa;
+use crate::solve::vector;
 
 /// Pieces that the matrix is summed up in, at the same time: a fixed number, many enough for all threads.
 const PIECES: usize = 32;
@@ -322,6 +323,12 @@ impl Factor {
             covariance.column_mut(column).copy_from_slice(&own[range.clone()]);
         }
         Some(covariance)
+    }
+
+    /// Variance of a sum of coefficients, each times its weight.
+    pub(super) fn variance_of_sum(&self, weights: &[f64]) -> Option<f64> {
+        let (solution, _) = self.solve(weights, &vec![0.0; self.border.len()])?;
+        Some(vector::dot(&solution, weights))
     }
 
     /// Variance of a learned scalar's parameter.

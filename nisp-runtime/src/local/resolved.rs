@@ -17,14 +17,14 @@ pub(super) const COST: f64 = 2.0;
 /// Change of a field, beside its size, above which it is not resolved.
 const MOST: f64 = 1e-2;
 
-impl Solver<'_> {
+impl Solver {
     /// Says which fields move with the lattice, of which `cells` are along the longest coordinate: a step from the answer on a
     /// coarser one. Nothing where that cannot be taken.
     pub(super) fn unresolved(&self, state: &State, cells: usize) -> Option<Warning> {
         let fewer = (cells as f64 / COARSER).round() as usize;
-        let mut coarse = Solver::new(self.bound, self.settings, fewer).ok()?;
+        let mut coarse = Solver::new(&self.bound, &self.settings, fewer).ok()?;
         let start = coarse.taken_over(&self.heads, state).ok()?.state;
-        let (found, _) = coarse.step(&start, CONVEX_STEPS + 1, false).ok()?;
+        let (found, _) = coarse.step(&start, CONVEX_STEPS + 1, false, &[]).ok()?;
         let changes: Vec<(&str, f64)> = self
             .leading()
             .into_iter()
@@ -57,7 +57,7 @@ impl Solver<'_> {
 
     /// By how much fields of the dimension of `head` change on another lattice, beside their size: components of a vector are
     /// judged together. What a cloud's noise would hide is no change.
-    fn change_of(&self, head: &schema::Head, state: &State, other: &Solver<'_>, found: &State) -> f64 {
+    fn change_of(&self, head: &schema::Head, state: &State, other: &Solver, found: &State) -> f64 {
         let schema = self.bound.problem.scene().schema;
         let inputs = schema.coordinates.len();
         let (mut change, mut size, mut count) = (0.0, 0.0, 0.0);

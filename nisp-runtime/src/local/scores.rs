@@ -8,6 +8,7 @@
 use nalgebra::Vector3;
 
 use super::block::Block;
+use super::normal::Factor;
 use super::phase::Phase;
 use super::place::State;
 use super::solver::Solver;
@@ -47,26 +48,31 @@ impl Sums {
     }
 }
 
-impl Solver<'_> {
-    /// Scores of all given numbers, and of the place, the direction and the size of every cloud that has a frame of its own;
-    /// none where the matrix cannot be factorised.
-    pub(super) fn scores(&mut self, state: &State) -> Option<Vec<Score>> {
+impl Solver {
+    /// Scores of all that is [known](Solver::known); none where the matrix cannot be factorised.
+    pub(super) fn scores(&mut self, state: &State) -> Option<Vec<Option<Score>>> {
         self.find_feet(&state.theta, &state.learned);
         self.assemble(state, state.noise, Phase::Concave).ok()?;
         let factor = self.normal.factor()?;
+        Some(self.scores_of(&self.known(), state, &factor))
+    }
+
+    /// Scores of some of what is known, from the normal equations as they are assembled about a state and factorised: they are
+    /// those of where a step leads, as far as rows are linear. Nothing of what rows do not tell from the unknowns.
+    pub(super) fn scores_of(&mut self, known: &[Known], state: &State, factor: &Factor) -> Vec<Option<Score>> {
+        if known.is_empty() {
+            return Vec::new();
+        }
         let learned = self.set_learned(&state.learned);
         let border = self.normal.border_gradient.len();
-        let mut all: Vec<Sums> = self
-            .known()
-            .into_iter()
-            .map(|known| Sums {
-                known,
-                right: vec![0.0; self.heads.len()],
-                below: vec![0.0; border],
-                slope: 0.0,
-                square: 0.0,
-            })
-            .collect();
+        let sums = |&known: &Known| Sums {
+            known,
+            right: vec![0.0; self.heads.len()],
+            below: vec![0.0; border],
+            slope: 0.0,
+            square: 0.0,
+        };
+        let mut all: Vec<Sums> = known.iter().map(sums).collect();
         let mut integral = learned.len();
         for at in 0..self.groups.len() {
             integral += self.add_group(at, state, &learned, integral, &mut all);
@@ -85,11 +91,12 @@ impl Solver<'_> {
             let change = (-slope / square).clamp(-FARTHEST, FARTHEST);
             is_open.then(|| Score { known: sums.known, gain: -change * (slope + 0.5 * square * change), change })
         };
-        Some(all.into_iter().filter_map(score).collect())
+        all.into_iter().map(score).collect()
     }
 
-    /// What the problem takes for known.
-    fn known(&self) -> Vec<Known> {
+    /// What the problem takes for known: given numbers, and the place, the direction and the size of every cloud that has a
+    /// frame of its own.
+    pub(super) fn known(&self) -> Vec<Known> {
         let scalars = self.bound.problem.scene().schema.scalars.iter().enumerate();
         let given =
             scalars.filter(|(slot, scalar)| matches!(scalar.origin, Origin::Given(_)) && self.scalars[*slot] != 0.0);

@@ -21,9 +21,9 @@ const TOLERANCE: f64 = 1e-2;
 pub(super) const LEAST_DAMPING: f64 = 0.1;
 
 /// A problem on its lattices.
-pub(super) struct Solver<'a> {
-    pub(super) bound: &'a Bound,
-    pub(super) settings: &'a Local,
+pub(super) struct Solver {
+    pub(super) bound: Bound,
+    pub(super) settings: Local,
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
     pub(super) surfaces: Vec<Surface>,
@@ -31,10 +31,12 @@ pub(super) struct Solver<'a> {
     pub(super) scalars: Vec<f64>,
     /// Size of the base lattice's cells, the largest.
     pub(super) cell: f64,
+    /// Coefficients and learned parameters whose feet are found for good.
+    settled: Option<(Vec<f64>, Vec<f64>)>,
 }
 
-impl<'a> Solver<'a> {
-    pub(super) fn new(bound: &'a Bound, settings: &'a Local, cells: usize) -> Result<Self, LocalError> {
+impl Solver {
+    pub(super) fn new(bound: &Bound, settings: &Local, cells: usize) -> Result<Self, LocalError> {
         let schema = bound.problem.scene().schema;
         let inputs = schema.coordinates.len();
         refuse_what_networks_do(schema, settings)?;
@@ -53,10 +55,10 @@ impl<'a> Solver<'a> {
         let mut surfaces = Vec::new();
         let cell = (0..inputs).map(|axis| base.spacing(axis)).fold(0.0, f64::max);
         for (at, (kernel, schema)) in kernels.into_iter().zip(schema.groups).enumerate() {
-            let flat = &bound.coordinates[at];
-            let points = (flat.as_slice(), bound.columns[at].as_slice());
             let measure = schema.terms.iter().find_map(|term| term.measure.as_ref());
             let weights = bound.weights(at, measure);
+            let flat = &bound.coordinates[at];
+            let points = (flat.as_slice(), bound.columns[at].as_slice());
             let losses = &bound.losses[at];
             let group = Group::new((schema, losses), kernel, &heads, points, weights, (&base, settings.tests));
             for (index, (term, cloud)) in schema.terms.iter().zip(&bound.clouds[at]).enumerate() {
@@ -73,9 +75,21 @@ impl<'a> Solver<'a> {
         let together = together(&heads, &base, settings.tests, bound);
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         let scalars = bound.scalars.clone();
-        let mut solver = Self { bound, settings, heads, groups, surfaces, normal, scalars, cell };
-        solver.set_learned(&vec![0.0; bound.learned.len()]);
+        let learned = vec![0.0; bound.learned.len()];
+        let (bound, settings) = (bound.clone(), *settings);
+        let mut solver = Self { bound, settings, heads, groups, surfaces, normal, scalars, cell, settled: None };
+        solver.set_learned(&learned);
         Ok(solver)
+    }
+
+    /// Takes over the clouds and given parameters of a problem that is the same otherwise.
+    pub(super) fn renew(&mut self, bound: Bound) {
+        for surface in &mut self.surfaces {
+            surface.renew(bound.cloud(surface.group, surface.term));
+        }
+        self.scalars.clone_from(&bound.scalars);
+        self.bound = bound;
+        self.settled = None;
     }
 
     /// Where the solver starts: all heads at their offsets.
@@ -96,7 +110,22 @@ impl<'a> Solver<'a> {
         Place { state: state.clone(), step, skipped: 0, feet }
     }
 
+    /// Finds the feet of all clouds on the present surface.
+    pub(super) fn find_feet(&mut self, theta: &[f64], learned: &[f64]) {
+        self.set_learned(learned);
+        let is_known = self.settled.as_ref().is_some_and(|(own, parameters)| own == theta && parameters == learned);
+        if is_known {
+            return;
+        }
+        let mut settled = true;
+        for surface in &mut self.surfaces {
+            settled &= surface.find(&self.groups[surface.group], &self.heads, theta, &self.scalars);
+        }
+        self.settled = settled.then(|| (theta.to_vec(), learned.to_vec()));
+    }
+
     pub(super) fn set_feet(&mut self, feet: Vec<Feet>) {
+        self.settled = None;
         self.surfaces.iter_mut().zip(feet).for_each(|(surface, feet)| surface.set_feet(feet));
     }
 

@@ -6,17 +6,21 @@
 //! A robust loss is minimised by weights that every step renews.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::{DMatrix, Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector2, Vector3};
+use rayon::prelude::*;
 
 use super::block::Block;
 use super::group::Group;
 use super::heads::Heads;
+use super::shape::{Shape, padded, tangents_at};
 use crate::facts::spread;
 use crate::loss::Loss;
 use crate::schema;
 
 /// Newton steps for the feet, at most.
 const STEPS: usize = 8;
+/// Feet nearer than this to where they belong stay, as a share of a cell.
+const STILL: f64 = 1e-6;
 
 /// A cloud of a term, and the feet of its points.
 pub(super) struct Surface {
@@ -112,6 +116,17 @@ impl Surface {
         }
     }
 
+    /// Takes over another cloud, whose feet are to be found.
+    pub(super) fn renew(&mut self, cloud: &[f64]) {
+        self.cloud = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
+        let count = self.cloud.len();
+        self.feet.clear();
+        self.nearest = vec![0; count];
+        self.found = vec![false; count];
+        self.normals = vec![Vector3::zeros(); count];
+        self.misfits = vec![0.0; count];
+    }
+
     /// Where the feet are, and which samples are nearest to them: where the next search begins.
     pub(super) fn feet(&self) -> Feet {
         Feet { feet: self.feet.clone(), nearest: self.nearest.clone() }
@@ -172,7 +187,8 @@ impl Surface {
 
     /// Where the surface has the feet of all points.
     pub(super) fn images(&self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Vector3<f64>> {
-        self.positions(group, heads, theta, scalars, &self.feet)
+        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, first: self.first };
+        shape.positions(&self.feet, self.inputs)
     }
 
     /// How far every point goes that is moved by `by` its arm about the middle of the cloud, and the cloud's radius.
@@ -191,94 +207,97 @@ impl Surface {
         (self.counting.weight * self.counting.loss.weight(self.misfits[i] / sigma)).sqrt()
     }
 
-    /// Positions of places, given flat.
-    fn positions(
-        &self,
-        group: &Group,
-        heads: &Heads,
-        theta: &[f64],
-        scalars: &[f64],
-        flat: &[f64],
-    ) -> Vec<Vector3<f64>> {
-        let sites = group.sites_at(heads, flat);
-        let rows = group.evaluate_at(&sites, heads, theta, scalars, false);
-        (0..sites.count).map(|p| Vector3::from_fn(|c, _| rows.row(self.first + c, p))).collect()
-    }
-
-    /// Finds the feet of all points on the present surface.
-    pub(super) fn find(&mut self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) {
+    /// Finds the feet of all points on the present surface: true where they have come to rest.
+    pub(super) fn find(&mut self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) -> bool {
+        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, first: self.first };
         if self.feet.is_empty() {
-            self.begin(group, heads, theta, scalars);
+            self.begin(&shape);
         }
-        let along = 2;
-        let small = 1e-3 * self.reach;
-        for step in 0..=STEPS {
-            let around: Vec<f64> =
-                self.feet.chunks_exact(self.inputs).enumerate().fold(Vec::new(), |mut all, (i, foot)| {
-                    all.extend_from_slice(foot);
-                    for tangent in self.tangents[self.nearest[i]].chunks_exact(self.inputs) {
-                        for sign in [small, -small] {
-                            all.extend(foot.iter().zip(tangent).map(|(x, t)| x + sign * t));
-                        }
-                    }
-                    all
-                });
-            let positions = self.positions(group, heads, theta, scalars, &around);
-            let mut moved = 0.0f64;
-            for (i, near) in positions.chunks_exact(1 + 2 * along).enumerate() {
-                let slope = |k: usize| (near[1 + 2 * k] - near[2 + 2 * k]) / (2.0 * small);
-                let (a, b) = (slope(0), slope(1));
-                let normal = a.cross(&b);
-                let Some(normal) = normal.try_normalize(1e-12 * a.norm() * b.norm()) else {
-                    self.found[i] = false;
-                    continue;
-                };
-                let view = self.view.unwrap_or(normal);
-                // A surface seen edge on says nothing along the view.
-                let facing = normal.dot(&view);
-                self.found[i] = facing.abs() > 0.05;
-                self.normals[i] = normal / if self.found[i] { facing } else { 1.0 };
-                self.misfits[i] = self.normals[i].dot(&(near[0] - self.cloud[i]));
-                let solved = Matrix3::from_columns(&[a, b, view]).try_inverse();
-                let (Some(inverse), true) = (solved, self.found[i]) else { continue };
-                let wanted = inverse * (self.cloud[i] - near[0]);
-                let far = wanted.xy().norm();
-                moved = moved.max(far);
-                if step == STEPS {
-                    continue;
-                }
-                let scale = if far > self.reach { self.reach / far } else { 1.0 };
-                self.step(i, wanted.x * scale, wanted.y * scale);
-            }
-            if moved < 1e-6 * self.reach {
-                break;
+        let mut moving: Vec<usize> = (0..self.cloud.len()).collect();
+        for _ in 0..STEPS {
+            let ways = self.look(&shape, &moving);
+            moving = self.walk(&moving, &ways);
+            if moving.is_empty() {
+                return true;
             }
         }
+        self.look(&shape, &moving);
+        false
     }
 
-    /// Moves a foot along the surface at rest, but not off it.
-    fn step(&mut self, i: usize, a: f64, b: f64) {
+    /// Looks around some feet: the normals there, what is left of the points, and how far feet are to move along both tangents.
+    fn look(&mut self, shape: &Shape<'_>, moving: &[usize]) -> Vec<Option<Vector2<f64>>> {
+        let small = 1e-3 * self.reach;
+        let mut around = Vec::with_capacity(5 * self.inputs * moving.len());
+        for &i in moving {
+            let foot = &self.feet[i * self.inputs..(i + 1) * self.inputs];
+            around.extend_from_slice(foot);
+            for tangent in self.tangents[self.nearest[i]].chunks_exact(self.inputs) {
+                for sign in [small, -small] {
+                    around.extend(foot.iter().zip(tangent).map(|(x, t)| x + sign * t));
+                }
+            }
+        }
+        let positions = shape.positions(&around, self.inputs);
+        let way = |(&i, near): (&usize, &[Vector3<f64>])| {
+            let slope = |k: usize| (near[1 + 2 * k] - near[2 + 2 * k]) / (2.0 * small);
+            let (a, b) = (slope(0), slope(1));
+            let normal = a.cross(&b);
+            let Some(normal) = normal.try_normalize(1e-12 * a.norm() * b.norm()) else {
+                self.found[i] = false;
+                return None;
+            };
+            let view = self.view.unwrap_or(normal);
+            // A surface seen edge on says nothing along the view.
+            let facing = normal.dot(&view);
+            self.found[i] = facing.abs() > 0.05;
+            self.normals[i] = normal / if self.found[i] { facing } else { 1.0 };
+            self.misfits[i] = self.normals[i].dot(&(near[0] - self.cloud[i]));
+            let inverse = Matrix3::from_columns(&[a, b, view]).try_inverse()?;
+            self.found[i].then(|| (inverse * (self.cloud[i] - near[0])).xy())
+        };
+        moving.iter().zip(positions.chunks_exact(5)).map(way).collect()
+    }
+
+    /// A step of Newton's method for some feet; returns those that it has moved.
+    fn walk(&mut self, moving: &[usize], ways: &[Option<Vector2<f64>>]) -> Vec<usize> {
+        let mut moved = Vec::new();
+        for (&i, way) in moving.iter().zip(ways) {
+            let Some(way) = way else { continue };
+            let far = way.norm();
+            let scale = if far > self.reach { self.reach / far } else { 1.0 };
+            if far > STILL * self.reach && self.step(i, way.x * scale, way.y * scale) {
+                moved.push(i);
+            }
+        }
+        moved
+    }
+
+    /// Moves a foot along the surface at rest, but not off it: false where it stays.
+    fn step(&mut self, i: usize, a: f64, b: f64) -> bool {
         let inputs = self.inputs;
         let tangent = &self.tangents[self.nearest[i]];
         let mut foot = self.feet[i * inputs..(i + 1) * inputs].to_vec();
         for (k, x) in foot.iter_mut().enumerate() {
             *x += a * tangent[k] + b * tangent[inputs + k];
         }
-        let Some(tree) = &self.rest else { return };
+        let Some(tree) = &self.rest else { return false };
         let found = tree.query(&padded(&foot)).nearest_one::<SquaredEuclidean<f64>>().execute();
         self.nearest[i] = found.item as usize;
         if found.distance.sqrt() > self.reach {
-            self.found[i] = false;
             let at = found.item as usize * inputs;
             foot.copy_from_slice(&self.samples[at..at + inputs]);
         }
-        self.feet[i * inputs..(i + 1) * inputs].copy_from_slice(&foot);
+        let own = &mut self.feet[i * inputs..(i + 1) * inputs];
+        let has_moved = *own != *foot;
+        own.copy_from_slice(&foot);
+        has_moved
     }
 
     /// First feet: the samples whose images are nearest, seen along the view.
-    fn begin(&mut self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) {
+    fn begin(&mut self, shape: &Shape<'_>) {
         let seen = |x: &Vector3<f64>| self.view.map_or(*x, |view| x - view * view.dot(x));
-        let images = self.positions(group, heads, theta, scalars, &self.samples);
+        let images = shape.positions(&self.samples, self.inputs);
         let images: Vec<[f64; 3]> = images.iter().map(|x| seen(x).into()).collect();
         let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&images) else { return };
         let nearest = |y: &Vector3<f64>| {
@@ -301,38 +320,15 @@ impl Surface {
         sigma: f64,
     ) -> Vec<Block> {
         let sites = group.sites_at(heads, &self.feet);
-        let evaluated = group.evaluate_at(&sites, heads, theta, scalars, true);
-        let kept = (0..self.cloud.len()).filter(|&i| self.found[i]);
-        kept.map(|i| {
-            let seed = |bar| (0..3).map(|c| self.normals[i][c] * evaluated.bar(self.first + c, bar, i)).sum();
-            let mut block = group.at_point(heads, (&sites, i), learned, self.misfits[i], seed);
-            block.divide(std::iter::once(sigma / self.root_weight(i, sigma)));
-            block
-        })
-        .collect()
+        let evaluated = group.evaluate_at(&sites, heads, &group.spread(heads, theta), scalars, true);
+        let kept: Vec<usize> = (0..self.cloud.len()).filter(|&i| self.found[i]).collect();
+        kept.into_par_iter()
+            .map(|i| {
+                let seed = |bar| (0..3).map(|c| self.normals[i][c] * evaluated.bar(self.first + c, bar, i)).sum();
+                let mut block = group.at_point(heads, (&sites, i), learned, self.misfits[i], seed);
+                block.divide(std::iter::once(sigma / self.root_weight(i, sigma)));
+                block
+            })
+            .collect()
     }
-}
-
-/// A place at rest in three numbers.
-fn padded(point: &[f64]) -> [f64; 3] {
-    std::array::from_fn(|axis| point.get(axis).copied().unwrap_or(0.0))
-}
-
-/// Two directions along the surface at rest, flat: the axes of a plane domain, or where the neighbours lie.
-fn tangents_at(tree: Option<&ImmutableKdTree<f64, 3>>, samples: &[[f64; 3]], at: &[f64; 3], inputs: usize) -> Vec<f64> {
-    const NEIGHBOURS: std::num::NonZero<usize> = std::num::NonZero::new(12).unwrap();
-    if inputs == 2 {
-        return vec![1.0, 0.0, 0.0, 1.0];
-    }
-    let Some(tree) = tree else { return vec![0.0; 2 * inputs] };
-    let around = tree.query(at).nearest_n::<SquaredEuclidean<f64>>(NEIGHBOURS).execute();
-    let around: Vec<&[f64; 3]> = around.iter().map(|found| &samples[found.item as usize]).collect();
-    let count = around.len().max(1) as f64;
-    let mean: [f64; 3] = std::array::from_fn(|i| around.iter().map(|p| p[i]).sum::<f64>() / count);
-    let spread: DMatrix<f64> =
-        DMatrix::from_fn(3, 3, |i, j| around.iter().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum());
-    let axes = spread.symmetric_eigen();
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
-    order[..2].iter().flat_map(|&i| axes.eigenvectors.column(i).iter().copied().collect::<Vec<_>>()).collect()
 }

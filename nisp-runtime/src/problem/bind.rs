@@ -442,6 +442,32 @@ impl Bound {
         Ok(Engine::new(isa, layout, groups, scalars, self.learned.clone()))
     }
 
+    /// A problem with the points and columns of this one, in the same units and with the same scales: nothing where they are
+    /// others.
+    pub(crate) fn renewed(&self, problem: &Problem) -> Result<Option<Self>, BindError> {
+        problem.check_parameters()?;
+        let problem = problem.clone().with_beliefs();
+        let (schema, bindings) = (problem.scene.schema, problem.bindings()?);
+        let is_same = |(new, old): (&&Binding, &Option<Binding>)| {
+            old.as_ref().is_some_and(|old| new.points == old.points && new.columns == old.columns)
+        };
+        if !bindings.iter().zip(&self.problem.groups).all(is_same) {
+            return Ok(None);
+        }
+        let clouds = bindings.iter().zip(schema.groups);
+        let clouds = clouds.map(|(binding, group)| inward_clouds(group, &self.system, binding)).collect();
+        let given = schema.scalars.iter().zip(&problem.scalars).zip(&self.scalars);
+        let scalars =
+            given.map(|((scalar, value), own)| value.map_or(*own, |value| value / self.system.size(&scalar.unit)));
+        Ok(Some(Self { clouds, scalars: scalars.collect(), problem, ..self.clone() }))
+    }
+
+    /// The cloud of a term, in the engine's units, flat.
+    pub(crate) fn cloud(&self, group: usize, term: &str) -> &[f64] {
+        let terms = self.problem.scene.schema.groups[group].terms.iter();
+        terms.zip(&self.clouds[group]).find(|(own, _)| own.name == term).map_or(&[], |(_, cloud)| cloud)
+    }
+
     /// The same with a share of the points of groups that may exchange theirs, evenly picked.
     pub(crate) fn thinned(&self, share: f64) -> Self {
         let mut thinned = self.clone();

@@ -17,6 +17,7 @@ mod open;
 mod place;
 mod promotion;
 mod resolution;
+mod session;
 mod settings;
 mod solution;
 mod spread;
@@ -31,6 +32,7 @@ use thiserror::Error;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use misfits::Misfits;
+pub use session::Session;
 pub use settings::{Carrier, Optimizer, Settings, Width};
 pub use solution::{LearnedValue, Solution, TermReport};
 
@@ -38,7 +40,7 @@ use course::Course;
 
 use crate::local::LocalError;
 use crate::memory::Exceeded;
-use crate::problem::{BindError, Problem};
+use crate::problem::{BindError, Bound, Problem};
 use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
@@ -159,11 +161,7 @@ fn solve(
     monitor: &mut Monitor<'_>,
 ) -> Result<Solution, RecoverError> {
     let start = Instant::now();
-    let bound = problem.bound(settings.architecture.inputs)?;
-    let architecture = layers::suited(&bound, settings.architecture);
-    // Natural sizes depend on the inputs.
-    let bound = if architecture == settings.architecture { bound } else { problem.bound(architecture.inputs)? };
-    let settings = &Settings { architecture, ..settings.clone() };
+    let (bound, settings) = &prepared(problem, settings)?;
     let fingerprint = checkpoint::fingerprint(problem, settings);
     if checkpoint.is_some_and(|checkpoint| checkpoint.fingerprint != fingerprint) {
         return Err(CheckpointError::Other.into());
@@ -171,19 +169,16 @@ fn solve(
     if checkpoint.is_some() && settings.resampling.is_some() {
         return Err(CheckpointError::Resampling.into());
     }
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
-    let pool = pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })?;
-    let limits =
-        Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() };
+    let (pool, limits) = (threads(settings)?, limits(settings));
     let from = checkpoint.map(|checkpoint| &checkpoint.state);
     pool.install(|| {
-        let (mut attempt, others) = choice::attempts(&bound, settings, from);
+        let (mut attempt, others) = choice::attempts(bound, settings, from);
         let mut attempts = others.into_iter();
         let mut first: Option<Solution> = None;
         loop {
             let settings = &Settings { seed: attempt.seed, ..settings.clone() };
             let course = Course::new(fingerprint, limits, start, from, &mut *monitor);
-            let solved = attempt.carrier.solve(&bound, settings, course)?;
+            let solved = attempt.carrier.solve(bound, settings, course)?;
             let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
             let is_over = solution.is_clear() || solution.status == Status::Interrupted;
             let solution = if is_over { solution } else { first.take().unwrap_or(solution) };
@@ -193,6 +188,26 @@ fn solve(
             }
         }
     })
+}
+
+/// A problem in its units, and the settings with an architecture that suits it.
+fn prepared(problem: &Problem, settings: &Settings) -> Result<(Bound, Settings), BindError> {
+    let bound = problem.bound(settings.architecture.inputs)?;
+    let architecture = layers::suited(&bound, settings.architecture);
+    // Natural sizes depend on the inputs.
+    let bound = if architecture == settings.architecture { bound } else { problem.bound(architecture.inputs)? };
+    Ok((bound, Settings { architecture, ..settings.clone() }))
+}
+
+/// Threads of a run's own.
+fn threads(settings: &Settings) -> Result<rayon::ThreadPool, RecoverError> {
+    let pool = rayon::ThreadPoolBuilder::new().num_threads(settings.threads).build();
+    pool.map_err(|error| RecoverError::Threads { threads: settings.threads, reason: error.to_string() })
+}
+
+/// Steps and time that a run may take.
+fn limits(settings: &Settings) -> Limits {
+    Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() }
 }
 
 /// True where enough of the budget is left for another start.

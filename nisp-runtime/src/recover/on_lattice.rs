@@ -5,18 +5,18 @@ use super::course::Course;
 use super::{Optimizer, RecoverError, Settings, Width, undetermined};
 use crate::carrier::Kept;
 use crate::facts::Answer;
-use crate::local::{self, Local, LocalSolution, smooth};
+use crate::local::{self, Live, Local, LocalSolution, smooth};
 use crate::noise;
 use crate::problem::Bound;
+use crate::solve::driver::Warning;
 
 impl Carrier for Local {
     fn name(&self) -> &'static str {
         local::CARRIER
     }
 
-    fn solve(&self, bound: &Bound, _: &Settings, mut course: Course<'_, '_>) -> Result<Solved, RecoverError> {
-        let found = local::solve(bound, self, course.left(), course.from, &mut |progress| course.watch(progress))?;
-        Ok(solved(bound, found, Optimizer::Marquardt))
+    fn solve(&self, bound: &Bound, _: &Settings, course: Course<'_, '_>) -> Result<Solved, RecoverError> {
+        sought(bound, self, course).map(|(solved, _)| solved)
     }
 }
 
@@ -35,19 +35,25 @@ impl Carrier for OnLattice {
         let (limits, from) = (course.left(), course.from);
         let noise = noise::estimate(bound);
         let found = smooth::solve(bound, &noise, limits, from, &mut |progress| course.watch(progress))?;
-        Ok(solved(bound, found, Optimizer::Evidence))
+        let open = undetermined::of_local(bound, &found);
+        Ok(solved(found, open, Optimizer::Evidence))
     }
 }
 
-/// What local functions found.
-fn solved(bound: &Bound, found: LocalSolution, optimizer: Optimizer) -> Solved {
-    let mut warnings = found.warnings.clone();
-    warnings.extend(undetermined::of_local(bound, &found));
+/// A problem solved within the limits of a course; also what goes on from its answer to other data.
+pub(super) fn sought(bound: &Bound, local: &Local, mut course: Course<'_, '_>) -> Result<(Solved, Live), RecoverError> {
+    let (found, live) = local::solve(bound, local, course.left(), course.from, &mut |progress| course.watch(progress))?;
+    let open = undetermined::of_local(bound, &found);
+    Ok((solved(found, open, Optimizer::Marquardt), live))
+}
+
+/// An answer on its lattices, of which `open` says what the data leave open.
+pub(super) fn solved(found: LocalSolution, open: Vec<Warning>, optimizer: Optimizer) -> Solved {
     Solved {
         status: found.status,
         loss: found.loss,
         iterations: found.iterations,
-        warnings,
+        warnings: found.warnings.iter().cloned().chain(open).collect(),
         state: found.checkpoint.clone(),
         optimizer,
         method: "gauss-newton",
@@ -70,7 +76,7 @@ impl Carried for LocalSolution {
     }
 
     fn deviation_of_sum(&self, bound: &Bound, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
-        self.kept.deviation_of_sum(head, &bound.inward(points), weights)
+        LocalSolution::deviation_of_sum(self, head, &bound.inward(points), weights)
     }
 
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {

@@ -1,0 +1,75 @@
+//! From one answer to the next, where only clouds and given parameters have changed.
+
+use super::draws::Deviations;
+use super::kept::KeptLattices;
+use super::phase::CONVEX_STEPS;
+use super::place::State;
+use super::solver::Solver;
+use super::{LocalError, LocalSolution};
+use crate::facts::{Known, Score};
+use crate::problem::Bound;
+use crate::solve::driver::Status;
+
+/// A solver with its answer: its lattice, the places of its points and the pattern of its equations stay.
+pub(crate) struct Live {
+    solver: Solver,
+    state: State,
+    /// What the problem takes for known, and the last score of each; no scores before all were asked for.
+    known: Vec<Known>,
+    scores: Vec<Option<Score>>,
+    /// Whose turn it is to be asked about.
+    turn: usize,
+}
+
+impl Live {
+    /// From an answer, with the scores of all that is known if it was asked for them.
+    pub(super) fn new(solver: Solver, state: State, scores: Vec<Option<Score>>) -> Self {
+        let known = solver.known();
+        Self { solver, state, known, scores, turn: 0 }
+    }
+
+    /// The answer to a problem of the same points, from the last one. Edges of patches that have moved are let go of under the
+    /// convex prior, and found again under the other.
+    pub(crate) fn update(&mut self, bound: Bound) -> Result<LocalSolution, LocalError> {
+        if self.solver.bound.scalars != bound.scalars {
+            self.scores.clear();
+        }
+        self.solver.renew(bound);
+        // What nothing is known of is asked about; then one after the other, since that takes as long as a step for all.
+        let turns = match self.scores.len() {
+            len if len == self.known.len() => self.turn..(self.turn + 1).min(len),
+            _ => 0..self.known.len(),
+        };
+        let (convex, _) = self.solver.step(&self.state, CONVEX_STEPS, false, &[])?;
+        let place = self.solver.place(&convex, 1);
+        let (state, found) = self.solver.step(&convex, CONVEX_STEPS + 1, false, &self.known[turns.clone()])?;
+        self.state = state;
+        self.scores.resize(self.known.len(), None);
+        self.scores[turns.clone()].copy_from_slice(&found.scores);
+        self.turn = turns.end % self.known.len().max(1);
+        let mut warnings = self.solver.doubts(found.loss, found.rows, CONVEX_STEPS);
+        let status = if warnings.is_empty() { Status::Converged } else { Status::NotConverged };
+        let mut answer = self.solver.answer(&self.state);
+        // The matrix holds sources at zero where no cloud saw the surface, so that its deviations say too little.
+        let on_prior = self.solver.rests_on_the_prior();
+        let factor = Some(found.factor).filter(|_| on_prior.is_empty());
+        warnings.extend(on_prior);
+        answer.scores = self.scores.iter().copied().flatten().collect();
+        Ok(LocalSolution {
+            kept: KeptLattices {
+                heads: self.solver.heads.clone(),
+                theta: self.state.theta.clone(),
+                learned: self.state.learned.clone(),
+                draws: Deviations::default(),
+            },
+            status,
+            iterations: 2,
+            loss: found.loss,
+            warnings,
+            factor,
+            checkpoint: place.save(0, 1),
+            answer,
+            misfits: self.solver.misfits(&self.state),
+        })
+    }
+}
