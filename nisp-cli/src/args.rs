@@ -185,8 +185,7 @@ pub(crate) struct Options {
     /// Element type of the network; auto is f32 as long as that helps, with methods that work in it, and then f64.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = precisions(), help_heading = METHOD)]
     pub(crate) precision: String,
-    /// What carries state and source; auto looks at the scene and the data. Splines go along the only coordinate, or on a
-    /// lattice over several. --optimizer means a network.
+    /// What carries state and source; auto looks at the scene and the data. --optimizer means a network.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = ["auto", "network", "splines"],
           help_heading = METHOD)]
     pub(crate) carrier: String,
