@@ -72,6 +72,9 @@ fn swing(scene: SceneRef) -> Problem {
     problem.set_group("samples", times.into(), vec![values]).unwrap();
     if scene.schema.groups.iter().any(|group| group.is_beliefs()) {
         problem.set_parameter("w", 2.1).unwrap();
+    } else {
+        // With more friction than there is, something pushes.
+        problem.set_parameter("c", 0.6).unwrap();
     }
     problem
 }
