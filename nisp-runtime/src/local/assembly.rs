@@ -138,7 +138,7 @@ impl Solver {
     /// Says which sources act where no cloud saw the surface.
     pub(super) fn rests_on_the_prior(&self) -> Vec<Warning> {
         let heads = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| head.source);
-        let unseen = heads.filter_map(|(at, head)| Some((head.name, self.unseen(at)?.share())));
+        let unseen = heads.filter_map(|(at, head)| Some((head.name, self.unseen(at)?.share)));
         let said = |(name, share): (&str, f64)| {
             format!(
                 "clouds do not show {:.0} % of where `{name}` acts; it is what the prior says there, as little as can be, and its \

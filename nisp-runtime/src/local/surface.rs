@@ -157,6 +157,11 @@ impl Surface {
         self.feet.chunks_exact(self.inputs).map(padded).collect()
     }
 
+    /// Places at rest that the surface is known to have.
+    pub(super) fn samples(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
+        self.samples.chunks_exact(self.inputs).map(padded)
+    }
+
     /// The feet that were found.
     pub(super) fn found_places(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         let feet = self.feet.chunks_exact(self.inputs).zip(&self.found);
