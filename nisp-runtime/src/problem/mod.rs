@@ -2,6 +2,10 @@
 
 mod beliefs;
 mod bind;
+mod bound;
+mod checks;
+mod engine;
+mod error;
 mod evaluate;
 mod frame;
 mod powers;
@@ -9,8 +13,8 @@ mod scale;
 mod system;
 mod units;
 
-pub use bind::BindError;
-pub(crate) use bind::Bound;
+pub(crate) use bound::Bound;
+pub use error::BindError;
 pub(crate) use frame::Frame;
 pub use system::UnitSystem;
 
@@ -69,6 +73,12 @@ impl Binding {
     /// The cloud of a term, as bound last.
     fn cloud(&self, term: &str) -> Option<&[f64]> {
         self.clouds.iter().rev().find(|(name, _)| name == term).map(|(_, cloud)| &cloud[..])
+    }
+
+    /// True if another binding has the same points, columns and views: all but clouds.
+    fn is_alike(&self, other: &Self) -> bool {
+        let Self { points, columns, clouds: _, views, tolerances } = self;
+        (points, columns, views, tolerances) == (&other.points, &other.columns, &other.views, &other.tolerances)
     }
 
     /// The direction along which a term's cloud is off, as bound last.
@@ -134,7 +144,7 @@ impl Problem {
             return Err(BindError::Parameter { name: name.into(), value });
         }
         let value = value * scalars[at].unit.factor;
-        bind::within(&scalars[at], value)?;
+        error::within(&scalars[at], value)?;
         self.scalars[at] = Some(value);
         Ok(())
     }
@@ -184,7 +194,9 @@ impl Problem {
     /// # Errors
     /// No such group, or nothing bound to it yet.
     pub fn set_view(&mut self, group: &str, term: &str, direction: [f64; 3]) -> Result<(), BindError> {
-        self.binding(group)?.views.push((term.into(), direction));
+        let views = &mut self.binding(group)?.views;
+        views.retain(|(own, _)| own != term);
+        views.push((term.into(), direction));
         Ok(())
     }
 
@@ -194,7 +206,9 @@ impl Problem {
     /// # Errors
     /// No such group, or nothing bound to it yet.
     pub fn set_tolerance(&mut self, group: &str, term: &str, tolerance: f64) -> Result<(), BindError> {
-        self.binding(group)?.tolerances.push((term.into(), tolerance));
+        let tolerances = &mut self.binding(group)?.tolerances;
+        tolerances.retain(|(own, _)| own != term);
+        tolerances.push((term.into(), tolerance));
         Ok(())
     }
 

@@ -1,0 +1,137 @@
+//! A problem in the engine's units: what carriers read of it, and parts of it.
+
+use super::frame::inward_points;
+use super::{Frame, Problem, UnitSystem};
+use crate::engine::{Learned, Powers, Scaling, is_exchangeable};
+use crate::loss::Loss;
+use crate::schema::{self, Origin};
+
+/// A problem in the engine's units, whatever the precision.
+#[derive(Clone, Debug)]
+pub(crate) struct Bound {
+    pub(crate) problem: Problem,
+    pub(crate) system: UnitSystem,
+    pub(crate) scaling: Scaling,
+    pub(crate) scalars: Vec<f64>,
+    pub(crate) learned: Vec<Learned>,
+    /// Natural size of each term's rows, by group and term.
+    pub(crate) sizes: Vec<Vec<f64>>,
+    /// How misfits count, by group and term.
+    pub(crate) losses: Vec<Vec<Loss>>,
+    /// Powers of the learned scalars that the sizes of equations go with, by group and term; see [`super::powers`].
+    pub(crate) powers: Vec<Vec<Powers>>,
+    /// Coordinates by group, in the engine's units, point by point.
+    pub(crate) coordinates: Vec<Vec<f64>>,
+    /// Coordinates of their partners, in the same way; empty unless the group is paired.
+    pub(crate) partners: Vec<Vec<f64>>,
+    /// Columns by group, in the engine's units; NaN where a quantity was not measured.
+    pub(crate) columns: Vec<Vec<Vec<f64>>>,
+    /// Clouds by group and term, in the engine's units, flat and point by point; empty for other terms.
+    pub(crate) clouds: Vec<Vec<Vec<f64>>>,
+}
+
+impl Bound {
+    /// Columns of a group with zeros where nothing was measured: rows that read those do not count.
+    pub(crate) fn filled_columns(&self, group: usize) -> Vec<Vec<f64>> {
+        let filled = |column: &Vec<f64>| column.iter().map(|&x| if x.is_nan() { 0.0 } else { x }).collect();
+        self.columns[group].iter().map(filled).collect()
+    }
+
+    /// Where an observation was measured, point by point; nothing if everywhere.
+    pub(crate) fn lacking(&self, group: usize, term: &schema::Term) -> Option<Vec<bool>> {
+        let columns = || term.columns.iter().map(|&column| &self.columns[group][column]);
+        let points = columns().next()?.len();
+        let measured: Vec<bool> = (0..points).map(|p| columns().all(|column| !column[p].is_nan())).collect();
+        measured.contains(&false).then_some(measured)
+    }
+
+    /// Those of the values at the points of a group at which an observation was measured.
+    pub(crate) fn measured<T: Clone>(&self, group: usize, term: &schema::Term, values: &[T]) -> Vec<T> {
+        let Some(measured) = self.lacking(group, term) else { return values.to_vec() };
+        let each = values.len() / measured.len().max(1);
+        let kept = values.chunks_exact(each.max(1)).zip(&measured).filter(|(_, is_there)| **is_there);
+        kept.flat_map(|(value, _)| value.to_vec()).collect()
+    }
+
+    /// The cloud of a term, in the engine's units, flat.
+    pub(crate) fn cloud(&self, group: usize, term: &str) -> &[f64] {
+        let terms = self.problem.scene.schema.groups[group].terms.iter();
+        terms.zip(&self.clouds[group]).find(|(own, _)| own.name == term).map_or(&[], |(_, cloud)| cloud)
+    }
+
+    /// The same with a share of the points of groups that may exchange theirs, evenly picked.
+    pub(crate) fn thinned(&self, share: f64) -> Self {
+        let mut thinned = self.clone();
+        let schema = self.problem.scene.schema;
+        let inputs = schema.coordinates.len();
+        for at in (0..schema.groups.len()).filter(|&at| is_exchangeable(&schema.groups[at])) {
+            let all = self.coordinates[at].len() / inputs;
+            let count = ((share * all as f64).round() as usize).clamp(1, all);
+            let chosen: Vec<usize> = (0..count).map(|i| i * all / count).collect();
+            let points = chosen.iter().flat_map(|&p| &self.coordinates[at][p * inputs..(p + 1) * inputs]);
+            thinned.coordinates[at] = points.copied().collect();
+            for (own, all) in thinned.columns[at].iter_mut().zip(&self.columns[at]) {
+                *own = chosen.iter().map(|&p| all[p]).collect();
+            }
+        }
+        thinned
+    }
+
+    /// The same with the points of an interval of the only coordinate alone, for scenes without clouds, pairs and weights.
+    pub(crate) fn between(&self, low: f64, high: f64) -> Self {
+        let mut part = self.clone();
+        for (at, all) in self.coordinates.iter().enumerate() {
+            let is_inside: Vec<bool> = all.iter().map(|x| (low..=high).contains(x)).collect();
+            let inside = |values: &[f64]| -> Vec<f64> {
+                values.iter().zip(&is_inside).filter(|(_, inside)| **inside).map(|(x, _)| *x).collect()
+            };
+            part.coordinates[at] = inside(all);
+            part.columns[at] = self.columns[at].iter().map(|column| inside(column)).collect();
+        }
+        part
+    }
+
+    pub(super) fn raw_weights(&self, group: usize) -> &[f64] {
+        self.problem.groups[group].as_ref().map_or(&[], |binding| &binding.points.weights)
+    }
+
+    /// Weights of a group's points in the engine's units, if `measure` is theirs; empty if they have none.
+    pub(crate) fn weights(&self, group: usize, measure: Option<&schema::Unit>) -> Vec<f64> {
+        let inward = measure.map_or(1.0, |measure| self.system.inward(measure));
+        self.raw_weights(group).iter().map(|weight| weight * inward).collect()
+    }
+
+    /// Natural size of a head: what its transformation multiplies with, or the network's scale.
+    pub(crate) fn head_scale(&self, head: usize) -> f64 {
+        let mut slots = self.problem.scene.schema.scalars.iter();
+        let slot = slots.position(|scalar| scalar.origin == Origin::HeadScale(head));
+        slot.map_or(self.scaling.scale[head], |slot| self.scalars[slot])
+    }
+
+    /// The direction along which a term's cloud is off, if it is known.
+    pub(crate) fn view(&self, group: usize, term: &str) -> Option<[f64; 3]> {
+        self.problem.groups[group].as_ref()?.view(term)
+    }
+
+    /// How far a term's cloud may be off over whole regions, if that is known.
+    pub(crate) fn tolerance(&self, group: usize, term: &schema::Term) -> Option<f64> {
+        let declared = self.problem.groups[group].as_ref()?.tolerance(term.name)?;
+        Some(declared * self.system.inward(&term.unit))
+    }
+
+    /// Points given in declared units, in the engine's.
+    pub(crate) fn inward(&self, points: &[f64]) -> Vec<f64> {
+        inward_points(self.problem.scene.schema, &self.system, points)
+    }
+
+    /// The scene with its units, scales and scalars, without points and data.
+    pub(crate) fn frame(&self) -> Frame {
+        Frame {
+            scene: self.problem.scene,
+            system: self.system,
+            scaling: self.scaling.clone(),
+            scalars: self.scalars.clone(),
+            learned: self.learned.clone(),
+        }
+    }
+}
