@@ -43,6 +43,18 @@ impl Facts {
         (0..group.rows).map(|row| self.at_places(&rows[row * self.stride..][..self.stride])).collect()
     }
 
+    /// What a program gives at all points, `[row][point]`.
+    fn by_row(
+        &self,
+        group: &schema::Group,
+        scalars: &[f64],
+        program: impl FnOnce(Points<'_, f64>, &mut [f64]),
+    ) -> Vec<Vec<f64>> {
+        let mut rows = vec![0.0; group.rows * self.stride];
+        program(self.inputs(&self.jets, &self.columns, scalars, &[]), &mut rows);
+        rows.chunks_exact(self.stride).map(|row| row[..self.points].to_vec()).collect()
+    }
+
     /// Raw rows at all points, `[row][point]`.
     pub(crate) fn plain_rows(
         &self,
@@ -50,9 +62,7 @@ impl Facts {
         group: &schema::Group,
         scalars: &[f64],
     ) -> Vec<Vec<f64>> {
-        let mut rows = vec![0.0; group.rows * self.stride];
-        programs.residual(Isa::detect(), self.inputs(&self.jets, &self.columns, scalars, &[]), &mut rows);
-        rows.chunks_exact(self.stride).map(|row| row[..self.points].to_vec()).collect()
+        self.by_row(group, scalars, |points, rows| programs.residual(Isa::detect(), points, rows))
     }
 
     /// Sums of the magnitudes of what the rows at all points add up, `[row][point]`.
@@ -62,9 +72,7 @@ impl Facts {
         group: &schema::Group,
         scalars: &[f64],
     ) -> Vec<Vec<f64>> {
-        let mut rows = vec![0.0; group.rows * self.stride];
-        programs.magnitude(self.inputs(&self.jets, &self.columns, scalars, &[]), &mut rows);
-        rows.chunks_exact(self.stride).map(|row| row[..self.points].to_vec()).collect()
+        self.by_row(group, scalars, |points, rows| programs.magnitude(points, rows))
     }
 
     /// Derivatives of a row by the jets, `[jet][point]`.

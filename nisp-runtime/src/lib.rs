@@ -32,6 +32,7 @@ mod splines;
 pub mod tanh;
 pub mod values;
 pub mod verdict;
+mod weighed;
 mod wide;
 
 pub use splines::live;

@@ -140,7 +140,7 @@ impl Heads {
     /// The weight of every coefficient in a sum of a head's values at points given flat, each times its weight.
     pub(super) fn sum_weights(&self, head: usize, points: &[f64], weights: &[f64]) -> Vec<f64> {
         let mut sums = vec![0.0; self.len()];
-        for (point, weight) in points.chunks_exact(self.lattices[head].dimensions()).zip(weights) {
+        for (point, weight) in points.chunks_exact(self.lattices[head].inputs()).zip(weights) {
             self.parts(head, point).into_iter().for_each(|(at, value)| sums[at] += weight * value);
         }
         sums

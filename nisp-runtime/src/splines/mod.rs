@@ -6,18 +6,22 @@
 //! linear in the measurements. The size of the noise, and the size and roughness of every source, are those with the largest
 //! evidence (MacKay 1992), and so is the kind of smoothness.
 
+mod assembly;
 mod basis;
 mod cells;
+mod course;
 mod group;
 mod heads;
+mod iterate;
 mod kept;
 pub mod live;
+mod place;
 mod prior;
 mod resolved;
 mod rows;
 mod solver;
+mod step;
 mod triangle;
-pub(crate) mod weighed;
 
 use std::time::Instant;
 
@@ -37,26 +41,13 @@ use kept::Spread;
 use prior::KINDS;
 pub(crate) use triangle::Triangle;
 
-use solver::{Phase, Solver, State, TOLERANCE};
+use course::Run;
+use iterate::State;
+use place::{Place, Tried};
+use solver::Solver;
 
-/// Logarithm of the evidence by which a kind of smoothness may fall behind and still count.
-const NEAR: f64 = 8.0;
-/// How far differences of the evidence are trusted: all kinds are approximations of what the source is like.
-const TRUST: f64 = 0.3;
 /// Coefficients up to which it is looked for what is open.
 const MANY: usize = 20_000;
-/// Steps that regress the data at most.
-const REGRESS: u64 = 12;
-/// Gain of the logarithm of the evidence that no longer matters.
-const RESTING: f64 = 0.05;
-/// Change of a coefficient, in natural sizes, that no longer matters.
-const SETTLED: f64 = 1e-3;
-/// Change of a coefficient that says that steps lead nowhere.
-const WANDERING: f64 = 5e-3;
-/// Steps of a kind of smoothness at most.
-const MOST_STEPS: u64 = 60;
-/// The end of the error bars' steps at the latest, beside the budget.
-const LATE: f64 = 1.05;
 /// Name of the method in saved states.
 pub(crate) const METHOD: &str = "splines";
 
@@ -108,26 +99,6 @@ pub(crate) struct Root {
     /// Group and term of the condition.
     pub(crate) without: Option<(usize, usize)>,
     pub(crate) triangle: Triangle,
-}
-
-/// Where a run stands: which kind of smoothness is tried, from which iterate, and what came of those before.
-#[derive(Clone)]
-struct Place {
-    /// Indices in [`KINDS`] of those that are still to be tried, the present one first.
-    kinds: Vec<usize>,
-    phase: Phase,
-    /// Steps of the phase.
-    since: u64,
-    state: State,
-    tried: Vec<Tried>,
-}
-
-/// A kind of smoothness that was tried: its index, its evidence and its iterate.
-#[derive(Clone)]
-struct Tried {
-    kind: usize,
-    evidence: f64,
-    state: State,
 }
 
 /// Solves a bound problem within its limits, from the start or from a saved state. Conditions, by group and term, are those that
@@ -224,149 +195,5 @@ fn kinds(has_sources: bool, stretches: bool) -> Vec<usize> {
         (false, _) => vec![0],
         (true, false) => (0..KINDS.len()).filter(|&kind| !KINDS[kind].stretched).collect(),
         (true, true) => (0..KINDS.len()).collect(),
-    }
-}
-
-/// A run under way.
-struct Run<'m> {
-    start: Instant,
-    limits: Limits,
-    /// Seconds of the longest step.
-    longest: f64,
-    monitor: &'m mut dyn FnMut(Progress<'_>) -> Flow,
-    loss: f64,
-}
-
-impl Run<'_> {
-    /// True where so many more steps end with the budget, or nearly so.
-    fn has_time_for(&self, steps: usize) -> bool {
-        let end = self.start.elapsed().as_secs_f64() + steps as f64 * self.longest;
-        steps == 0 || self.limits.budget.is_none_or(|budget| end <= LATE * budget.as_secs_f64())
-    }
-
-    /// Takes steps until all kinds of smoothness that are to be tried have been, or steps or time are spent.
-    fn go(
-        &mut self,
-        solver: &mut Solver<'_>,
-        place: &mut Place,
-        save: &dyn Fn(&Place) -> state::State,
-    ) -> Result<Status, Fault> {
-        let mut taken = 0;
-        while let Some(&kind) = place.kinds.first() {
-            if place.phase == Phase::Solve {
-                solver.set_smoothness(KINDS[kind]);
-            }
-            let elapsed = self.start.elapsed().as_secs_f64();
-            let spent = self.limits.budget.is_some_and(|b| elapsed + 2.0 * self.longest > b.as_secs_f64());
-            if (spent || place.state.step >= self.limits.iterations) && taken > 0 {
-                return Ok(Status::Budget);
-            }
-            let Some(found) = solver.step(&place.state, place.phase)? else { return Ok(Status::NotConverged) };
-            self.longest = self.longest.max(self.start.elapsed().as_secs_f64() - elapsed);
-            let is_tight = place.state.tolerance <= TOLERANCE;
-            place.state = found.next;
-            (place.since, taken) = (place.since + 1, taken + 1);
-            self.loss = found.loss;
-            let moved: f64 = place.state.classes.iter().map(|class| class.gain).sum();
-            let resting = moved < RESTING && place.since > 1;
-            match place.phase {
-                Phase::Regress if resting || place.since >= REGRESS => {
-                    (place.phase, place.since) = (Phase::Solve, 0);
-                }
-                Phase::Solve if is_tight && (resting && found.change < SETTLED || place.since >= MOST_STEPS) => {
-                    place.since = 0;
-                    // An iterate that wanders about has no evidence.
-                    place.next(if found.change < WANDERING { found.evidence } else { f64::MIN });
-                    if let Some(&kind) = place.kinds.first() {
-                        solver.change_smoothness(KINDS[kind], &mut place.state);
-                    }
-                }
-                _ => {}
-            }
-            let elapsed_s = self.start.elapsed().as_secs_f64();
-            let checkpoint = &|| save(place);
-            let progress = Progress { iteration: place.state.step, elapsed_s, loss: self.loss, checkpoint };
-            if (self.monitor)(progress) == Flow::Stop {
-                return Ok(Status::Interrupted);
-            }
-        }
-        Ok(Status::Converged)
-    }
-}
-
-impl Place {
-    /// The start.
-    fn first(state: State, kinds: Vec<usize>) -> Self {
-        Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new() }
-    }
-
-    /// Keeps the iterate, and turns to the next kind. A time that the evidence rules out is not tried with other orders.
-    fn next(&mut self, evidence: f64) {
-        let kind = self.kinds.remove(0);
-        self.tried.push(Tried { kind, evidence, state: self.state.clone() });
-        let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
-        let best = most(&mut self.tried.iter());
-        let along =
-            [false, true].map(|time| most(&mut self.tried.iter().filter(|tried| KINDS[tried.kind].stretched == time)));
-        // Of a time that has not been tried nothing is known.
-        self.kinds.retain(|&kind| {
-            let own = along[usize::from(KINDS[kind].stretched)];
-            own.is_nan() || own >= best - NEAR
-        });
-    }
-
-    /// The kind with the largest evidence.
-    fn best(&self) -> Option<&Tried> {
-        self.tried.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
-    }
-
-    /// Kinds that the evidence does not rule out, with their shares of it.
-    fn likely(&self) -> Vec<(f64, Tried)> {
-        let Some(best) = self.best() else { return Vec::new() };
-        let near = || self.tried.iter().filter(|tried| tried.evidence >= best.evidence - NEAR);
-        let weight = |tried: &Tried| (TRUST * (tried.evidence - best.evidence)).exp();
-        let all: f64 = near().map(weight).sum();
-        near().map(|tried| (weight(tried) / all, tried.clone())).collect()
-    }
-
-    fn save(&self) -> state::State {
-        let saved = self.state.save(state::State::new(METHOD), "");
-        let kinds: Vec<f64> = self.kinds.iter().map(|&kind| kind as f64).collect();
-        let saved = saved
-            .with("kinds", &kinds)
-            .with_counter("phase", u64::from(self.phase == Phase::Solve))
-            .with_counter("since", self.since)
-            .with_counter("iterations", self.state.step)
-            .with_counter("tried", self.tried.len() as u64);
-        self.tried.iter().enumerate().fold(saved, |saved, (at, Tried { kind, evidence, state })| {
-            let prefix = format!("tried {at} ");
-            let saved = saved.with(&format!("{prefix}evidence"), &[*evidence]);
-            state.save(saved.with_counter(&format!("{prefix}kind"), *kind as u64), &prefix)
-        })
-    }
-
-    fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
-        saved.check_method(METHOD)?;
-        let known = |kind: &usize| *kind < KINDS.len();
-        self.kinds = saved.indices("kinds")?;
-        if !self.kinds.iter().all(known) {
-            return Err(Fault::state("kinds"));
-        }
-        for at in 0..saved.counter("tried")? {
-            let prefix = format!("tried {at} ");
-            let mut state = self.state.clone();
-            state.restore(saved, &prefix)?;
-            let [evidence] = saved.scalars(&format!("{prefix}evidence"))?;
-            let kind = saved.counter(&format!("{prefix}kind"))? as usize;
-            self.tried.push(Tried {
-                kind: Some(kind).filter(known).ok_or_else(|| Fault::state("kind"))?,
-                evidence,
-                state,
-            });
-        }
-        self.state.restore(saved, "")?;
-        self.since = saved.counter("since")?;
-        self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
-        Ok(())
     }
 }

@@ -1,68 +1,26 @@
-//! Gauss-Newton steps on banded rows, while the evidence finds how noisy the data and how rough the sources are.
+//! A problem on its splines: what is set up before any step, and what is read of it after the last.
 
 use super::cells;
 use super::group::Group;
 use super::heads::Heads;
+use super::iterate::{LOOSE, Phase, State};
 use super::prior::{Prior, Smoothness};
-use super::rows::{Counted, Rows};
-use super::triangle::{Covariance, Row, Triangle};
-use super::weighed::{Class, Guess, Tally, renew, restore_classes, save_classes};
+use super::triangle::Triangle;
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
-use crate::solve::state;
+use crate::weighed::{Class, Guess, of_terms};
 
-/// How far equations may be off in the end, beside the sum of the magnitudes of their terms.
-pub(super) const TOLERANCE: f64 = 1e-6;
-/// The same in the first step, and its fall from step to step: a state that is far off finds its way along loose equations.
-const LOOSE: f64 = 1e-2;
-const TIGHTER: f64 = 0.1;
-/// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
-pub(super) const RIDGE: f64 = 1e-6;
-/// Standard deviation of the learned scalars' parameters before any row is seen.
-const LEARNED: f64 = 10.0;
 /// How fields are smooth while only data are regressed.
 const REGRESS: Smoothness = Smoothness { order: 2, stretched: false };
 /// Cells of a source's shortest wave, before the first step says how smooth it is.
 const SHORTEST: f64 = 12.0;
-/// Rows that the noise's estimate from differences is worth.
-const NOISE_COUNT: f64 = 2.0;
-/// Least noise, as a share of the spread of the data: rounding.
-const LEAST_NOISE: f64 = 1e-10;
 /// Least roughness, and least amplitude of a source beside its natural size.
 const LEAST_ROUGHNESS: f64 = 1e-12;
 const LEAST_AMPLITUDE: f64 = 1e-6;
-/// Logarithm of the evidence that a larger source may cost and still be possible, and how many numbers must be told of a source
-/// for the evidence to know its size.
-const DOUBT: f64 = 2.0;
-const TELLING: f64 = 2.0;
-/// Largest change of a learned parameter in a step.
-const FARTHEST: f64 = 1.0;
-/// A step is halved so often before it is given up.
-const HALVINGS: u32 = 8;
-
-/// An iterate.
-#[derive(Clone, Debug)]
-pub(super) struct State {
-    pub(super) theta: Vec<f64>,
-    pub(super) learned: Vec<f64>,
-    pub(super) classes: Vec<Class>,
-    /// Tolerance of the equations.
-    pub(super) tolerance: f64,
-    pub(super) step: u64,
-}
-
-/// What the rows of a step are.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Phase {
-    /// Data under a prior of the fields' roughness.
-    Regress,
-    /// Everything under a prior of the sources' roughness.
-    Solve,
-}
 
 /// A problem on its splines.
 pub(super) struct Solver<'a> {
@@ -71,35 +29,21 @@ pub(super) struct Solver<'a> {
     /// Groups where their rows are asked for.
     pub(super) groups: Vec<Group>,
     /// By group and term, the number of its class.
-    classes: Vec<Vec<usize>>,
+    pub(super) classes: Vec<Vec<usize>>,
     /// By head, the number of the class of its roughness.
-    roughness: Vec<usize>,
+    pub(super) roughness: Vec<usize>,
     /// By head, the number of the class of its amplitude, where it is a source.
-    amplitude: Vec<Option<usize>>,
+    pub(super) amplitude: Vec<Option<usize>>,
     /// By head, its prior: that of sources while everything is solved, that of fields while data are regressed.
-    priors: Vec<Prior>,
+    pub(super) priors: Vec<Prior>,
     /// The class of a condition that is left out.
-    left_out: Option<usize>,
+    pub(super) left_out: Option<usize>,
     /// Sizes of equations, by group and row.
-    sizes: Vec<Vec<f64>>,
-    scalars: Vec<f64>,
+    pub(super) sizes: Vec<Vec<f64>>,
+    pub(super) scalars: Vec<f64>,
     /// Length of the domain.
-    length: f64,
-    triangle: Triangle,
-}
-
-/// What a step found.
-pub(super) struct Found {
-    pub(super) next: State,
-    /// Half the sum of squares of all rows before the step.
-    pub(super) loss: f64,
-    /// Largest change of a coefficient or parameter.
-    pub(super) change: f64,
-    /// Logarithm of the evidence, up to a constant.
-    pub(super) evidence: f64,
-    pub(super) covariance: Covariance,
-    /// By head, how many numbers rows other than its prior say of a source.
-    told: Vec<f64>,
+    pub(super) length: f64,
+    pub(super) triangle: Triangle,
 }
 
 impl<'a> Solver<'a> {
@@ -192,24 +136,7 @@ impl<'a> Solver<'a> {
     /// Where the solver starts: heads at their offsets, noise as differences of the data say.
     pub(super) fn first(&self, noise: &Noise) -> State {
         let schema = self.bound.problem.scene().schema;
-        let mut classes = Vec::new();
-        for (at, group) in schema.groups.iter().enumerate() {
-            for (term, declared) in group.terms.iter().enumerate() {
-                let known = self.bound.sizes[at][term] / declared.weight.sqrt();
-                classes.push(match noise.of(at, term) {
-                    Some(found) if declared.within.is_none() => {
-                        let least = LEAST_NOISE * found.spread.max(f64::MIN_POSITIVE);
-                        let size = found.deviation.max(least);
-                        Class::open(size, Guess { size, count: NOISE_COUNT, least })
-                    }
-                    None if declared.within.is_none() && declared.kind == TermKind::Observation => {
-                        let size = 1e-2 * known;
-                        Class::open(size, Guess { size, count: NOISE_COUNT, least: 1e-9 * known })
-                    }
-                    _ => Class::known(known),
-                });
-            }
-        }
+        let mut classes = of_terms(self.bound, noise);
         let open = |size: f64, least: f64| Class::open(size, Guess { size: 0.0, count: 0.0, least });
         let natural = self.length.sqrt();
         // Fields are rougher than anything that the cells can hold, until the first step says how rough.
@@ -229,7 +156,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Takes over learned scalars; returns their derivatives by their parameters.
-    fn set_learned(&mut self, parameters: &[f64]) -> Vec<f64> {
+    pub(super) fn set_learned(&mut self, parameters: &[f64]) -> Vec<f64> {
         let found = self.bound.learned.iter().zip(parameters).map(|(learned, &parameter)| learned.map.at(parameter));
         let found: Vec<(f64, f64)> = found.collect();
         for (learned, (value, _)) in self.bound.learned.iter().zip(&found) {
@@ -245,7 +172,7 @@ impl<'a> Solver<'a> {
     }
 
     /// Sizes of equations as the sum of the magnitudes of their terms at a state; what units and data say where that is zero.
-    fn size(&mut self, state: &State) {
+    pub(super) fn size(&mut self, state: &State) {
         self.set_learned(&state.learned);
         for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
             let magnitudes = group.magnitudes(&self.heads, &state.theta, &self.scalars);
@@ -261,131 +188,6 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// What a row of a group is divided by.
-    pub(super) fn sigma(&self, state: &State, group: usize, term: usize, row: usize) -> f64 {
-        let declared = &self.groups[group].schema.terms[term];
-        match declared.kind {
-            TermKind::Observation => state.classes[self.classes[group][term]].size,
-            _ if declared.within.is_some() => self.sizes[group][row],
-            _ => state.tolerance * self.sizes[group][row],
-        }
-    }
-
-    /// Rows about a state with their classes, in the order of their unknowns, and what [`Solver::loss`] makes of them; what is
-    /// not finite is a fault.
-    fn rows(&mut self, state: &State, phase: Phase) -> Result<(Rows, f64), Fault> {
-        let slopes = self.set_learned(&state.learned);
-        let shared = slopes.len();
-        let mut rows = Rows::new(shared);
-        let mut cost = 0.0;
-        for (at, group) in self.groups.iter().enumerate() {
-            let takes_part = |term: &crate::schema::Term| phase == Phase::Solve || term.kind == TermKind::Observation;
-            if group.len() == 0 || !group.schema.terms.iter().any(takes_part) {
-                continue;
-            }
-            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, Some(shared));
-            for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| takes_part(term)) {
-                if self.left_out == Some(self.classes[at][number]) {
-                    continue;
-                }
-                let loss = self.bound.losses[at][number];
-                let lacking = self.bound.lacking(at, term);
-                let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
-                for row in term.first..term.first + term.rows {
-                    let sigma = self.sigma(state, at, number, row);
-                    for (cell, places) in group.by_cell(|p| is_there(&p)) {
-                        let mut own = group.bundle(&self.heads, cell, shared);
-                        for p in places {
-                            let misfit = found.row(row, p);
-                            if !misfit.is_finite() {
-                                let name = format!("{}.{}", group.schema.name, term.name);
-                                return Err(Fault::residual(name, Some(p)));
-                            }
-                            cost += loss.rho(misfit / sigma);
-                            let factor = loss.weight(misfit / sigma).sqrt() / sigma;
-                            group.add_row(&self.heads, (&found, row, p), &slopes, factor, &mut own);
-                        }
-                        rows.push_all(&own, self.classes[at][number]);
-                    }
-                }
-            }
-        }
-        let known = state.classes.len();
-        let none = vec![0.0; shared];
-        cost += self.add_priors(state, phase, &mut |row, class| rows.push(row, class));
-        for head in 0..self.heads.bases.len() {
-            for &number in self.heads.numbers(head, 0) {
-                let value = RIDGE * state.theta[number];
-                rows.push(Row { first: number, slopes: &[RIDGE], shared: &none, value }, known);
-            }
-        }
-        rows.sort();
-        for (at, parameter) in state.learned.iter().enumerate() {
-            let mut shared = none.clone();
-            shared[at] = LEARNED.recip();
-            rows.push(Row { first: 0, slopes: &[], shared: &shared, value: parameter / LEARNED }, known);
-        }
-        Ok((rows, cost))
-    }
-
-    /// The heads that have a prior in a phase: sources, or fields while only data are regressed.
-    fn believed(&self, phase: Phase) -> impl Iterator<Item = usize> + '_ {
-        let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
-        heads.filter(move |(_, head)| head.source == (phase == Phase::Solve)).map(|(head, _)| head)
-    }
-
-    /// Gives the rows that keep sources small and smooth, or fields smooth while only data are regressed, with their classes;
-    /// returns half the sum of their squares.
-    fn add_priors(&self, state: &State, phase: Phase, take: &mut dyn FnMut(Row<'_>, usize)) -> f64 {
-        let none = vec![0.0; state.learned.len()];
-        let mut slopes = Vec::new();
-        let mut cost = 0.0;
-        for head in self.believed(phase) {
-            let (prior, class) = (&self.priors[head], self.roughness[head]);
-            for (first, factors) in prior.smooth(state.classes[class].size) {
-                let numbers = &self.heads.numbers(head, first)[..prior.width()];
-                let mut value = 0.0;
-                slopes.clear();
-                slopes.resize(numbers[prior.width() - 1] + 1 - numbers[0], 0.0);
-                for (&number, factor) in numbers.iter().zip(&factors) {
-                    slopes[number - numbers[0]] = *factor;
-                    value += factor * state.theta[number];
-                }
-                cost += 0.5 * value * value;
-                take(Row { first: numbers[0], slopes: &slopes, shared: &none, value }, class);
-            }
-            let Some(class) = self.amplitude[head] else { continue };
-            for (&number, factor) in self.heads.numbers(head, 0).iter().zip(prior.small(state.classes[class].size)) {
-                let value = factor * state.theta[number];
-                cost += 0.5 * value * value;
-                take(Row { first: number, slopes: &[factor], shared: &none, value }, class);
-            }
-        }
-        cost
-    }
-
-    /// Half the sum of squares of all rows, robust ones by what they cost.
-    fn loss(&mut self, state: &State, phase: Phase) -> f64 {
-        self.set_learned(&state.learned);
-        let mut sum = 0.0;
-        for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
-            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, None);
-            for (number, term) in group.schema.terms.iter().enumerate() {
-                if phase == Phase::Regress && term.kind != TermKind::Observation {
-                    continue;
-                }
-                let loss = self.bound.losses[at][number];
-                let lacking = self.bound.lacking(at, term);
-                let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
-                for row in term.first..term.first + term.rows {
-                    let sigma = self.sigma(state, at, number, row);
-                    sum += (0..group.len()).filter(is_there).map(|p| loss.rho(found.row(row, p) / sigma)).sum::<f64>();
-                }
-            }
-        }
-        sum + self.add_priors(state, phase, &mut |_, _| {})
-    }
-
     /// The triangle of all rows about a state, those of a condition left out, by its group and term, if one is given; nothing
     /// where the rest leaves unknowns open.
     pub(super) fn root(&mut self, state: &State, without: Option<(usize, usize)>) -> Result<Option<Triangle>, Fault> {
@@ -398,146 +200,10 @@ impl<'a> Solver<'a> {
         Ok(triangle.solve().map(|_| triangle))
     }
 
-    /// One step.
-    pub(super) fn step(&mut self, state: &State, phase: Phase) -> Result<Option<Found>, Fault> {
-        self.size(state);
-        let (rows, before) = self.rows(state, phase)?;
-        self.triangle.clear();
-        self.triangle.add_all(rows.walk());
-        let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
-        let covariance = self.triangle.covariance();
-        let is_equation = self.equations();
-        let mut tallies = vec![Tally::default(); state.classes.len() + 1];
-        let mut loss = 0.0;
-        let mut walk = rows.walk();
-        while let Some(Counted { row, class, count }) = walk.step() {
-            let tally = &mut tallies[class];
-            let along: f64 = row.slopes.iter().zip(&step[row.first..]).map(|(a, x)| a * x).sum();
-            let beside: f64 = row.shared.iter().zip(&shared).map(|(a, x)| a * x).sum();
-            tally.squares += (row.value + along + beside).powi(2);
-            tally.count += count as f64;
-            // Equations are so much stricter than anything else that each settles an unknown.
-            if !is_equation[class] {
-                tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
-            }
-            loss += 0.5 * row.value.powi(2);
-        }
-        let worth = self.count_priors(state, &mut tallies, phase);
-        let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
-        let evidence = -0.5 * squares - self.log_sizes(state, &tallies) + worth - self.triangle.log_determinant();
-        let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
-        let mut next = state.clone();
-        for _ in 0..HALVINGS {
-            next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
-            next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
-            let after = self.loss(&next, phase);
-            if after.is_finite() && after <= before * (1.0 + 1e-9) + 1e-12 {
-                break;
-            }
-            share *= 0.5;
-        }
-        let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-        let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
-        // While equations are loose, they need no source.
-        let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
-        let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
-        renew(&mut next.classes, &tallies, |class| is_loose && is_prior(class));
-        if phase == Phase::Solve {
-            next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
-        }
-        next.step += 1;
-        let left = |class: usize| tallies[class].count - tallies[class].used;
-        let told = self.roughness.iter().zip(&self.amplitude);
-        let told = told.map(|(&rough, amplitude)| amplitude.map_or(0.0, |class| left(rough) + left(class))).collect();
-        Ok(Some(Found { next, loss, change, evidence, covariance, told }))
-    }
-
-    /// By class, whether its rows are those of an equation; one more for what is known beforehand.
-    fn equations(&self) -> Vec<bool> {
-        let terms = self.groups.iter().flat_map(|group| group.schema.terms);
-        let priors = self.roughness.len() + self.amplitude.iter().flatten().count();
-        terms.map(|term| term.kind == TermKind::Residual).chain(vec![false; priors + 1]).collect()
-    }
-
     /// How rough and how large a source is believed to be; nothing of fields.
     pub(super) fn source_sizes(&self, state: &State, head: usize) -> Option<(f64, f64)> {
         let size = |class: usize| state.classes[class].size;
         self.amplitude[head].map(|amplitude| (size(self.roughness[head]), size(amplitude)))
-    }
-
-    /// Sum of the logarithms of what rows are divided by, those of priors aside.
-    fn log_sizes(&self, state: &State, tallies: &[Tally]) -> f64 {
-        let mut sum = 0.0;
-        for (at, group) in self.groups.iter().enumerate() {
-            for (number, term) in group.schema.terms.iter().enumerate() {
-                let rows = term.first..term.first + term.rows;
-                let logs: f64 = rows.map(|row| self.sigma(state, at, number, row).ln()).sum();
-                let count = tallies[self.classes[at][number]].count;
-                // Terms without rows have no size.
-                sum += if count > 0.0 { count * logs / term.rows as f64 } else { 0.0 };
-            }
-        }
-        sum
-    }
-
-    /// What error bars are taken from, and the step about it: sources as rough as a wave over the domain at least, and where
-    /// hardly anything is told of them, as large as the evidence does not speak against. Where the evidence takes a source for
-    /// nothing, or for a polynomial, error bars should not.
-    pub(super) fn doubted(&mut self, mut state: State) -> Result<Option<(State, Found)>, Fault> {
-        let Some(mut found) = self.step(&state, Phase::Solve)? else { return Ok(None) };
-        let (least, natural) = (found.evidence - DOUBT, self.length.sqrt());
-        for head in 0..self.roughness.len() {
-            let Some(amplitude) = self.amplitude[head] else { continue };
-            loop {
-                let mut doubted = state.clone();
-                let [own, rough] = [amplitude, self.roughness[head]].map(|class| state.classes[class].size);
-                let own = if found.told[head] < TELLING { own.max((2.0 * own).min(natural)) } else { own };
-                let wave = self.priors[head].roughness(own, self.heads.bases[head].cells() as f64);
-                doubted.classes[amplitude].size = own;
-                doubted.classes[self.roughness[head]].size = rough.max(wave);
-                if doubted.classes == state.classes {
-                    break;
-                }
-                match self.step(&doubted, Phase::Solve)? {
-                    Some(next) if next.evidence > least => (state, found) = (doubted, next),
-                    _ => break,
-                }
-            }
-        }
-        Ok(Some((state, found)))
-    }
-
-    /// What priors use up, and what they are worth; returns the logarithm of the determinant of their rows.
-    ///
-    /// What roughness uses up is what everything else leaves of all unknowns: summed row by row it would be a small difference of
-    /// large numbers where cells are much finer than the source.
-    fn count_priors(&self, state: &State, tallies: &mut [Tally], phase: Phase) -> f64 {
-        let mut log_determinant = 0.0;
-        for head in self.believed(phase) {
-            let (rough, Some(amplitude)) = (self.roughness[head], self.amplitude[head]) else { continue };
-            let worth = self.priors[head].worth(state.classes[rough].size, state.classes[amplitude].size);
-            log_determinant += worth.log_determinant;
-            // Rounding where waves are much longer than cells.
-            let small = worth.amplitude.clamp(0.0, tallies[amplitude].count);
-            tallies[rough].count = tallies[amplitude].count - small;
-            tallies[amplitude].count = small;
-        }
-        let unknowns = (self.heads.len() + self.bound.learned.len()) as f64;
-        let is_rough = |class: usize| self.roughness.contains(&class);
-        let is_equation = self.equations();
-        tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
-        let used: f64 =
-            tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();
-        let rough = || self.roughness.iter().copied();
-        let by_rows: f64 = rough().map(|class| tallies[class].used.clamp(0.0, tallies[class].count)).sum();
-        let count: f64 = rough().map(|class| tallies[class].count).sum();
-        let left = (unknowns - used).clamp(0.0, count);
-        for class in rough() {
-            let own = tallies[class].used.clamp(0.0, tallies[class].count);
-            let share = if by_rows > 0.0 { own / by_rows } else { tallies[class].count / count.max(1.0) };
-            tallies[class].used = (left * share).min(tallies[class].count);
-        }
-        log_determinant
     }
 
     /// The heads, and what they say at the points of all groups.
@@ -573,25 +239,5 @@ impl<'a> Solver<'a> {
             terms.collect()
         };
         self.groups.iter().enumerate().map(of).collect()
-    }
-}
-
-impl State {
-    pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
-        save_classes(&self.classes, saved, prefix)
-            .with(&format!("{prefix}theta"), &self.theta)
-            .with(&format!("{prefix}learned"), &self.learned)
-            .with(&format!("{prefix}tolerance"), &[self.tolerance])
-            .with_counter(&format!("{prefix}step"), self.step)
-    }
-
-    /// Takes over what [`State::save`] gave of the same problem.
-    pub(super) fn restore(&mut self, saved: &state::State, prefix: &str) -> Result<(), Fault> {
-        restore_classes(&mut self.classes, saved, prefix)?;
-        self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
-        self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
-        [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
-        self.step = saved.counter(&format!("{prefix}step"))?;
-        Ok(())
     }
 }

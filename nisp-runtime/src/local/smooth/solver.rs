@@ -10,7 +10,7 @@ use crate::local::normal::Normal;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
-use crate::splines::weighed::{Class, Guess};
+use crate::weighed::{Class, Guess, of_terms};
 
 /// How far equations may be off in the end, beside the sum of the magnitudes of their terms: a hundredth of what noise is of the
 /// data, and no less than normal equations can hold, which are squares.
@@ -21,10 +21,6 @@ const EASIEST: f64 = 1e-3;
 pub(super) const LOOSE: f64 = 1e-2;
 /// What is left of an equation, beside the sum of the magnitudes of its terms, where these balance each other.
 const BALANCED: f64 = 0.5;
-/// Rows that the noise's estimate from neighbouring data is worth.
-const NOISE_COUNT: f64 = 2.0;
-/// Least noise, as a share of the spread of the data: rounding.
-const LEAST_NOISE: f64 = 1e-10;
 /// Least roughness.
 const LEAST_ROUGHNESS: f64 = 1e-12;
 
@@ -80,24 +76,7 @@ impl<'a> Solver<'a> {
 
     /// Where the solver starts: heads at their offsets, noise as neighbouring data say.
     pub(super) fn first(&self, noise: &Noise) -> State {
-        let mut classes = Vec::new();
-        for (at, group) in self.schema().groups.iter().enumerate() {
-            for (term, declared) in group.terms.iter().enumerate() {
-                let known = self.bound.sizes[at][term] / declared.weight.sqrt();
-                classes.push(match noise.of(at, term) {
-                    Some(found) if declared.within.is_none() => {
-                        let least = LEAST_NOISE * found.spread.max(f64::MIN_POSITIVE);
-                        let size = found.deviation.max(least);
-                        Class::open(size, Guess { size, count: NOISE_COUNT, least })
-                    }
-                    None if declared.within.is_none() && declared.kind == TermKind::Observation => {
-                        let size = 1e-2 * known;
-                        Class::open(size, Guess { size, count: NOISE_COUNT, least: 1e-9 * known })
-                    }
-                    _ => Class::known(known),
-                });
-            }
-        }
+        let mut classes = of_terms(self.bound, noise);
         let guess = Guess { size: 0.0, count: 0.0, least: LEAST_ROUGHNESS };
         classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess)));
         State {

@@ -2,7 +2,7 @@
 
 use crate::solve::fault::Fault;
 use crate::solve::state;
-use crate::splines::weighed::{Class, restore_classes, save_classes};
+use crate::weighed::{Class, restore_classes, save_classes};
 
 /// What the rows of a step are.
 #[derive(Clone, Copy, Debug, PartialEq)]

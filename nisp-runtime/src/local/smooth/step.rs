@@ -14,7 +14,7 @@ use crate::local::rows::Evaluated;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 use crate::solve::vector;
-use crate::splines::weighed::{Tally, renew};
+use crate::weighed::{Tally, renew};
 
 /// How fast the tolerance of equations falls from step to step.
 const TIGHTER: f64 = 0.1;

@@ -4,14 +4,15 @@ use std::time::Instant;
 
 use super::super::cells;
 use super::super::heads::Heads;
-use super::super::solver::{Solver, State};
+use super::super::iterate::State;
+use super::super::solver::Solver;
 use super::super::triangle::Covariance;
-use super::super::weighed::Class;
 use super::super::{KINDS, Place, Run, Tried, kinds};
 use super::LiveError;
 use crate::noise::{self, Noise};
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status};
+use crate::weighed::Class;
 
 /// What rows count as known to, in the engine's units.
 #[derive(Clone, Debug)]

@@ -13,11 +13,11 @@ use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
 use crate::splines::KINDS;
+use crate::splines::assembly::RIDGE;
 use crate::splines::group::Group;
 use crate::splines::heads::Heads;
 use crate::splines::prior::Prior;
 use crate::splines::rows::Rows;
-use crate::splines::solver::RIDGE;
 use crate::splines::triangle::{Row, Triangle};
 
 /// Noise below this share of the data's spread is rounding.

@@ -2,6 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use crate::noise::Noise;
+use crate::problem::Bound;
+use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
 
@@ -117,6 +120,34 @@ fn extrapolated(classes: &[Class], wished: &[f64]) -> Option<Vec<f64>> {
     };
     let steps: Vec<f64> = classes.iter().zip(wished).map(step).collect();
     steps.iter().all(|step| step.is_finite()).then_some(steps)
+}
+
+/// Rows that the noise's estimate from differences is worth.
+const NOISE_COUNT: f64 = 2.0;
+/// Least noise, as a share of the spread of the data: rounding.
+const LEAST_NOISE: f64 = 1e-10;
+
+/// Classes of all terms of a problem, group after group: sizes that are declared, and noise as neighbouring data say.
+pub(crate) fn of_terms(bound: &Bound, noise: &Noise) -> Vec<Class> {
+    let groups = bound.problem.scene().schema.groups.iter().enumerate();
+    let terms = groups.flat_map(|(at, group)| group.terms.iter().enumerate().map(move |(term, own)| (at, term, own)));
+    let class = |(at, term, declared): (usize, usize, &schema::Term)| {
+        let known = bound.sizes[at][term] / declared.weight.sqrt();
+        match noise.of(at, term) {
+            _ if declared.within.is_some() => Class::known(known),
+            Some(found) => {
+                let least = LEAST_NOISE * found.spread.max(f64::MIN_POSITIVE);
+                let size = found.deviation.max(least);
+                Class::open(size, Guess { size, count: NOISE_COUNT, least })
+            }
+            None if declared.kind == TermKind::Observation => {
+                let size = 1e-2 * known;
+                Class::open(size, Guess { size, count: NOISE_COUNT, least: 1e-9 * known })
+            }
+            None => Class::known(known),
+        }
+    };
+    terms.map(class).collect()
 }
 
 impl Class {

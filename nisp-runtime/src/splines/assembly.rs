@@ -1,0 +1,140 @@
+//! Rows about an iterate: of terms, of priors, and of those that keep everything bounded.
+
+use super::iterate::{Phase, State};
+use super::rows::Rows;
+use super::solver::Solver;
+use super::triangle::Row;
+use crate::schema::TermKind;
+use crate::solve::fault::Fault;
+
+/// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
+pub(super) const RIDGE: f64 = 1e-6;
+/// Standard deviation of the learned scalars' parameters before any row is seen.
+const LEARNED: f64 = 10.0;
+
+impl Solver<'_> {
+    /// What a row of a group is divided by.
+    pub(super) fn sigma(&self, state: &State, group: usize, term: usize, row: usize) -> f64 {
+        let declared = &self.groups[group].schema.terms[term];
+        match declared.kind {
+            TermKind::Observation => state.classes[self.classes[group][term]].size,
+            _ if declared.within.is_some() => self.sizes[group][row],
+            _ => state.tolerance * self.sizes[group][row],
+        }
+    }
+
+    /// Rows about a state with their classes, in the order of their unknowns, and what [`Solver::loss`] makes of them; what is
+    /// not finite is a fault.
+    pub(super) fn rows(&mut self, state: &State, phase: Phase) -> Result<(Rows, f64), Fault> {
+        let slopes = self.set_learned(&state.learned);
+        let shared = slopes.len();
+        let mut rows = Rows::new(shared);
+        let mut cost = 0.0;
+        for (at, group) in self.groups.iter().enumerate() {
+            let takes_part = |term: &crate::schema::Term| phase == Phase::Solve || term.kind == TermKind::Observation;
+            if group.len() == 0 || !group.schema.terms.iter().any(takes_part) {
+                continue;
+            }
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, Some(shared));
+            for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| takes_part(term)) {
+                if self.left_out == Some(self.classes[at][number]) {
+                    continue;
+                }
+                let loss = self.bound.losses[at][number];
+                let lacking = self.bound.lacking(at, term);
+                let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
+                for row in term.first..term.first + term.rows {
+                    let sigma = self.sigma(state, at, number, row);
+                    for (cell, places) in group.by_cell(|p| is_there(&p)) {
+                        let mut own = group.bundle(&self.heads, cell, shared);
+                        for p in places {
+                            let misfit = found.row(row, p);
+                            if !misfit.is_finite() {
+                                let name = format!("{}.{}", group.schema.name, term.name);
+                                return Err(Fault::residual(name, Some(p)));
+                            }
+                            cost += loss.rho(misfit / sigma);
+                            let factor = loss.weight(misfit / sigma).sqrt() / sigma;
+                            group.add_row(&self.heads, (&found, row, p), &slopes, factor, &mut own);
+                        }
+                        rows.push_all(&own, self.classes[at][number]);
+                    }
+                }
+            }
+        }
+        let known = state.classes.len();
+        let none = vec![0.0; shared];
+        cost += self.add_priors(state, phase, &mut |row, class| rows.push(row, class));
+        for head in 0..self.heads.bases.len() {
+            for &number in self.heads.numbers(head, 0) {
+                let value = RIDGE * state.theta[number];
+                rows.push(Row { first: number, slopes: &[RIDGE], shared: &none, value }, known);
+            }
+        }
+        rows.sort();
+        for (at, parameter) in state.learned.iter().enumerate() {
+            let mut shared = none.clone();
+            shared[at] = LEARNED.recip();
+            rows.push(Row { first: 0, slopes: &[], shared: &shared, value: parameter / LEARNED }, known);
+        }
+        Ok((rows, cost))
+    }
+
+    /// The heads that have a prior in a phase: sources, or fields while only data are regressed.
+    pub(super) fn believed(&self, phase: Phase) -> impl Iterator<Item = usize> + '_ {
+        let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
+        heads.filter(move |(_, head)| head.source == (phase == Phase::Solve)).map(|(head, _)| head)
+    }
+
+    /// Gives the rows that keep sources small and smooth, or fields smooth while only data are regressed, with their classes;
+    /// returns half the sum of their squares.
+    fn add_priors(&self, state: &State, phase: Phase, take: &mut dyn FnMut(Row<'_>, usize)) -> f64 {
+        let none = vec![0.0; state.learned.len()];
+        let mut slopes = Vec::new();
+        let mut cost = 0.0;
+        for head in self.believed(phase) {
+            let (prior, class) = (&self.priors[head], self.roughness[head]);
+            for (first, factors) in prior.smooth(state.classes[class].size) {
+                let numbers = &self.heads.numbers(head, first)[..prior.width()];
+                let mut value = 0.0;
+                slopes.clear();
+                slopes.resize(numbers[prior.width() - 1] + 1 - numbers[0], 0.0);
+                for (&number, factor) in numbers.iter().zip(&factors) {
+                    slopes[number - numbers[0]] = *factor;
+                    value += factor * state.theta[number];
+                }
+                cost += 0.5 * value * value;
+                take(Row { first: numbers[0], slopes: &slopes, shared: &none, value }, class);
+            }
+            let Some(class) = self.amplitude[head] else { continue };
+            for (&number, factor) in self.heads.numbers(head, 0).iter().zip(prior.small(state.classes[class].size)) {
+                let value = factor * state.theta[number];
+                cost += 0.5 * value * value;
+                take(Row { first: number, slopes: &[factor], shared: &none, value }, class);
+            }
+        }
+        cost
+    }
+
+    /// Half the sum of squares of all rows, robust ones by what they cost.
+    pub(super) fn loss(&mut self, state: &State, phase: Phase) -> f64 {
+        self.set_learned(&state.learned);
+        let mut sum = 0.0;
+        for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, None);
+            for (number, term) in group.schema.terms.iter().enumerate() {
+                if phase == Phase::Regress && term.kind != TermKind::Observation {
+                    continue;
+                }
+                let loss = self.bound.losses[at][number];
+                let lacking = self.bound.lacking(at, term);
+                let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
+                for row in term.first..term.first + term.rows {
+                    let sigma = self.sigma(state, at, number, row);
+                    sum += (0..group.len()).filter(is_there).map(|p| loss.rho(found.row(row, p) / sigma)).sum::<f64>();
+                }
+            }
+        }
+        sum + self.add_priors(state, phase, &mut |_, _| {})
+    }
+}

@@ -1,0 +1,93 @@
+//! Steps until they change nothing, kind of smoothness after kind.
+
+use std::time::Instant;
+
+use super::iterate::Phase;
+use super::place::Place;
+use super::prior::KINDS;
+use super::solver::Solver;
+use super::step::TOLERANCE;
+use crate::carrier::Progress;
+use crate::solve::driver::{Flow, Limits, Status};
+use crate::solve::fault::Fault;
+use crate::solve::state;
+
+/// Steps that regress the data at most.
+const REGRESS: u64 = 12;
+/// Gain of the logarithm of the evidence that no longer matters.
+const RESTING: f64 = 0.05;
+/// Change of a coefficient, in natural sizes, that no longer matters.
+const SETTLED: f64 = 1e-3;
+/// Change of a coefficient that says that steps lead nowhere.
+const WANDERING: f64 = 5e-3;
+/// Steps of a kind of smoothness at most.
+const MOST_STEPS: u64 = 60;
+/// The end of the error bars' steps at the latest, beside the budget.
+const LATE: f64 = 1.05;
+
+/// A run under way.
+pub(super) struct Run<'m> {
+    pub(super) start: Instant,
+    pub(super) limits: Limits,
+    /// Seconds of the longest step.
+    pub(super) longest: f64,
+    pub(super) monitor: &'m mut dyn FnMut(Progress<'_>) -> Flow,
+    pub(super) loss: f64,
+}
+
+impl Run<'_> {
+    /// True where so many more steps end with the budget, or nearly so.
+    pub(super) fn has_time_for(&self, steps: usize) -> bool {
+        let end = self.start.elapsed().as_secs_f64() + steps as f64 * self.longest;
+        steps == 0 || self.limits.budget.is_none_or(|budget| end <= LATE * budget.as_secs_f64())
+    }
+
+    /// Takes steps until all kinds of smoothness that are to be tried have been, or steps or time are spent.
+    pub(super) fn go(
+        &mut self,
+        solver: &mut Solver<'_>,
+        place: &mut Place,
+        save: &dyn Fn(&Place) -> state::State,
+    ) -> Result<Status, Fault> {
+        let mut taken = 0;
+        while let Some(&kind) = place.kinds.first() {
+            if place.phase == Phase::Solve {
+                solver.set_smoothness(KINDS[kind]);
+            }
+            let elapsed = self.start.elapsed().as_secs_f64();
+            let spent = self.limits.budget.is_some_and(|b| elapsed + 2.0 * self.longest > b.as_secs_f64());
+            if (spent || place.state.step >= self.limits.iterations) && taken > 0 {
+                return Ok(Status::Budget);
+            }
+            let Some(found) = solver.step(&place.state, place.phase)? else { return Ok(Status::NotConverged) };
+            self.longest = self.longest.max(self.start.elapsed().as_secs_f64() - elapsed);
+            let is_tight = place.state.tolerance <= TOLERANCE;
+            place.state = found.next;
+            (place.since, taken) = (place.since + 1, taken + 1);
+            self.loss = found.loss;
+            let moved: f64 = place.state.classes.iter().map(|class| class.gain).sum();
+            let resting = moved < RESTING && place.since > 1;
+            match place.phase {
+                Phase::Regress if resting || place.since >= REGRESS => {
+                    (place.phase, place.since) = (Phase::Solve, 0);
+                }
+                Phase::Solve if is_tight && (resting && found.change < SETTLED || place.since >= MOST_STEPS) => {
+                    place.since = 0;
+                    // An iterate that wanders about has no evidence.
+                    place.next(if found.change < WANDERING { found.evidence } else { f64::MIN });
+                    if let Some(&kind) = place.kinds.first() {
+                        solver.change_smoothness(KINDS[kind], &mut place.state);
+                    }
+                }
+                _ => {}
+            }
+            let elapsed_s = self.start.elapsed().as_secs_f64();
+            let checkpoint = &|| save(place);
+            let progress = Progress { iteration: place.state.step, elapsed_s, loss: self.loss, checkpoint };
+            if (self.monitor)(progress) == Flow::Stop {
+                return Ok(Status::Interrupted);
+            }
+        }
+        Ok(Status::Converged)
+    }
+}

@@ -1,0 +1,48 @@
+//! An iterate, and that as plain numbers.
+
+use crate::solve::fault::Fault;
+use crate::solve::state;
+use crate::weighed::{Class, restore_classes, save_classes};
+
+/// Tolerance of the equations in the first step: a state that is far off finds its way along loose equations.
+pub(super) const LOOSE: f64 = 1e-2;
+
+/// An iterate.
+#[derive(Clone, Debug)]
+pub(super) struct State {
+    pub(super) theta: Vec<f64>,
+    pub(super) learned: Vec<f64>,
+    pub(super) classes: Vec<Class>,
+    /// Tolerance of the equations.
+    pub(super) tolerance: f64,
+    pub(super) step: u64,
+}
+
+/// What the rows of a step are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Phase {
+    /// Data under a prior of the fields' roughness.
+    Regress,
+    /// Everything under a prior of the sources' roughness.
+    Solve,
+}
+
+impl State {
+    pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
+        save_classes(&self.classes, saved, prefix)
+            .with(&format!("{prefix}theta"), &self.theta)
+            .with(&format!("{prefix}learned"), &self.learned)
+            .with(&format!("{prefix}tolerance"), &[self.tolerance])
+            .with_counter(&format!("{prefix}step"), self.step)
+    }
+
+    /// Takes over what [`State::save`] gave of the same problem.
+    pub(super) fn restore(&mut self, saved: &state::State, prefix: &str) -> Result<(), Fault> {
+        restore_classes(&mut self.classes, saved, prefix)?;
+        self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
+        self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
+        [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
+        self.step = saved.counter(&format!("{prefix}step"))?;
+        Ok(())
+    }
+}

@@ -1,0 +1,109 @@
+//! Where a run stands, and that as plain numbers.
+
+use super::METHOD;
+use super::iterate::{Phase, State};
+use super::prior::KINDS;
+use crate::solve::fault::Fault;
+use crate::solve::state;
+
+/// Logarithm of the evidence by which a kind of smoothness may fall behind and still count.
+const NEAR: f64 = 8.0;
+/// How far differences of the evidence are trusted: all kinds are approximations of what the source is like.
+const TRUST: f64 = 0.3;
+
+/// Where a run stands: which kind of smoothness is tried, from which iterate, and what came of those before.
+#[derive(Clone)]
+pub(super) struct Place {
+    /// Indices in [`KINDS`] of those that are still to be tried, the present one first.
+    pub(super) kinds: Vec<usize>,
+    pub(super) phase: Phase,
+    /// Steps of the phase.
+    pub(super) since: u64,
+    pub(super) state: State,
+    pub(super) tried: Vec<Tried>,
+}
+
+/// A kind of smoothness that was tried: its index, its evidence and its iterate.
+#[derive(Clone)]
+pub(super) struct Tried {
+    pub(super) kind: usize,
+    pub(super) evidence: f64,
+    pub(super) state: State,
+}
+
+impl Place {
+    /// The start.
+    pub(super) fn first(state: State, kinds: Vec<usize>) -> Self {
+        Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new() }
+    }
+
+    /// Keeps the iterate, and turns to the next kind. A time that the evidence rules out is not tried with other orders.
+    pub(super) fn next(&mut self, evidence: f64) {
+        let kind = self.kinds.remove(0);
+        self.tried.push(Tried { kind, evidence, state: self.state.clone() });
+        let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
+        let best = most(&mut self.tried.iter());
+        let along =
+            [false, true].map(|time| most(&mut self.tried.iter().filter(|tried| KINDS[tried.kind].stretched == time)));
+        // Of a time that has not been tried nothing is known.
+        self.kinds.retain(|&kind| {
+            let own = along[usize::from(KINDS[kind].stretched)];
+            own.is_nan() || own >= best - NEAR
+        });
+    }
+
+    /// The kind with the largest evidence.
+    pub(super) fn best(&self) -> Option<&Tried> {
+        self.tried.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+    }
+
+    /// Kinds that the evidence does not rule out, with their shares of it.
+    pub(super) fn likely(&self) -> Vec<(f64, Tried)> {
+        let Some(best) = self.best() else { return Vec::new() };
+        let near = || self.tried.iter().filter(|tried| tried.evidence >= best.evidence - NEAR);
+        let weight = |tried: &Tried| (TRUST * (tried.evidence - best.evidence)).exp();
+        let all: f64 = near().map(weight).sum();
+        near().map(|tried| (weight(tried) / all, tried.clone())).collect()
+    }
+
+    pub(super) fn save(&self) -> state::State {
+        let saved = self.state.save(state::State::new(METHOD), "");
+        let kinds: Vec<f64> = self.kinds.iter().map(|&kind| kind as f64).collect();
+        let saved = saved
+            .with("kinds", &kinds)
+            .with_counter("phase", u64::from(self.phase == Phase::Solve))
+            .with_counter("since", self.since)
+            .with_counter("iterations", self.state.step)
+            .with_counter("tried", self.tried.len() as u64);
+        self.tried.iter().enumerate().fold(saved, |saved, (at, Tried { kind, evidence, state })| {
+            let prefix = format!("tried {at} ");
+            let saved = saved.with(&format!("{prefix}evidence"), &[*evidence]);
+            state.save(saved.with_counter(&format!("{prefix}kind"), *kind as u64), &prefix)
+        })
+    }
+
+    pub(super) fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
+        saved.check_method(METHOD)?;
+        let known = |kind: &usize| *kind < KINDS.len();
+        self.kinds = saved.indices("kinds")?;
+        if !self.kinds.iter().all(known) {
+            return Err(Fault::state("kinds"));
+        }
+        for at in 0..saved.counter("tried")? {
+            let prefix = format!("tried {at} ");
+            let mut state = self.state.clone();
+            state.restore(saved, &prefix)?;
+            let [evidence] = saved.scalars(&format!("{prefix}evidence"))?;
+            let kind = saved.counter(&format!("{prefix}kind"))? as usize;
+            self.tried.push(Tried {
+                kind: Some(kind).filter(known).ok_or_else(|| Fault::state("kind"))?,
+                evidence,
+                state,
+            });
+        }
+        self.state.restore(saved, "")?;
+        self.since = saved.counter("since")?;
+        self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
+        Ok(())
+    }
+}

@@ -1,0 +1,174 @@
+//! Gauss-Newton steps, while the evidence finds how noisy the data and how rough the sources are.
+
+use super::iterate::{Phase, State};
+use super::rows::Counted;
+use super::solver::Solver;
+use super::triangle::Covariance;
+use crate::schema::TermKind;
+use crate::solve::fault::Fault;
+use crate::weighed::{Tally, renew};
+
+/// How far equations may be off in the end, beside the sum of the magnitudes of their terms.
+pub(super) const TOLERANCE: f64 = 1e-6;
+/// The fall of their tolerance from step to step.
+const TIGHTER: f64 = 0.1;
+/// Logarithm of the evidence that a larger source may cost and still be possible, and how many numbers must be told of a source
+/// for the evidence to know its size.
+const DOUBT: f64 = 2.0;
+const TELLING: f64 = 2.0;
+/// Largest change of a learned parameter in a step.
+const FARTHEST: f64 = 1.0;
+/// A step is halved so often before it is given up.
+const HALVINGS: u32 = 8;
+
+/// What a step found.
+pub(super) struct Found {
+    pub(super) next: State,
+    /// Half the sum of squares of all rows before the step.
+    pub(super) loss: f64,
+    /// Largest change of a coefficient or parameter.
+    pub(super) change: f64,
+    /// Logarithm of the evidence, up to a constant.
+    pub(super) evidence: f64,
+    pub(super) covariance: Covariance,
+    /// By head, how many numbers rows other than its prior say of a source.
+    told: Vec<f64>,
+}
+
+impl Solver<'_> {
+    /// One step.
+    pub(super) fn step(&mut self, state: &State, phase: Phase) -> Result<Option<Found>, Fault> {
+        self.size(state);
+        let (rows, before) = self.rows(state, phase)?;
+        self.triangle.clear();
+        self.triangle.add_all(rows.walk());
+        let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
+        let covariance = self.triangle.covariance();
+        let is_equation = self.equations();
+        let mut tallies = vec![Tally::default(); state.classes.len() + 1];
+        let mut loss = 0.0;
+        let mut walk = rows.walk();
+        while let Some(Counted { row, class, count }) = walk.step() {
+            let tally = &mut tallies[class];
+            let along: f64 = row.slopes.iter().zip(&step[row.first..]).map(|(a, x)| a * x).sum();
+            let beside: f64 = row.shared.iter().zip(&shared).map(|(a, x)| a * x).sum();
+            tally.squares += (row.value + along + beside).powi(2);
+            tally.count += count as f64;
+            // Equations are so much stricter than anything else that each settles an unknown.
+            if !is_equation[class] {
+                tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
+            }
+            loss += 0.5 * row.value.powi(2);
+        }
+        let worth = self.count_priors(state, &mut tallies, phase);
+        let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
+        let evidence = -0.5 * squares - self.log_sizes(state, &tallies) + worth - self.triangle.log_determinant();
+        let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
+        let mut next = state.clone();
+        for _ in 0..HALVINGS {
+            next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
+            next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
+            let after = self.loss(&next, phase);
+            if after.is_finite() && after <= before * (1.0 + 1e-9) + 1e-12 {
+                break;
+            }
+            share *= 0.5;
+        }
+        let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
+        // While equations are loose, they need no source.
+        let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
+        let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
+        renew(&mut next.classes, &tallies, |class| is_loose && is_prior(class));
+        if phase == Phase::Solve {
+            next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
+        }
+        next.step += 1;
+        let left = |class: usize| tallies[class].count - tallies[class].used;
+        let told = self.roughness.iter().zip(&self.amplitude);
+        let told = told.map(|(&rough, amplitude)| amplitude.map_or(0.0, |class| left(rough) + left(class))).collect();
+        Ok(Some(Found { next, loss, change, evidence, covariance, told }))
+    }
+
+    /// By class, whether its rows are those of an equation; one more for what is known beforehand.
+    fn equations(&self) -> Vec<bool> {
+        let terms = self.groups.iter().flat_map(|group| group.schema.terms);
+        let priors = self.roughness.len() + self.amplitude.iter().flatten().count();
+        terms.map(|term| term.kind == TermKind::Residual).chain(vec![false; priors + 1]).collect()
+    }
+
+    /// Sum of the logarithms of what rows are divided by, those of priors aside.
+    fn log_sizes(&self, state: &State, tallies: &[Tally]) -> f64 {
+        let mut sum = 0.0;
+        for (at, group) in self.groups.iter().enumerate() {
+            for (number, term) in group.schema.terms.iter().enumerate() {
+                let rows = term.first..term.first + term.rows;
+                let logs: f64 = rows.map(|row| self.sigma(state, at, number, row).ln()).sum();
+                let count = tallies[self.classes[at][number]].count;
+                // Terms without rows have no size.
+                sum += if count > 0.0 { count * logs / term.rows as f64 } else { 0.0 };
+            }
+        }
+        sum
+    }
+
+    /// What error bars are taken from, and the step about it: sources as rough as a wave over the domain at least, and where
+    /// hardly anything is told of them, as large as the evidence does not speak against. Where the evidence takes a source for
+    /// nothing, or for a polynomial, error bars should not.
+    pub(super) fn doubted(&mut self, mut state: State) -> Result<Option<(State, Found)>, Fault> {
+        let Some(mut found) = self.step(&state, Phase::Solve)? else { return Ok(None) };
+        let (least, natural) = (found.evidence - DOUBT, self.length.sqrt());
+        for head in 0..self.roughness.len() {
+            let Some(amplitude) = self.amplitude[head] else { continue };
+            loop {
+                let mut doubted = state.clone();
+                let [own, rough] = [amplitude, self.roughness[head]].map(|class| state.classes[class].size);
+                let own = if found.told[head] < TELLING { own.max((2.0 * own).min(natural)) } else { own };
+                let wave = self.priors[head].roughness(own, self.heads.bases[head].cells() as f64);
+                doubted.classes[amplitude].size = own;
+                doubted.classes[self.roughness[head]].size = rough.max(wave);
+                if doubted.classes == state.classes {
+                    break;
+                }
+                match self.step(&doubted, Phase::Solve)? {
+                    Some(next) if next.evidence > least => (state, found) = (doubted, next),
+                    _ => break,
+                }
+            }
+        }
+        Ok(Some((state, found)))
+    }
+
+    /// What priors use up, and what they are worth; returns the logarithm of the determinant of their rows.
+    ///
+    /// What roughness uses up is what everything else leaves of all unknowns: summed row by row it would be a small difference of
+    /// large numbers where cells are much finer than the source.
+    fn count_priors(&self, state: &State, tallies: &mut [Tally], phase: Phase) -> f64 {
+        let mut log_determinant = 0.0;
+        for head in self.believed(phase) {
+            let (rough, Some(amplitude)) = (self.roughness[head], self.amplitude[head]) else { continue };
+            let worth = self.priors[head].worth(state.classes[rough].size, state.classes[amplitude].size);
+            log_determinant += worth.log_determinant;
+            // Rounding where waves are much longer than cells.
+            let small = worth.amplitude.clamp(0.0, tallies[amplitude].count);
+            tallies[rough].count = tallies[amplitude].count - small;
+            tallies[amplitude].count = small;
+        }
+        let unknowns = (self.heads.len() + self.bound.learned.len()) as f64;
+        let is_rough = |class: usize| self.roughness.contains(&class);
+        let is_equation = self.equations();
+        tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
+        let used: f64 =
+            tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();
+        let rough = || self.roughness.iter().copied();
+        let by_rows: f64 = rough().map(|class| tallies[class].used.clamp(0.0, tallies[class].count)).sum();
+        let count: f64 = rough().map(|class| tallies[class].count).sum();
+        let left = (unknowns - used).clamp(0.0, count);
+        for class in rough() {
+            let own = tallies[class].used.clamp(0.0, tallies[class].count);
+            let share = if by_rows > 0.0 { own / by_rows } else { tallies[class].count / count.max(1.0) };
+            tallies[class].used = (left * share).min(tallies[class].count);
+        }
+        log_determinant
+    }
+}
