@@ -127,12 +127,12 @@ impl Solver {
         }
     }
 
-    /// Where no cloud saw a source's head. One on a face of a body is told by the shape of the rest.
+    /// Where no cloud saw the surface that a source with a prior acts on. A source on a face of a body is told by the shape of the
+    /// rest.
     fn unseen(&self, head: usize) -> Option<Unseen> {
-        if self.settings.source_dimensions < self.heads.lattices[head].dimensions() {
-            return None;
-        }
-        Unseen::of(&self.surfaces, &self.heads.lattices[head])
+        let lattice = &self.heads.lattices[head];
+        let is_on_face = self.settings.source_dimensions < lattice.dimensions();
+        self.settings.patches.filter(|_| !is_on_face).and_then(|_| Unseen::of(&self.surfaces, lattice))
     }
 
     /// Says which sources act where no cloud saw the surface.

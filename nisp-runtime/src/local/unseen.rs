@@ -1,5 +1,5 @@
-//! Places of a source that no cloud saw. What is known of it there is its prior, and that it is zero "or well above" does not
-//! say which: its deviations there are those of a pressure of the prior's level that is spread as patches are.
+//! What a source may be where no cloud saw the surface. Its prior says that it is zero or well above zero there, but not which of
+//! both. So its deviations are those of a pressure that is as large as patches are, and changes over their size.
 
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 
@@ -16,8 +16,8 @@ const PATCH: f64 = 0.1;
 const PRESSURE: f64 = 2.0;
 /// Of a thin cloud, places are seen within so many times the distance that a quarter of them has from the next point.
 const THIN: f64 = 4.0;
-/// Stiffness of differences over that of a node of a field whose deviation is one, in the plane: over the patch's size in nodes the
-/// logarithm of its sum over waves hardly changes.
+/// Stiffness of the differences between next nodes at which a field in the plane has a deviation of about one, if it changes over
+/// some twelve nodes. It grows with the logarithm of their number.
 const SPREAD: f64 = 0.6;
 
 /// A source's functions that no cloud saw.

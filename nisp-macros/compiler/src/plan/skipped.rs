@@ -87,7 +87,7 @@ fn channels(model: &Model, plan: &ScenePlan, sets: &Sets) -> Vec<String> {
         }
         let read = sets.plan(group.last).read.iter().filter(|&&read| read).count();
         if read < carried {
-            lines.push(format!("group {name}: the last layer delivers {read} of {carried} channels"));
+            lines.push(format!("group {name}: {read} of {carried} channels are read"));
         }
     }
     lines
