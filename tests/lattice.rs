@@ -149,6 +149,18 @@ fn an_equation_that_the_data_contradict_is_inconsistent() {
 }
 
 #[test]
+fn an_answer_that_steps_still_change_is_not_called_right() {
+    let mut problem = heated(scene::<heated::with_conductivity::Scene>());
+    problem.set_parameter("k", 2.0).unwrap();
+    for iterations in 3..=12 {
+        let settings = Settings { carrier: Carrier::Splines, iterations: Some(iterations), ..settings() };
+        let mut solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
+        let off = (solution.learned()[0].value / 0.5 - 1.0).abs();
+        assert!(!solution.verdict.passed() || off < 0.01, "{iterations} steps: {off} off");
+    }
+}
+
+#[test]
 fn a_source_that_does_not_change_is_found_from_exact_data() {
     let mut solution = solve(&heated(scene::<heated::recover::Scene>()));
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);

@@ -175,4 +175,7 @@ pub(crate) struct Answer {
     pub(crate) scores: Vec<Score>,
     /// How much is told of sources; empty where the carrier does not say.
     pub(crate) told: Vec<Told>,
+    /// The largest change of a learned scalar's parameter in one more whole Gauss-Newton step; nothing at the end of the steps, and
+    /// where the carrier does not tell.
+    pub(crate) ahead: Option<f64>,
 }

@@ -22,7 +22,7 @@ impl Engine<f64> {
                 }
             }
         }
-        Answer { facts, clouds: seen, scalars: self.scalars.clone(), scores: Vec::new(), told: Vec::new() }
+        Answer { facts, clouds: seen, scalars: self.scalars.clone(), scores: Vec::new(), told: Vec::new(), ahead: None }
     }
 
     /// Values and derivatives at the points of a group.

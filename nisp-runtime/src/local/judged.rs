@@ -27,6 +27,7 @@ impl Solver {
             scalars: self.scalars.clone(),
             scores: Vec::new(),
             told: Vec::new(),
+            ahead: None,
         }
     }
 }

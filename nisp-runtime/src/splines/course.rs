@@ -33,6 +33,8 @@ pub(super) struct Run<'m> {
     pub(super) longest: f64,
     pub(super) monitor: &'m mut dyn FnMut(Progress<'_>) -> Flow,
     pub(super) loss: f64,
+    /// Largest change of a learned scalar's parameter in the last step, had all of it been taken.
+    pub(super) ahead: f64,
 }
 
 impl Run<'_> {
@@ -64,7 +66,7 @@ impl Run<'_> {
             let is_tight = place.state.tolerance <= TOLERANCE;
             place.state = found.next;
             (place.since, taken) = (place.since + 1, taken + 1);
-            self.loss = found.loss;
+            (self.loss, self.ahead) = (found.loss, found.ahead);
             let moved: f64 = place.state.classes.iter().map(|class| class.gain).sum();
             let resting = moved < RESTING && place.since > 1;
             match place.phase {

@@ -119,7 +119,7 @@ pub(crate) fn solve(
     let mut solver = Solver::over(bound, &breakpoints);
     let schema = bound.problem.scene().schema;
     let mut place = Place::first(solver.first(noise), kinds(solver.has_sources(), cells::stretches(bound)));
-    let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY };
+    let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY, ahead: f64::INFINITY };
     let begun = |saved: &&state::State| saved.indices("kinds").is_ok();
     match (from.filter(begun), cells::middle(bound, &breakpoints)) {
         (Some(saved), _) => place.restore(saved)?,
@@ -141,11 +141,13 @@ pub(crate) fn solve(
         (None, None) => {}
     }
     let mut status = run.go(&mut solver, &mut place, &Place::save)?;
-    let loss = run.loss;
+    let (loss, mut ahead) = (run.loss, (status != Status::Converged).then_some(run.ahead));
     let checkpoint = place.save();
     let mut warnings = Vec::new();
     if let Some(Tried { state, .. }) = place.best().cloned() {
         place.state = State { step: place.state.step, ..state };
+        // A kind of smoothness was tried to its end.
+        ahead = None;
     }
     let mut spreads = Vec::new();
     let mut roots = Vec::new();
@@ -185,7 +187,7 @@ pub(crate) fn solve(
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let kept = KeptSplines { heads, theta, learned, spreads };
     let told = kept.told(schema);
-    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told };
+    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told, ahead };
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })
 }
 

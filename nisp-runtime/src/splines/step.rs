@@ -28,6 +28,8 @@ pub(super) struct Found {
     pub(super) loss: f64,
     /// Largest change of a coefficient or parameter.
     pub(super) change: f64,
+    /// What it would be of a learned scalar's parameter, were the whole step taken.
+    pub(super) ahead: f64,
     /// Logarithm of the evidence, up to a constant.
     pub(super) evidence: f64,
     pub(super) covariance: Covariance,
@@ -74,6 +76,7 @@ impl Solver<'_> {
             }
             share *= 0.5;
         }
+        let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
         // While equations are loose, they need no source.
@@ -87,7 +90,7 @@ impl Solver<'_> {
         let left = |class: usize| tallies[class].count - tallies[class].used;
         let told = self.roughness.iter().zip(&self.amplitude);
         let told = told.map(|(&rough, amplitude)| amplitude.map_or(0.0, |class| left(rough) + left(class))).collect();
-        Ok(Some(Found { next, loss, change, evidence, covariance, told }))
+        Ok(Some(Found { next, loss, change, ahead, evidence, covariance, told }))
     }
 
     /// By class, whether its rows are those of an equation; one more for what is known beforehand.

@@ -11,6 +11,7 @@ mod learned;
 mod observations;
 mod outliers;
 mod outside;
+mod settled;
 mod slow;
 mod smooth;
 mod told;
@@ -23,11 +24,11 @@ use crate::problem::Bound;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`,
-    /// `outliers`, `outside`, `given`, `told`, `distance`, `seen`, `patch`, `determined` or `range`.
+    /// `outliers`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined` or `range`.
     pub check: &'static str,
-    /// The group of points; empty for learned scalars.
+    /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,
-    /// The term, or the learned scalar.
+    /// The term, or the learned scalar; empty for the answer as a whole.
     pub term: &'static str,
     /// What was found, without unit.
     pub value: f64,
@@ -82,6 +83,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         checks.extend(observations::checks(bound, at, &rows, noise));
     }
     checks.extend(outside::checks(bound));
+    checks.extend(settled::check(bound, answer.ahead));
     checks.extend(told::checks(bound, &answer.told));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));

@@ -50,7 +50,14 @@ impl Solver<'_> {
     pub(super) fn answer(&mut self, state: &State) -> Answer {
         self.set_learned(&state.learned);
         let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta)).collect();
-        Answer { facts, clouds: Vec::new(), scalars: self.scalars.clone(), scores: Vec::new(), told: Vec::new() }
+        Answer {
+            facts,
+            clouds: Vec::new(),
+            scalars: self.scalars.clone(),
+            scores: Vec::new(),
+            told: Vec::new(),
+            ahead: None,
+        }
     }
 
     /// Misfits of all terms, by group, and the noise of observations.

@@ -71,7 +71,7 @@ pub(crate) fn solve(
         state.restore(saved).map_err(LocalError::Fault)?;
     }
     let mut longest = 0.0_f64;
-    let (mut loss, mut factor) = (f64::INFINITY, None);
+    let (mut loss, mut ahead, mut factor) = (f64::INFINITY, f64::INFINITY, None);
     let has_time = |seconds: f64| {
         limits.budget.is_none_or(|budget| start.elapsed().as_secs_f64() + seconds < budget.as_secs_f64())
     };
@@ -83,7 +83,7 @@ pub(crate) fn solve(
         let found = solver.step(&state)?;
         longest = longest.max(start.elapsed().as_secs_f64() - began);
         let (before, is_tight) = (state.phase, state.tolerance <= solver.tolerance);
-        (state, loss, factor) = (found.next, found.loss, Some(found.factor));
+        (state, loss, ahead, factor) = (found.next, found.loss, found.ahead, Some(found.factor));
         let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
         let is_resting = gain < RESTING && state.since > 1;
         if before == Phase::Regress && (is_resting || state.since >= REGRESS) {
@@ -101,7 +101,8 @@ pub(crate) fn solve(
             break Status::NotConverged;
         }
     };
-    let (answer, misfits) = (solver.answer(&state), solver.misfits(&state));
+    let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
+    answer.ahead = (status != Status::Converged).then_some(ahead);
     let mut warnings = Vec::new();
     let wants_bars = status == Status::Converged && noise.is_there(bound.problem.scene().schema);
     let deviations = if !wants_bars {

@@ -36,6 +36,8 @@ pub(super) struct Found {
     pub(super) loss: f64,
     /// Largest change of a coefficient or parameter.
     pub(super) change: f64,
+    /// What it would be of a learned scalar's parameter, were the whole step taken.
+    pub(super) ahead: f64,
     /// What the loss is less after the whole step; infinite if only a part of it was taken.
     pub(super) gain: f64,
     pub(super) factor: Factor,
@@ -149,6 +151,7 @@ impl Solver<'_> {
             share *= 0.5;
         }
         let change = step.iter().chain(&shared).fold(0.0, |most: f64, x| most.max((share * x).abs()));
+        let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         // While equations are loose, they need no source.
         let is_loose = state.phase == Phase::Solve && state.tolerance > self.tolerance;
         let judged: Vec<usize> = self.judged(state.phase).into_iter().map(|head| self.roughness[head]).collect();
@@ -158,7 +161,7 @@ impl Solver<'_> {
             next.tolerance = (state.tolerance * TIGHTER).max(self.tolerance);
         }
         (next.step, next.since) = (state.step + 1, state.since + 1);
-        Ok(Found { next, loss, change, gain, factor })
+        Ok(Found { next, loss, change, ahead, gain, factor })
     }
 
     /// The normal equations about a state; returns the rows of all groups that take part, with the group's number.

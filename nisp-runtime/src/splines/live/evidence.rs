@@ -57,6 +57,7 @@ impl Stretch {
             longest: 0.0,
             monitor: &mut monitor,
             loss: f64::INFINITY,
+            ahead: f64::INFINITY,
         };
         let status = run.go(&mut solver, &mut place, &Place::save)?;
         let best = place.best().filter(|_| status == Status::Converged).cloned();
