@@ -3,6 +3,7 @@
 //! Data flows one way: points, channels through the network, residuals, loss, step, report.
 
 pub mod aligned;
+mod bounds;
 mod bytes;
 pub mod carrier;
 pub mod compiled;

@@ -7,23 +7,19 @@ use super::heads::Heads;
 use super::lattice::{Exponents, contracted};
 use super::rows::Evaluated;
 use super::sites::Sites;
+use crate::bounds::Raw;
 use crate::facts::Facts;
 use crate::residual::Points;
 use crate::simd::Isa;
 
 impl Group {
-    /// Jets at points, `[jet][point]`, from [`Group::spread`]; of values of bounded heads, by jet and point, the derivative
-    /// of what a program reads by the head, and what the program does not see of it.
-    pub(super) fn jets_at(
-        &self,
-        sites: &Sites,
-        heads: &Heads,
-        spread: &[Vec<f64>],
-    ) -> (Vec<f64>, Vec<Vec<(f64, f64)>>) {
+    /// Jets at points, `[jet][point]`, from [`Group::spread`]; of values of bounded heads, by jet and point, what
+    /// a program reads.
+    pub(super) fn jets_at(&self, sites: &Sites, heads: &Heads, spread: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<Raw>>) {
         let stride = sites.stride;
         let count = self.schema.jets.len();
         let mut jets = vec![0.0; count * stride];
-        let mut bounded: Vec<Vec<(f64, f64)>> = vec![Vec::new(); count];
+        let mut bounded: Vec<Vec<Raw>> = vec![Vec::new(); count];
         jets.par_chunks_mut(stride).zip(&mut bounded).enumerate().for_each(|(at, (jets, bounded))| {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
             let is_value = jet.degree.iter().all(|&n| n == 0);
@@ -37,14 +33,14 @@ impl Group {
                     coefficient * contracted(cell, &lines, &across, along)
                 };
                 let value = heads.scale[jet.head] * operator.iter().map(term).sum::<f64>();
-                *out = if heads.bound[jet.head].is_some() && is_value {
-                    let (raw, slope, rest) = heads.raw(jet.head, value);
-                    bounded.push((slope, rest));
-                    raw
-                } else if is_value {
-                    heads.offset[jet.head] + value
-                } else {
-                    value
+                *out = match heads.bound[jet.head].filter(|_| is_value) {
+                    Some(limit) => {
+                        let raw = limit.raw(heads.scale[jet.head], value);
+                        bounded.push(raw);
+                        raw.number
+                    }
+                    None if is_value => heads.offset[jet.head] + value,
+                    None => value,
                 };
             }
             let last = jets[sites.count - 1];
@@ -81,7 +77,7 @@ impl Group {
         };
         let mut rows = vec![0.0; self.schema.rows * stride];
         self.kernel.programs.residual(Isa::detect(), points, &mut rows);
-        let straight = bounded.iter().all(|b| b.iter().all(|&(_, rest)| rest == 0.0));
+        let straight = bounded.iter().flatten().all(|raw| raw.rest == 0.0);
         if !slopes && straight {
             return Evaluated { stride, rows, bars: Vec::new() };
         }
@@ -97,10 +93,10 @@ impl Group {
             .collect();
         for (jet, bounded) in bounded.iter().enumerate() {
             for (row, bars) in bars.iter_mut().enumerate() {
-                for (p, &(slope, rest)) in bounded.iter().enumerate() {
+                for (p, raw) in bounded.iter().enumerate() {
                     let bar = &mut bars[jet * stride + p];
-                    *bar *= slope;
-                    rows[row * stride + p] += *bar * rest;
+                    *bar *= raw.slope;
+                    rows[row * stride + p] += *bar * raw.rest;
                 }
             }
         }

@@ -5,10 +5,9 @@ use rayon::prelude::*;
 use super::block::Block;
 use super::lattice::{Exponents, Lattice, NONE, Span, contracted};
 use super::tabled::Splines;
+use crate::bounds::{Limit, limits};
 use crate::engine::Scaling;
-use crate::functions::{sigmoid, softplus};
-use crate::problem::{Bound, UnitSystem};
-use crate::schema;
+use crate::problem::Bound;
 
 /// Heads as functions of one vector of coefficients, head after head, each `offset + scale * sum(coefficient * spline)`.
 #[derive(Clone, Debug)]
@@ -18,13 +17,10 @@ pub(super) struct Heads {
     pub(super) first: Vec<usize>,
     pub(super) offset: Vec<f64>,
     pub(super) scale: Vec<f64>,
-    /// One-sided bounds, in the engine's units: +1 for a lower, -1 for an upper one, and the bound.
-    pub(super) bound: Vec<Option<(f64, f64)>>,
+    /// Bounds of heads that have one.
+    pub(super) bound: Vec<Option<Limit>>,
 }
 
-/// Of a bounded head, values closer to the bound than this share of its scale are read as linear: the transformation
-/// that keeps a network within the bound has no inverse at the bound itself.
-const CLOSEST: f64 = 1e-6;
 /// Points whose values are computed together.
 const TOGETHER: usize = 1024;
 
@@ -34,17 +30,12 @@ impl Heads {
         let Scaling { offset, .. } = &bound.scaling;
         let limits = limits(schema, &bound.system);
         let scale = (0..schema.heads.len()).map(|head| bound.head_scale(head)).collect();
-        let offset = offset.iter().zip(&limits).map(|(&o, limit)| limit.map_or(o, |(_, bound)| bound)).collect();
+        let offset = offset.iter().zip(&limits).map(|(&o, limit)| limit.map_or(o, |limit| limit.value)).collect();
         Self::over(lattices, offset, scale, limits)
     }
 
     /// Heads on lattices, with these offsets, scales and bounds.
-    pub(super) fn over(
-        lattices: Vec<Lattice>,
-        offset: Vec<f64>,
-        scale: Vec<f64>,
-        bound: Vec<Option<(f64, f64)>>,
-    ) -> Self {
+    pub(super) fn over(lattices: Vec<Lattice>, offset: Vec<f64>, scale: Vec<f64>, bound: Vec<Option<Limit>>) -> Self {
         let mut first = vec![0];
         for lattice in &lattices {
             first.push(first[first.len() - 1] + lattice.len());
@@ -115,7 +106,7 @@ impl Heads {
     /// A head's value from the sum of its functions: within its bound, with its offset.
     fn bounded(&self, head: usize, value: f64) -> f64 {
         match self.bound[head] {
-            Some((sign, bound)) => bound + sign * (sign * value).max(0.0),
+            Some(limit) => limit.within(value),
             None => self.offset[head] + value,
         }
     }
@@ -156,30 +147,4 @@ impl Heads {
         let parts = self.parts(head, point);
         vectors.iter().map(move |vector| parts.iter().map(|&(at, value)| vector[at] * value).sum())
     }
-
-    /// What a program reads of a bounded head that is `away` from its bound, its derivative by `away`, and what is left
-    /// over because the transformation has no inverse there.
-    pub(super) fn raw(&self, head: usize, away: f64) -> (f64, f64, f64) {
-        let scale = self.scale[head];
-        let sign = self.bound[head].map_or(1.0, |(sign, _)| sign);
-        let distance = sign * away / scale;
-        let inside = distance.max(CLOSEST);
-        // softplus(raw) = inside
-        let raw = if inside > 30.0 { inside } else { inside.exp_m1().ln() };
-        debug_assert!((softplus(raw) - inside).abs() <= 1e-9 * inside.max(1.0));
-        (raw, sign / (scale * sigmoid(raw)), (distance - inside) * scale * sign)
-    }
-}
-
-/// One-sided bounds of the heads in the engine's units.
-pub(super) fn limits(schema: &schema::Scene, system: &UnitSystem) -> Vec<Option<(f64, f64)>> {
-    let limit = |head: &schema::Head| {
-        let size = system.size(&head.unit);
-        match (head.lower, head.upper) {
-            (Some(lower), None) => Some((1.0, lower / size)),
-            (None, Some(upper)) => Some((-1.0, upper / size)),
-            _ => None,
-        }
-    };
-    schema.heads.iter().map(limit).collect()
 }

@@ -2,9 +2,10 @@
 
 use super::draws::Deviations;
 use super::group::Group;
-use super::heads::{Heads, limits};
+use super::heads::Heads;
 use super::lattice::{Exponents, Lattice, MOST_COORDINATES};
 use super::meshes::axes;
+use crate::bounds::limits;
 use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;
 use crate::loss::Loss;

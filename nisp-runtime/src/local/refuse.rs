@@ -2,6 +2,7 @@
 
 use super::lattice::MOST_COORDINATES;
 use super::{Local, LocalError};
+use crate::bounds;
 use crate::schema::{self, TermKind};
 
 /// Splines of a higher degree than this are a slip.
@@ -11,8 +12,6 @@ pub(super) const HIGHEST_DEGREE: usize = 8;
 pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(), LocalError> {
     let inputs = schema.coordinates.len();
     let terms = || schema.groups.iter().flat_map(|group| group.terms);
-    let one_sided = |head: &schema::Head| head.lower.is_some() != head.upper.is_some();
-    let derived = |jet: &schema::Jet| schema.heads[jet.head].transformed && jet.degree.iter().any(|&n| n > 0);
     let cloud = |term: &schema::Term| matches!(term.kind, TermKind::Chamfer { .. });
     let refused = [
         (inputs > MOST_COORDINATES, "more than four coordinates"),
@@ -21,11 +20,6 @@ pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) 
             schema.groups.iter().any(|group| !group.held.is_empty()),
             "fields and sources of some of the coordinates only",
         ),
-        (
-            schema.heads.iter().any(|h| h.hard || (h.transformed && !one_sided(h))),
-            "heads between two bounds or with hard conditions",
-        ),
-        (schema.groups.iter().flat_map(|g| g.jets).any(derived), "derivatives of bounded heads"),
         (terms().any(|t| t.kind == TermKind::Observation && t.within.is_none()), "measurements without `within`"),
         (terms().any(|t| t.kind == TermKind::Chamfer { symmetric: true, plane: false }), "symmetric Chamfer distances"),
         (terms().any(|t| t.kind == TermKind::Integral && t.loss.is_robust()), "robust losses of integrals"),
@@ -33,8 +27,6 @@ pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) 
         (settings.cells <= settings.tests || settings.finer == 0, "lattices of fewer cells than a test is spread over"),
         (settings.degree > HIGHEST_DEGREE, "splines of such a degree"),
     ];
-    match refused.into_iter().find(|(is_so, _)| *is_so) {
-        Some((_, what)) => Err(LocalError::Unsupported(what)),
-        None => Ok(()),
-    }
+    let found = refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what);
+    found.or_else(|| bounds::refused(schema)).map_or(Ok(()), |what| Err(LocalError::Unsupported(what)))
 }

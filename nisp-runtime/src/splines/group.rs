@@ -2,6 +2,7 @@
 
 use super::heads::Heads;
 use super::rows::Bundle;
+use crate::bounds::Raw;
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
 use crate::residual::Points;
@@ -99,9 +100,15 @@ impl Group {
 
     /// What the heads say at the places.
     pub(super) fn facts(&self, heads: &Heads, theta: &[f64]) -> Facts {
+        self.jets(heads, theta).0
+    }
+
+    /// The same; also what programs read of values of bounded heads, by jet and place.
+    fn jets(&self, heads: &Heads, theta: &[f64]) -> (Facts, Vec<Vec<Raw>>) {
+        let mut bounded: Vec<Vec<Raw>> = vec![Vec::new(); self.schema.jets.len()];
         let mut jets = vec![0.0; self.schema.jets.len() * self.stride];
         let all = self.schema.jets.iter().zip(&self.operators).zip(jets.chunks_exact_mut(self.stride.max(1)));
-        for ((jet, operator), out) in all {
+        for (((jet, operator), out), bounded) in all.zip(&mut bounded) {
             let width = heads.bases[jet.head].degree + 1;
             for (index, coefficient) in operator {
                 let lines = &self.lines[*index];
@@ -113,24 +120,33 @@ impl Group {
                     *out += offset + factor * sum;
                 }
             }
+            let limit = heads.limits[jet.head].filter(|_| jet.degree.iter().all(|&n| n == 0));
+            if let Some(limit) = limit {
+                for out in &mut out[..self.cells.len()] {
+                    let raw = limit.raw(heads.scale[jet.head], *out - limit.value);
+                    *out = raw.number;
+                    bounded.push(raw);
+                }
+            }
             if let Some(last) = self.len().checked_sub(1) {
                 let last = out[last];
                 out[self.len()..].fill(last);
             }
         }
-        Facts {
+        let facts = Facts {
             points: self.len(),
             stride: self.stride,
             jets,
             coordinates: self.coordinates.clone(),
             columns: self.columns.clone(),
             means: Vec::new(),
-        }
+        };
+        (facts, bounded)
     }
 
     /// Values of all rows, and their derivatives by jets and so many learned scalars where they are wanted.
     pub(super) fn evaluate(&self, heads: &Heads, theta: &[f64], scalars: &[f64], slopes: Option<usize>) -> Evaluated {
-        let facts = self.facts(heads, theta);
+        let (facts, bounded) = self.jets(heads, theta);
         let points = Points {
             count: self.len(),
             stride: self.stride,
@@ -151,8 +167,19 @@ impl Group {
             bars.shrink_to_fit();
             bars
         };
-        let bars =
-            slopes.map(|learned| (0..self.schema.rows).map(|row| bars(row, learned)).collect()).unwrap_or_default();
+        let is_beyond = bounded.iter().flatten().any(|raw| raw.rest != 0.0);
+        let wanted = slopes.or(is_beyond.then_some(0));
+        let mut bars: Vec<Vec<f64>> =
+            wanted.map(|learned| (0..self.schema.rows).map(|row| bars(row, learned)).collect()).unwrap_or_default();
+        for (jet, bounded) in bounded.iter().enumerate() {
+            for (row, bars) in bars.iter_mut().enumerate() {
+                for (p, raw) in bounded.iter().enumerate() {
+                    let bar = &mut bars[jet * self.stride + p];
+                    *bar *= raw.slope;
+                    rows[row * self.stride + p] += *bar * raw.rest;
+                }
+            }
+        }
         Evaluated { stride: self.stride, rows, bars }
     }
 

@@ -1,6 +1,7 @@
 //! All heads of a scene as splines over the same cells, and how their coefficients are ordered.
 
 use super::basis::Basis;
+use crate::bounds::{Limit, limits};
 use crate::problem::Bound;
 
 /// Heads as functions of one vector of coefficients, each `offset + scale * sum(coefficient * spline)`. Coefficients of all
@@ -12,6 +13,8 @@ pub(super) struct Heads {
     numbers: Vec<Vec<usize>>,
     pub(super) offset: Vec<f64>,
     pub(super) scale: Vec<f64>,
+    /// Bounds of heads that have one, which are their offsets.
+    pub(super) limits: Vec<Option<Limit>>,
     /// Numbers from the first to the last of a cell's functions, at most.
     pub(super) band: usize,
 }
@@ -20,11 +23,18 @@ impl Heads {
     /// The heads of a problem, of these degrees, over the cells between breakpoints.
     pub(super) fn new(bound: &Bound, degrees: &[usize], breakpoints: &[f64]) -> Self {
         let scale = (0..degrees.len()).map(|head| bound.head_scale(head)).collect();
-        Self::over(breakpoints, degrees, bound.scaling.offset.clone(), scale)
+        let limits = limits(bound.problem.scene().schema, &bound.system);
+        let offset = bound.scaling.offset.iter().zip(&limits);
+        let offset = offset.map(|(offset, limit)| limit.map_or(*offset, |limit| limit.value)).collect();
+        Self::over(breakpoints, degrees, (offset, scale, limits))
     }
 
-    /// Heads of these degrees over the cells between breakpoints, with these offsets and scales.
-    pub(super) fn over(breakpoints: &[f64], degrees: &[usize], offset: Vec<f64>, scale: Vec<f64>) -> Self {
+    /// Heads of these degrees over the cells between breakpoints, with these offsets, scales and bounds.
+    pub(super) fn over(
+        breakpoints: &[f64],
+        degrees: &[usize],
+        (offset, scale, limits): (Vec<f64>, Vec<f64>, Vec<Option<Limit>>),
+    ) -> Self {
         let bases: Vec<Basis> = degrees.iter().map(|&degree| Basis::new(degree, breakpoints)).collect();
         let functions = bases.iter().enumerate();
         let mut order: Vec<(f64, usize, usize)> =
@@ -34,7 +44,7 @@ impl Heads {
         for (number, &(_, function, head)) in order.iter().enumerate() {
             numbers[head][function] = number;
         }
-        let mut heads = Self { bases, numbers, offset, scale, band: 0 };
+        let mut heads = Self { bases, numbers, offset, scale, limits, band: 0 };
         let all: Vec<usize> = (0..degrees.len()).collect();
         heads.band = (0..breakpoints.len() - 1).map(|cell| heads.span(&all, cell).1).max().unwrap_or(1);
         heads
@@ -50,7 +60,8 @@ impl Heads {
             count * (function + shift) + head
         };
         let numbers = bases.iter().enumerate().map(|(head, basis)| (0..basis.len()).map(|i| number(head, i)).collect());
-        let mut heads = Self { numbers: numbers.collect(), bases, offset, scale, band: 0 };
+        let limits = vec![None; count];
+        let mut heads = Self { numbers: numbers.collect(), bases, offset, scale, limits, band: 0 };
         let all: Vec<usize> = (0..count).collect();
         heads.band = heads.span(&all, 0).1;
         heads
@@ -80,6 +91,12 @@ impl Heads {
             self.numbers(head, cell).iter().zip(&line[..=self.bases[head].degree]).map(|(&n, b)| theta[n] * b).sum();
         let offset = if order == 0 { self.offset[head] } else { 0.0 };
         offset + self.scale[head] * sum
+    }
+
+    /// A head's value at a place, within its bound.
+    pub(super) fn value(&self, head: usize, at: f64, theta: &[f64]) -> f64 {
+        let value = self.derivative(head, (self.cell(at), at), 0, theta);
+        self.limits[head].map_or(value, |limit| limit.within(value - limit.value))
     }
 
     /// What a head's value at a place is by the coefficients: the first of them, and the value's derivatives.

@@ -4,6 +4,7 @@ use super::basis::HIGHEST_DEGREE;
 use super::group::Group;
 use super::heads::Heads;
 use super::triangle::{Covariance, Row, Triangle};
+use crate::bounds::limits;
 use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;
 use crate::facts::Told;
@@ -50,7 +51,7 @@ impl KeptSplines {
 
     /// Values of a head at places in the engine's units.
     pub(crate) fn evaluate(&self, head: usize, places: &[f64]) -> Vec<f64> {
-        places.iter().map(|&at| self.heads.derivative(head, (self.heads.cell(at), at), 0, &self.theta)).collect()
+        places.iter().map(|&at| self.heads.value(head, at, &self.theta)).collect()
     }
 
     /// Standard deviations of a head at places in the engine's units.
@@ -156,7 +157,7 @@ impl KeptSplines {
             return Err(Fault::state("degrees"));
         }
         let (offset, scale) = (state.sized("offset", count)?, state.sized("scale", count)?);
-        let heads = Heads::over(breakpoints, &degrees, offset, scale);
+        let heads = Heads::over(breakpoints, &degrees, (offset, scale, limits(schema, &frame.system)));
         let spread = |at: u64| {
             let part = |name: &str| state.vector(&format!("spread {at} {name}")).map(<[f64]>::to_vec);
             let parts = [part("rows")?, part("border")?, part("corner")?];

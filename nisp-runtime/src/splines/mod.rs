@@ -8,6 +8,7 @@
 
 mod assembly;
 mod basis;
+mod bounded;
 mod cells;
 mod course;
 mod group;
@@ -27,6 +28,7 @@ use std::time::Instant;
 
 use thiserror::Error;
 
+use crate::bounds;
 use crate::carrier::Progress;
 use crate::facts::Answer;
 use crate::memory::{self, Exceeded};
@@ -59,12 +61,11 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
     let refused = [
         (schema.coordinates.len() != 1, "more than one coordinate"),
         (schema.groups.iter().any(|group| group.paired), "paired points"),
-        (schema.heads.iter().any(|head| head.hard || head.transformed), "bounded heads or hard conditions"),
         (terms().any(|term| matches!(term.kind, TermKind::Integral)), "integrals"),
         (terms().any(|term| matches!(term.kind, TermKind::Chamfer { .. })), "clouds"),
         (cells::degrees(schema).is_none(), "derivatives of such an order"),
     ];
-    refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what)
+    refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what).or_else(|| bounds::refused(schema))
 }
 
 /// Why splines cannot solve a problem.

@@ -73,7 +73,9 @@ impl FixedLagSmoother {
     /// # Errors
     /// A scene that splines over one coordinate do not do, or that observes nothing.
     pub fn new(problem: Problem, settings: LagSettings) -> Result<Self, LiveError> {
-        if let Some(what) = super::super::refused(problem.scene().schema) {
+        let schema = problem.scene().schema;
+        let bounded = schema.heads.iter().any(|head| head.transformed).then_some("bounded heads");
+        if let Some(what) = super::super::refused(schema).or(bounded) {
             return Err(LiveError::Scene(what));
         }
         let layout = Layout::of(&problem)?;

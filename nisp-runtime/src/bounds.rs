@@ -1,0 +1,71 @@
+//! Heads with one bound, for carriers that are linear in their coefficients: they carry how far a head is from its bound.
+//!
+//! Programs read a number without bounds, `bound + sign * scale * softplus(number)`, which a network needs. It has no inverse at the
+//! bound itself, where sources that are often zero are.
+
+use crate::functions::{sigmoid, softplus};
+use crate::problem::UnitSystem;
+use crate::schema;
+
+/// Values closer to the bound than this share of the scale are read as linear.
+const CLOSEST: f64 = 1e-6;
+
+/// A bound in the engine's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limit {
+    /// +1 for a lower, -1 for an upper bound.
+    pub(crate) sign: f64,
+    /// The bound itself.
+    pub(crate) value: f64,
+}
+
+/// What a program reads of a bounded head.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Raw {
+    /// The number without bounds.
+    pub(crate) number: f64,
+    /// Its derivative by the head.
+    pub(crate) slope: f64,
+    /// By how much the head is beyond what the number says.
+    pub(crate) rest: f64,
+}
+
+/// The bounds of a scene's heads; nothing for heads without, or between two.
+pub(crate) fn limits(schema: &schema::Scene, system: &UnitSystem) -> Vec<Option<Limit>> {
+    let limit = |head: &schema::Head| {
+        let size = system.size(&head.unit);
+        match (head.lower, head.upper) {
+            (Some(lower), None) => Some(Limit { sign: 1.0, value: lower / size }),
+            (None, Some(upper)) => Some(Limit { sign: -1.0, value: upper / size }),
+            _ => None,
+        }
+    };
+    schema.heads.iter().map(limit).collect()
+}
+
+/// What of bounded heads is asked for that such carriers cannot give; nothing if they can.
+pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
+    let one_sided = |head: &schema::Head| head.lower.is_some() != head.upper.is_some();
+    let derived = |jet: &schema::Jet| schema.heads[jet.head].transformed && jet.degree.iter().any(|&n| n > 0);
+    if schema.heads.iter().any(|head| head.hard || (head.transformed && !one_sided(head))) {
+        return Some("heads between two bounds or with hard conditions");
+    }
+    schema.groups.iter().flat_map(|group| group.jets).any(derived).then_some("derivatives of bounded heads")
+}
+
+impl Limit {
+    /// A head's value within the bound, `away` from it.
+    pub(crate) fn within(self, away: f64) -> f64 {
+        self.value + self.sign * (self.sign * away).max(0.0)
+    }
+
+    /// What a program reads of a head of some scale that is `away` from its bound.
+    pub(crate) fn raw(self, scale: f64, away: f64) -> Raw {
+        let distance = self.sign * away / scale;
+        let inside = distance.max(CLOSEST);
+        // softplus(number) = inside
+        let number = if inside > 30.0 { inside } else { inside.exp_m1().ln() };
+        debug_assert!((softplus(number) - inside).abs() <= 1e-9 * inside.max(1.0));
+        Raw { number, slope: self.sign / (scale * sigmoid(number)), rest: (distance - inside) * scale * self.sign }
+    }
+}
