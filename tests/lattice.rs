@@ -41,6 +41,19 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// Basins that are the wider the farther away, filled from time to time and never emptied.
+    pub mod basins {
+        units: off;
+        coordinates: x, t;
+        fields: level;
+        sources: inflow >= 0;
+        on filling { balance: (1 + x) * d(level, t) == inflow; }
+        on samples { observe level; }
+        scene recover { }
+    }
+}
+
 /// This file, whose equations are read here once more.
 const TEXT: &str = include_str!("lattice.rs");
 
@@ -213,4 +226,36 @@ fn a_resumed_run_has_the_bits_of_one_that_did_not_stop() {
     let mut resumed = resume(&problem, &settings, &kept.unwrap(), &mut |_| Flow::Continue).unwrap();
     let places = grid([5, 5], [1.0, 1.0], false);
     assert_eq!(values(&mut whole, "a", &places).0, values(&mut resumed, "a", &places).0);
+}
+
+#[test]
+fn a_source_with_a_bound_stays_at_it() {
+    // The inflow is max(0, sin t)^2, for a turn and a half.
+    let inflow = |[_, t]: [f64; 2]| t.sin().max(0.0).powi(2);
+    let filled = |t: f64| 0.5 * t - 0.25 * (2.0 * t).sin();
+    let level = |[x, t]: [f64; 2]| (0.5 * PI * (t / (2.0 * PI)).floor() + filled((t % (2.0 * PI)).min(PI))) / (1.0 + x);
+    let mut normal = normals(11);
+    let samples = grid([12, 60], [1.0, 3.0 * PI], true);
+    let measured = pairs(&samples).map(|at| level(at) + 0.01 * normal()).collect();
+    let mut problem = Problem::new(scene::<basins::recover::Scene>());
+    problem.set_group("filling", samples.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", samples.into(), vec![measured]).unwrap();
+    let mut solution = solve(&problem);
+    assert_eq!(
+        (solution.carrier, solution.status),
+        ("splines on a lattice", Status::Converged),
+        "{:?}",
+        solution.verdict
+    );
+    let inside = grid([7, 90], [1.0, 3.0 * PI], false);
+    let (found, _) = values(&mut solution, "inflow", &inside);
+    assert!(found.iter().all(|&q| q >= 0.0));
+    let exact: Vec<f64> = pairs(&inside).map(inflow).collect();
+    let off = root_mean_square(found.iter().zip(&exact).map(|(q, exact)| q - exact));
+    let size = root_mean_square(exact.iter().copied());
+    assert!(off < 0.1 * size, "{off} of {size}");
+    let idle: Vec<f64> =
+        found.iter().zip(pairs(&inside)).filter(|(_, [_, t])| t.sin() < -0.5).map(|(q, _)| *q).collect();
+    let most = idle.iter().copied().fold(0.0, f64::max);
+    assert!(most < 0.05, "{most}");
 }

@@ -115,6 +115,19 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// A tank that is filled from time to time, and never emptied.
+    mod tank {
+        units: off;
+        coordinates: t;
+        fields: level;
+        sources: inflow >= 0;
+        on filling { balance: d(level, t) == inflow; }
+        on samples { observe level; }
+        scene filled { }
+    }
+}
+
 const M: f64 = 5e-6;
 const C: f64 = 2e-4;
 const A: f64 = 1.0;
@@ -428,4 +441,32 @@ fn an_equation_of_one_vanishing_quantity_holds() {
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
     let found = &solution.evaluate(&inside)[0].values;
     assert!(found.iter().zip(&inside).all(|(w, x)| (w - 1.0 - x).abs() < 1e-6), "{found:?}");
+}
+
+/// Inflow of a tank that is filled for a half of each turn, and its level.
+fn filling(t: f64) -> (f64, f64) {
+    let turn = t % std::f64::consts::TAU;
+    let before = 2.0 * (t / std::f64::consts::TAU).floor();
+    (t.sin().max(0.0), before + if turn < std::f64::consts::PI { 1.0 - turn.cos() } else { 2.0 })
+}
+
+#[test]
+fn a_source_with_a_bound_stays_at_it() {
+    let mut normal = normals(3);
+    let times: Vec<f64> = (0..500).map(|i| f64::from(i) * 0.04).collect();
+    let levels = times.iter().map(|&t| filling(t).1 + 0.01 * normal()).collect();
+    let mut problem = Problem::new(scene::<tank::filled::Scene>());
+    problem.set_group("filling", times.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", times.clone().into(), vec![levels]).unwrap();
+    let solution = solve(&problem, Carrier::Auto);
+    assert_eq!((solution.carrier, solution.status), ("splines", Status::Converged), "{:?}", solution.verdict);
+    let inflow = of(&solution.evaluate(&times), "inflow").values.clone();
+    assert!(inflow.iter().all(|&q| q >= 0.0));
+    let error = times.iter().zip(&inflow).map(|(&t, q)| (q - filling(t).0).abs()).sum::<f64>() / times.len() as f64;
+    let size = times.iter().map(|&t| filling(t).0).sum::<f64>() / times.len() as f64;
+    assert!(error < 0.1 * size, "{error} of {size}");
+    // It is known to be nothing where it is nothing: a source without a bound swings there.
+    let off: Vec<f64> = times.iter().zip(&inflow).filter(|(t, _)| t.sin() < -0.5).map(|(_, q)| *q).collect();
+    let idle = off.iter().sum::<f64>() / off.len() as f64;
+    assert!(idle < 0.01 * size, "{idle} of {size}");
 }

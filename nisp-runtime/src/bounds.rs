@@ -9,6 +9,11 @@ use crate::schema;
 
 /// Values closer to the bound than this share of the scale are read as linear.
 const CLOSEST: f64 = 1e-6;
+/// How stiff a value is held at its head's bound, how far beyond it a value may be, both over the head's scale, and how many sets of
+/// held ones are tried in a step.
+pub(crate) const WALL: f64 = 1e4;
+const BEYOND: f64 = 1e-6;
+const MOST_SETS: u32 = 30;
 
 /// A bound in the engine's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -51,6 +56,28 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
         return Some("heads between two bounds or with hard conditions");
     }
     schema.groups.iter().flat_map(|group| group.jets).any(derived).then_some("derivatives of bounded heads")
+}
+
+/// A step after which none of so many numbers is beyond its bound, found by a primal-dual active set (Hintermueller, Ito and
+/// Kunisch 2003). `inside` says how far a number is inside of its bound after a step; `hold` returns the step with these numbers
+/// held at it by stiff springs, or nothing if there is none. Those that the spring keeps from going further in are let go.
+pub(crate) fn within<S>(
+    count: usize,
+    mut step: S,
+    inside: impl Fn(&S, usize) -> f64,
+    mut hold: impl FnMut(&[usize]) -> Option<S>,
+) -> S {
+    let mut held: Vec<usize> = Vec::new();
+    for _ in 0..MOST_SETS {
+        let is_held = |at: &usize| inside(&step, *at) < if held.binary_search(at).is_ok() { 0.0 } else { -BEYOND };
+        let next: Vec<usize> = (0..count).filter(is_held).collect();
+        if next == held {
+            break;
+        }
+        let Some(found) = hold(&next) else { break };
+        (step, held) = (found, next);
+    }
+    step
 }
 
 impl Limit {

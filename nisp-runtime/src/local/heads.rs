@@ -72,7 +72,7 @@ impl Heads {
     }
 
     /// The coefficients that a head's value at a point depends on, and its derivatives by them.
-    fn parts(&self, head: usize, point: &[f64]) -> Vec<(usize, f64)> {
+    pub(super) fn parts(&self, head: usize, point: &[f64]) -> Vec<(usize, f64)> {
         self.parts_of(head, point, &Exponents::default())
     }
 

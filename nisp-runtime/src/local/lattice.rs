@@ -140,6 +140,20 @@ impl Lattice {
         middle
     }
 
+    /// A point of the box for a kept function, within its support: as many evenly spaced ones along each coordinate as there are
+    /// functions.
+    pub(super) fn site(&self, number: usize) -> Vec<f64> {
+        let mut full = self.full[number];
+        let mut site = vec![0.0; self.inputs];
+        for (axis, &coordinate) in self.axes.iter().enumerate() {
+            let count = self.cells[axis] + self.degree;
+            let share = (full % count) as f64 / (count - 1).max(1) as f64;
+            site[coordinate] = self.low[axis] + share * self.spacing[axis] * self.cells[axis] as f64;
+            full /= count;
+        }
+        site
+    }
+
     /// Functions that do not vanish on a cell.
     pub(super) fn per_cell(&self) -> usize {
         (self.degree + 1).pow(self.dimensions() as u32)

@@ -1,39 +1,60 @@
-//! Steps after which no coefficient is beyond its head's bound.
+//! Steps after which no head is beyond its bound where its functions are centred.
 
 use super::iterate::State;
+use super::rows::Rows;
 use super::solver::Solver;
 use super::triangle::Row;
+use crate::bounds::{WALL, within};
 
-/// How stiff a coefficient is held at its head's bound, how far beyond it a coefficient may be, and how often more of them are
-/// found to be beyond.
-const WALL: f64 = 1e4;
-const BEYOND: f64 = 1e-6;
-const MOST_WALLS: u32 = 30;
+/// A value of a bounded head: the first coefficient that it depends on, and its derivatives, over the head's scale and with the
+/// sign that makes it positive inside.
+struct Value {
+    first: usize,
+    slopes: Vec<f64>,
+}
+
+impl Value {
+    fn of(&self, coefficients: &[f64]) -> f64 {
+        self.slopes.iter().zip(&coefficients[self.first..]).map(|(slope, x)| slope * x).sum()
+    }
+}
 
 impl Solver<'_> {
-    /// A step, of coefficients and of learned parameters, after which no coefficient is beyond its head's bound: those that would
-    /// be are held at it, until no other is. It goes last, since the rows that hold them stay in the triangle. Noise, roughness
-    /// and error bars are those without bounds, so that a source at its bound has bars.
-    pub(super) fn within_bounds(&mut self, state: &State, step: Vec<f64>, shared: Vec<f64>) -> (Vec<f64>, Vec<f64>) {
-        let limits = self.heads.limits.iter().enumerate();
-        let limits = limits.filter_map(|(head, limit)| limit.map(|limit| (head, limit.sign)));
-        let bounded = limits.flat_map(|(head, sign)| self.heads.numbers(head, 0).iter().map(move |&at| (at, sign)));
-        let mut free: Vec<(usize, f64)> = bounded.collect();
-        let (mut step, mut shared) = (step, shared);
-        let none = vec![0.0; shared.len()];
-        for _ in 0..MOST_WALLS {
-            let is_beyond = |(at, sign): &(usize, f64)| sign * (state.theta[*at] + step[*at]) < -BEYOND;
-            let (beyond, rest): (Vec<_>, Vec<_>) = free.into_iter().partition(is_beyond);
-            if beyond.is_empty() {
-                break;
+    /// A step of coefficients and of learned parameters within all bounds. It goes last, since the triangle is made anew. Noise,
+    /// roughness and error bars are those without bounds, so that a source at its bound has bars.
+    pub(super) fn within_bounds(
+        &mut self,
+        state: &State,
+        rows: &Rows,
+        step: (Vec<f64>, Vec<f64>),
+    ) -> (Vec<f64>, Vec<f64>) {
+        let values = self.bounded_values();
+        let none = vec![0.0; step.1.len()];
+        let inside = |step: &(Vec<f64>, Vec<f64>), at: usize| values[at].of(&state.theta) + values[at].of(&step.0);
+        within(values.len(), step, inside, |held| {
+            self.triangle.clear();
+            self.triangle.add_all(rows.walk());
+            for value in held.iter().map(|&at| &values[at]) {
+                let slopes: Vec<f64> = value.slopes.iter().map(|slope| WALL * slope).collect();
+                let row =
+                    Row { first: value.first, slopes: &slopes, shared: &none, value: WALL * value.of(&state.theta) };
+                self.triangle.add(row);
             }
-            for (at, _) in beyond {
-                self.triangle.add(Row { first: at, slopes: &[WALL], shared: &none, value: WALL * state.theta[at] });
-            }
-            free = rest;
-            let Some(held) = self.triangle.solve() else { break };
-            (step, shared) = held;
-        }
-        (step, shared)
+            self.triangle.solve()
+        })
+    }
+
+    /// Values of bounded heads, one where each of their functions is centred.
+    fn bounded_values(&self) -> Vec<Value> {
+        let heads = &self.heads;
+        let of = |head: usize, sign: f64| {
+            let basis = &heads.bases[head];
+            (0..basis.len()).map(move |function| {
+                let (first, slopes) = heads.value_row(head, basis.centre(function));
+                Value { first, slopes: slopes.iter().map(|slope| sign * slope / heads.scale[head]).collect() }
+            })
+        };
+        let limits = heads.limits.iter().enumerate();
+        limits.filter_map(|(head, limit)| limit.map(|limit| of(head, limit.sign))).flatten().collect()
     }
 }

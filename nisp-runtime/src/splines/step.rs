@@ -65,7 +65,7 @@ impl Solver<'_> {
         let worth = self.count_priors(state, &mut tallies, phase);
         let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
         let evidence = -0.5 * squares - self.log_sizes(state, &tallies) + worth - self.triangle.log_determinant();
-        let (step, shared) = self.within_bounds(state, step, shared);
+        let (step, shared) = self.within_bounds(state, &rows, (step, shared));
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
         let mut next = state.clone();
         for _ in 0..HALVINGS {

@@ -4,6 +4,7 @@
 //! their points, to a tolerance that falls from step to step; all unknowns are found together by Gauss-Newton steps on sparse
 //! normal equations. The size of the noise, and how much every source bends, are those with the largest evidence (MacKay 1992).
 
+mod bounded;
 mod judged;
 mod meshes;
 mod prior;
@@ -14,6 +15,7 @@ mod step;
 use std::time::Instant;
 
 use super::{KeptLattices, LocalError, LocalSolution};
+use crate::bounds;
 use crate::carrier::Progress;
 use crate::local::draws::Deviations;
 use crate::local::lattice::MOST_COORDINATES;
@@ -48,12 +50,11 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
         (schema.coordinates.len() < 2, "one coordinate"),
         (schema.coordinates.len() > MOST_COORDINATES, "more than four coordinates"),
         (schema.groups.iter().any(|group| group.paired), "paired points"),
-        (schema.heads.iter().any(|head| head.hard || head.transformed), "bounded heads or hard conditions"),
         (terms().any(|term| matches!(term.kind, TermKind::Integral)), "integrals"),
         (terms().any(|term| matches!(term.kind, TermKind::Chamfer { .. })), "clouds"),
         (heads().any(|head| meshes::degree(schema, head).is_none()), "derivatives of such an order"),
     ];
-    refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what)
+    refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what).or_else(|| bounds::refused(schema))
 }
 
 /// Solves a bound problem within its limits, from the start or from a saved state.

@@ -137,6 +137,7 @@ impl Solver<'_> {
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
         let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
         let tallies = self.tallies(state, &blocks, (&step, &shared), &factor).ok_or(LocalError::Factorisation)?;
+        let (step, shared) = self.within_bounds(state, &blocks, (step, shared));
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
         let mut next = state.clone();
         let mut gain = f64::INFINITY;
@@ -166,7 +167,6 @@ impl Solver<'_> {
 
     /// The normal equations about a state; returns the rows of all groups that take part, with the group's number.
     pub(super) fn assemble(&mut self, state: &State, slopes: &[f64]) -> Result<Vec<(usize, Vec<Block>)>, LocalError> {
-        self.normal.clear();
         let mut all = Vec::new();
         for (at, group) in self.groups.iter().enumerate() {
             let counts = self.counts(at, state.phase);
@@ -175,9 +175,16 @@ impl Solver<'_> {
             }
             let evaluated = group.evaluate(&self.heads, &state.theta, &self.scalars, true);
             let blocks = self.blocks(at, &counts, &evaluated, slopes)?;
-            self.normal.add_all(&blocks);
             all.push((at, blocks));
         }
+        self.add_all(state, &all);
+        Ok(all)
+    }
+
+    /// The normal equations of the groups' rows and of what is believed.
+    pub(super) fn add_all(&mut self, state: &State, blocks: &[(usize, Vec<Block>)]) {
+        self.normal.clear();
+        blocks.iter().for_each(|(_, blocks)| self.normal.add_all(blocks));
         for head in 0..self.priors.len() {
             self.normal.add_all(&self.prior_rows(state, head));
         }
@@ -189,7 +196,6 @@ impl Solver<'_> {
         for (at, parameter) in state.learned.iter().enumerate() {
             self.normal.add_learned(at, precision, precision * parameter);
         }
-        Ok(all)
     }
 
     /// By class, what is left of its rows after a step, how many there are, and how many of them the answer used up.
