@@ -13,7 +13,9 @@ const CLOSEST: f64 = 1e-6;
 /// held ones are tried in a step.
 pub(crate) const WALL: f64 = 1e4;
 const BEYOND: f64 = 1e-6;
-const MOST_SETS: u32 = 30;
+const MOST_SETS: u32 = 60;
+/// How often all numbers on the wrong side are turned though they do not get fewer.
+const PATIENCE: u32 = 3;
 
 /// A bound in the engine's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -58,26 +60,40 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
     schema.groups.iter().flat_map(|group| group.jets).any(derived).then_some("derivatives of bounded heads")
 }
 
-/// A step after which none of so many numbers is beyond its bound, found by a primal-dual active set (Hintermueller, Ito and
-/// Kunisch 2003). `inside` says how far a number is inside of its bound after a step; `hold` returns the step with these numbers
-/// held at it by stiff springs, or nothing if there is none. Those that the spring keeps from going further in are let go.
+/// A step after which none of so many numbers is beyond its bound, found by block principal pivoting (Judice and Pires 1994).
+/// `inside` says how far a number is inside of its bound after a step; `hold` returns the step with these numbers held at it by
+/// stiff springs, or nothing if there is none. `step` holds none of them; where it is not enough, those in `held` are held first.
 pub(crate) fn within<S>(
     count: usize,
-    mut step: S,
+    step: S,
+    held: Vec<usize>,
     inside: impl Fn(&S, usize) -> f64,
     mut hold: impl FnMut(&[usize]) -> Option<S>,
 ) -> S {
-    let mut held: Vec<usize> = Vec::new();
-    for _ in 0..MOST_SETS {
-        let is_held = |at: &usize| inside(&step, *at) < if held.binary_search(at).is_ok() { 0.0 } else { -BEYOND };
-        let next: Vec<usize> = (0..count).filter(is_held).collect();
-        if next == held {
-            break;
-        }
-        let Some(found) = hold(&next) else { break };
-        (step, held) = (found, next);
+    if (0..count).all(|at| inside(&step, at) >= -BEYOND) {
+        return step;
     }
-    step
+    let mut is_held = vec![false; count];
+    held.iter().for_each(|&at| is_held[at] = true);
+    let (mut found, mut fewest, mut patience) = (hold(&held), usize::MAX, PATIENCE);
+    for _ in 0..MOST_SETS {
+        let Some(last) = &found else { return step };
+        // A spring that keeps a number from going further in is in the way.
+        let is_wrong = |&at: &usize| if is_held[at] { inside(last, at) > 0.0 } else { inside(last, at) < -BEYOND };
+        let wrong: Vec<usize> = (0..count).filter(is_wrong).collect();
+        let Some(&one) = wrong.last() else { break };
+        if wrong.len() < fewest {
+            (fewest, patience) = (wrong.len(), PATIENCE);
+        } else {
+            patience = patience.saturating_sub(1);
+        }
+        // Turning all of them may go round in circles; the last alone does not.
+        let turned = if patience > 0 { wrong } else { vec![one] };
+        turned.into_iter().for_each(|at| is_held[at] = !is_held[at]);
+        let held: Vec<usize> = (0..count).filter(|&at| is_held[at]).collect();
+        found = hold(&held);
+    }
+    found.unwrap_or(step)
 }
 
 impl Limit {

@@ -31,7 +31,9 @@ impl Solver<'_> {
         let values = self.bounded_values();
         let none = vec![0.0; step.1.len()];
         let inside = |step: &(Vec<f64>, Vec<f64>), at: usize| values[at].of(&state.theta) + values[at].of(&step.0);
-        within(values.len(), step, inside, |held| {
+        let is_at_bound = |at: &usize| values[*at].of(&state.theta) <= 0.0;
+        let at_bound = (0..values.len()).filter(is_at_bound).collect();
+        within(values.len(), step, at_bound, inside, |held| {
             self.triangle.clear();
             self.triangle.add_all(rows.walk());
             for value in held.iter().map(|&at| &values[at]) {

@@ -17,7 +17,8 @@ impl Solver<'_> {
     ) -> (Vec<f64>, Vec<f64>) {
         let walls = self.walls(state);
         let inside = |step: &(Vec<f64>, Vec<f64>), at: usize| walls[at].after(0, &step.0, &step.1) / WALL;
-        within(walls.len(), step, inside, |held| {
+        let at_bound = (0..walls.len()).filter(|&at| walls[at].misfits[0] <= 0.0).collect();
+        within(walls.len(), step, at_bound, inside, |held| {
             self.add_all(state, blocks);
             let held: Vec<Block> = held.iter().map(|&at| walls[at].clone()).collect();
             self.normal.add_all(&held);
