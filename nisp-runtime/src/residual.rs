@@ -43,7 +43,7 @@ pub trait Residuals: Send + Sync + 'static {
     fn residual<V: Simd>(at: &Lane<'_, V>, rows: &mut Sink<'_, V::Elem>);
     /// Writes the adjoint of every jet, then of every learned scalar.
     fn adjoint<V: Simd>(at: &Lane<'_, V>, bars: &mut Sink<'_, V::Elem>);
-    /// Writes the rows with every sum replaced by the sum of magnitudes; run once, when a scene is bound.
+    /// Writes the rows with every sum replaced by the sum of magnitudes, for the sizes of equations.
     fn magnitude<V: Simd>(at: &Lane<'_, V>, rows: &mut Sink<'_, V::Elem>);
     /// Targets of integral terms, from scalars alone; `rows` is indexed like the group's rows.
     fn target(scalars: &[f64], rows: &mut [f64]);

@@ -139,4 +139,6 @@ fn the_magnitude_adds_what_the_row_subtracts() {
     let group = &plan.scenes[0].groups[0];
     assert_eq!(run(&group.residual, &[2.0, 5.0], 1.0), [5.0 - 6.0]);
     assert_eq!(run(&group.magnitude, &[2.0, 5.0], 1.0), [5.0 + 6.0]);
+    // Values of fields and their derivatives have signs.
+    assert_eq!(run(&group.magnitude, &[-2.0, 5.0], 1.0), [5.0 + 6.0]);
 }

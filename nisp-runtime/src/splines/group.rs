@@ -185,19 +185,7 @@ impl Group {
 
     /// Sizes of all rows as sums of the magnitudes of what they add up, by row and place.
     pub(super) fn magnitudes(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Vec<f64>> {
-        let facts = self.facts(heads, theta);
-        let mut rows = vec![0.0; self.schema.rows * self.stride];
-        let points = Points {
-            count: self.len(),
-            stride: self.stride,
-            jets: &facts.jets,
-            coordinates: &self.coordinates,
-            columns: &self.columns,
-            scalars,
-            seeds: &[],
-        };
-        self.kernel.programs.magnitude(points, &mut rows);
-        rows.chunks_exact(self.stride.max(1)).map(|row| row[..self.len()].to_vec()).collect()
+        self.facts(heads, theta).magnitudes(self.kernel.programs, self.schema, scalars)
     }
 
     /// Places by cell, those that count: each cell with its places.

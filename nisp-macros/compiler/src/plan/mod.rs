@@ -137,8 +137,8 @@ pub struct GroupPlan {
     /// Adjoint: slots as `residual` and Seed (one per row). Outputs: one per jet, then one per learned parameter
     /// (in the order of [`ScenePlan::learned`]).
     pub adjoint: Program,
-    /// Sum over a row's terms of their absolute values, for natural sizes: same slots as `residual`, where the caller
-    /// puts magnitudes into Jet. One output per row.
+    /// Sum over a row's terms of their absolute values, for natural sizes: same slots as `residual`, where Jet may have values or
+    /// sizes. One output per row.
     pub magnitude: Program,
     /// Model columns read, in slot order.
     pub columns: Vec<usize>,

@@ -7,7 +7,7 @@ use num_traits::{One, Signed};
 use super::graph::{Graph, Id, Leaf, Node};
 use crate::model::Function;
 
-/// The sizes of `roots`. Jets are taken to be sizes already.
+/// The sizes of `roots`.
 pub fn magnitude(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
     let mut sizes: HashMap<Id, Id> = HashMap::new();
     for id in graph.reachable(roots.iter().copied()) {
@@ -19,8 +19,7 @@ pub fn magnitude(graph: &mut Graph, roots: &[Id]) -> Vec<Id> {
 
 fn node_size(graph: &mut Graph, id: Id, sizes: &HashMap<Id, Id>) -> Id {
     match graph.node(id).clone() {
-        Node::Number(_) | Node::Real(_) | Node::Leaf(Leaf::Input(..)) => graph.call(Function::Abs, id),
-        Node::Leaf(Leaf::Jet { .. }) => id,
+        Node::Number(_) | Node::Real(_) | Node::Leaf(_) => graph.call(Function::Abs, id),
         Node::Sum(constant, terms) => {
             let constant = graph.number(constant.abs());
             let mut parts: Vec<_> = terms.into_iter().map(|(term, c)| (c.abs(), sizes[&term])).collect();
