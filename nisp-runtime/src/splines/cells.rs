@@ -31,8 +31,12 @@ pub(super) fn stretches(bound: &Bound) -> bool {
     prior::may_stretch(bound.problem.scene().schema) && bound.coordinates.iter().all(|points| points.len() <= LONG)
 }
 
-/// Breakpoints at all measurements, and more at the start where it `stretches`.
+/// Breakpoints at all measurements, and more at the start where it `stretches`; as many as equations can tell where those hold at
+/// their own points.
 fn all_breakpoints(bound: &Bound, stretches: bool) -> Vec<f64> {
+    if let Some(points) = asked(bound) {
+        return told_by(bound, &points);
+    }
     let groups = bound.problem.scene().schema.groups.iter().zip(&bound.coordinates);
     let mut measured: Vec<f64> = groups.filter(|(g, _)| !g.columns.is_empty()).flat_map(|(_, c)| c).copied().collect();
     let all = || bound.coordinates.iter().flatten().copied();
@@ -53,6 +57,33 @@ fn all_breakpoints(bound: &Bound, stretches: bool) -> Vec<f64> {
         breakpoints.push(gap[1]);
     }
     breakpoints
+}
+
+/// The fewest points at which equations of an interval are asked for, rising, where those are their own: with known columns, or
+/// among data.
+fn asked(bound: &Bound) -> Option<Vec<f64>> {
+    let groups = bound.problem.scene().schema.groups.iter().enumerate();
+    let is_asked = |(at, group): &(usize, &schema::Group)| {
+        let has_equations = group.terms.iter().any(|term| term.kind == TermKind::Residual);
+        has_equations && !is_interval(bound, *at) && bound.coordinates[*at].len() >= MANY
+    };
+    let distinct = |(at, _): (usize, &schema::Group)| {
+        let mut points = bound.coordinates[at].clone();
+        points.sort_by(f64::total_cmp);
+        points.dedup();
+        points
+    };
+    groups.filter(is_asked).map(distinct).min_by_key(Vec::len)
+}
+
+/// Breakpoints for which a residual at these points determines a spline: means of as many neighbours as its degree (de Boor, *A
+/// Practical Guide to Splines*, chapter XIII).
+fn told_by(bound: &Bound, points: &[f64]) -> Vec<f64> {
+    let all = || bound.coordinates.iter().flatten().copied();
+    let (low, high) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
+    let count = points.len();
+    let means = points[1..count - 1].windows(SMOOTH).map(|near| near.iter().sum::<f64>() / SMOOTH as f64);
+    std::iter::once(low).chain(means).chain([high]).collect()
 }
 
 /// Breakpoints from which on a record is asked how many of them it needs.
@@ -105,22 +136,27 @@ pub(super) fn degrees(schema: &schema::Scene) -> Option<Vec<usize>> {
     degrees.iter().all(|&degree| degree <= HIGHEST_DEGREE).then_some(degrees)
 }
 
+/// True where a group's equations stand for an interval, and may be asked for elsewhere on it.
+fn is_interval(bound: &Bound, group: usize) -> bool {
+    let schema = &bound.problem.scene().schema.groups[group];
+    let only_equations = schema.columns.is_empty() && schema.terms.iter().all(|term| term.kind == TermKind::Residual);
+    let mut sorted = bound.coordinates[group].clone();
+    sorted.sort_by(f64::total_cmp);
+    if !only_equations || sorted.len() < MANY {
+        return false;
+    }
+    let longest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
+    longest * (sorted.len() - 1) as f64 <= GAP * (sorted[sorted.len() - 1] - sorted[0])
+}
+
 /// Places where the rows of a group of equations are asked for instead of at its points: as many on the interval that those
 /// stand for as its residual has freedom. Nothing where it is asked for at its points, as data and conditions are.
 pub(super) fn places(bound: &Bound, group: usize, breakpoints: &[f64]) -> Option<Vec<f64>> {
-    let own = &bound.coordinates[group];
-    let schema = &bound.problem.scene().schema.groups[group];
-    let only_equations = schema.columns.is_empty() && schema.terms.iter().all(|term| term.kind == TermKind::Residual);
-    let mut sorted = own.clone();
-    sorted.sort_by(f64::total_cmp);
-    if !only_equations || sorted.len() < MANY {
+    if !is_interval(bound, group) {
         return None;
     }
-    let (low, high) = (sorted[0], sorted[sorted.len() - 1]);
-    let longest = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(0.0, f64::max);
-    if longest * (sorted.len() - 1) as f64 > GAP * (high - low) {
-        return None;
-    }
+    let own = || bound.coordinates[group].iter().copied();
+    let (low, high) = (own().fold(f64::INFINITY, f64::min), own().fold(f64::NEG_INFINITY, f64::max));
     let residual = Basis::new(SMOOTH, breakpoints);
     let slack = 1e-9 * (high - low);
     let centres = (0..residual.len()).map(|i| residual.centre(i));
