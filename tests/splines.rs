@@ -103,6 +103,39 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// The same where the load is known at points, as a measured one is.
+    mod loaded_reaction {
+        units: off;
+        coordinates: x;
+        fields: u;
+        sources: k >= 0;
+        on inside { columns: load; law: k * u - 0.02 * d(u, x, 2) == load; }
+        on left { held: u == 0; }
+        on right { held: u == 0; }
+        on gauges { observe u; }
+        scene rate { }
+    }
+}
+
+nisp::pde! {
+    /// An epidemic: a share `S` may still be infected, a share `exp(y)` is.
+    mod epidemic {
+        units: off;
+        coordinates: t;
+        fields: S, y;
+        sources: beta;
+        parameters: y0 = 0;
+        on days {
+            susceptible: d(S, t) == -beta * S * exp(y);
+            infected: d(y, t) == beta * S - 1;
+        }
+        on start { all: S == 1; first: y == y0; }
+        on cases { observe y; }
+        scene spread { }
+    }
+}
+
+nisp::pde! {
     /// A source whose sum is known.
     mod summed {
         units: off;
@@ -469,4 +502,49 @@ fn a_source_with_a_bound_stays_at_it() {
     let off: Vec<f64> = times.iter().zip(&inflow).filter(|(t, _)| t.sin() < -0.5).map(|(_, q)| *q).collect();
     let idle = off.iter().sum::<f64>() / off.len() as f64;
     assert!(idle < 0.01 * size, "{idle} of {size}");
+}
+
+#[test]
+fn a_rate_is_found_where_the_load_is_known_at_points_only() {
+    let pi = std::f64::consts::PI;
+    let rate = |x: f64| 0.3 + 1.2 * (-((x - 0.4) / 0.15).powi(2)).exp();
+    let load = |x: f64| (0.02 * pi * pi + rate(x)) * (pi * x).sin();
+    let places = |count: u32| (0..count).map(|i| f64::from(i) / f64::from(count - 1)).collect::<Vec<f64>>();
+    let (inside, gauges) = (places(120), places(100));
+    let mut problem = Problem::new(scene::<loaded_reaction::rate::Scene>());
+    let loads = inside.iter().map(|&x| load(x)).collect();
+    problem.set_group("inside", inside.into(), vec![loads]).unwrap();
+    problem.set_group("left", vec![0.0].into(), vec![]).unwrap();
+    problem.set_group("right", vec![1.0].into(), vec![]).unwrap();
+    let fields = gauges.iter().map(|x| (pi * x).sin()).collect();
+    problem.set_group("gauges", gauges.into(), vec![fields]).unwrap();
+    let solution = solve(&problem, Carrier::Splines);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let at: Vec<f64> = (0..81).map(|i| 0.1 + 0.01 * f64::from(i)).collect();
+    for (x, found) in at.iter().zip(&of(&solution.evaluate(&at), "k").values) {
+        assert!((found - rate(*x)).abs() < 1e-4, "{found} at {x}");
+    }
+}
+
+#[test]
+fn terms_of_one_side_do_not_cancel_in_the_size_of_an_equation() {
+    // A wave of infections sech^2 leaves 1 - tanh; in `susceptible` both terms are on one side.
+    let (most, pace, middle) = (0.1, 0.4, 8.0);
+    let y = |t: f64| (most / (pace * (t - middle)).cosh().powi(2)).ln();
+    let lost = |t: f64| y(t).exp() + most / pace * (pace * (t - middle)).tanh();
+    let beta = |t: f64| (1.0 - 2.0 * pace * (pace * (t - middle)).tanh()) / (1.0 - lost(t) + lost(0.0));
+    let times: Vec<f64> = (0..120).map(|i| 16.0 * f64::from(i) / 119.0).collect();
+    let mut normal = normals(17);
+    let cases = times.iter().map(|&t| y(t) + 0.02 * normal()).collect();
+    let mut problem = Problem::new(scene::<epidemic::spread::Scene>());
+    problem.set_group("days", times.clone().into(), vec![]).unwrap();
+    problem.set_group("start", vec![0.0].into(), vec![]).unwrap();
+    problem.set_group("cases", times.clone().into(), vec![cases]).unwrap();
+    problem.set_parameter("y0", y(0.0)).unwrap();
+    let solution = solve(&problem, Carrier::Splines);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let found = of(&solution.evaluate(&times), "beta").values.clone();
+    let square = |value: &dyn Fn(usize) -> f64| (0..times.len()).map(|i| value(i).powi(2)).sum::<f64>();
+    let off = (square(&|i| found[i] - beta(times[i])) / square(&|i| beta(times[i]))).sqrt();
+    assert!(off < 0.1, "{off}");
 }

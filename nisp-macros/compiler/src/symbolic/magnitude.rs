@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use num_traits::{One, Signed};
 
-use super::graph::{Graph, Id, Leaf, Node};
+use super::graph::{Graph, Id, Node};
 use crate::model::Function;
 
 /// The sizes of `roots`.

@@ -16,7 +16,10 @@ pub(crate) fn unknown_function(name: &str, nearest: Option<&str>, declared: bool
         let message = format!("`{}` is not a function", shorten(name));
         return help(message, format!("write `{name} * (...)` to multiply"));
     }
-    let step = meant(nearest, "there are elementary functions, `d`, `grad`, `div`, `dot` and their like");
+    let step = meant(
+        nearest,
+        "there are `sqrt`, `exp`, `ln`, `sin`, `tanh`, `abs` and their like, `d`, `grad`, `div`, `dot` and `norm`",
+    );
     help(format!("there is no function `{}`", shorten(name)), step)
 }
 
