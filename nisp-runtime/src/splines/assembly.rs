@@ -80,10 +80,20 @@ impl Solver<'_> {
         Ok((rows, cost))
     }
 
-    /// The heads that have a prior in a phase: sources, or fields while only data are regressed.
-    pub(super) fn believed(&self, phase: Phase) -> impl Iterator<Item = usize> + '_ {
-        let heads = self.bound.problem.scene().schema.heads.iter().enumerate();
-        heads.filter(move |(_, head)| head.source == (phase == Phase::Solve)).map(|(head, _)| head)
+    /// The heads that have a prior in a phase: sources, or fields that are observed while only data are regressed.
+    pub(super) fn believed(&self, phase: Phase) -> Vec<usize> {
+        let schema = self.bound.problem.scene().schema;
+        let is_observed = |head: usize| {
+            let mut terms = schema.groups.iter().flat_map(|group| group.terms.iter().map(move |term| (group, term)));
+            terms.any(|(group, term)| {
+                term.kind == TermKind::Observation && term.jets.iter().any(|&jet| group.jets[jet].head == head)
+            })
+        };
+        let is_believed = |head: &usize| match phase {
+            Phase::Solve => schema.heads[*head].source,
+            Phase::Regress => !schema.heads[*head].source && is_observed(*head),
+        };
+        (0..schema.heads.len()).filter(is_believed).collect()
     }
 
     /// Gives the rows that keep sources small and smooth, or fields smooth while only data are regressed, with their classes;

@@ -113,7 +113,7 @@ impl<'a> Solver<'a> {
 
     /// Takes sources for smooth in this way from now on.
     pub(super) fn set_smoothness(&mut self, kind: Smoothness) {
-        for head in self.believed(Phase::Solve).collect::<Vec<usize>>() {
+        for head in self.believed(Phase::Solve) {
             self.priors[head] = Prior::new(&self.heads.bases[head], kind);
         }
     }

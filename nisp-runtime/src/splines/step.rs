@@ -158,7 +158,12 @@ impl Solver<'_> {
             tallies[rough].count = tallies[amplitude].count - small;
             tallies[amplitude].count = small;
         }
-        let unknowns = (self.heads.len() + self.bound.learned.len()) as f64;
+        let functions = match phase {
+            Phase::Solve => self.heads.len(),
+            // Nothing is asked of the others.
+            Phase::Regress => self.believed(phase).into_iter().map(|head| self.heads.bases[head].len()).sum(),
+        };
+        let unknowns = (functions + self.bound.learned.len()) as f64;
         let is_rough = |class: usize| self.roughness.contains(&class);
         let is_equation = self.equations();
         tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
