@@ -146,6 +146,17 @@ pub struct Group {
     pub rule_flops: RuleFlops,
 }
 
+impl Scene {
+    /// The heads that observations read.
+    pub(crate) fn observed(&self) -> Vec<usize> {
+        let jets = self.groups.iter().flat_map(|group| {
+            let terms = group.terms.iter().filter(|term| term.kind == TermKind::Observation);
+            terms.flat_map(|term| term.jets).map(|&jet| group.jets[jet].head)
+        });
+        jets.collect()
+    }
+}
+
 impl Group {
     /// Places at which the heads are read for each point.
     pub fn sites(&self) -> usize {

@@ -1,10 +1,11 @@
 //! Rows about an iterate: of terms, of priors, and of those that keep everything bounded.
 
+use super::cells::MANY;
 use super::iterate::{Phase, State};
 use super::rows::Rows;
 use super::solver::Solver;
 use super::triangle::Row;
-use crate::schema::TermKind;
+use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 
 /// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
@@ -31,7 +32,7 @@ impl Solver<'_> {
         let mut rows = Rows::new(shared);
         let mut cost = 0.0;
         for (at, group) in self.groups.iter().enumerate() {
-            let takes_part = |term: &crate::schema::Term| phase == Phase::Solve || term.kind == TermKind::Observation;
+            let takes_part = |term: &schema::Term| self.takes_part(at, term, phase);
             if group.len() == 0 || !group.schema.terms.iter().any(takes_part) {
                 continue;
             }
@@ -80,20 +81,24 @@ impl Solver<'_> {
         Ok((rows, cost))
     }
 
-    /// The heads that have a prior in a phase: sources, or fields that are observed while only data are regressed.
+    /// True if a term's rows count in a phase: data, and conditions on values, are regressed before equations hold.
+    fn takes_part(&self, at: usize, term: &schema::Term, phase: Phase) -> bool {
+        let group = &self.groups[at];
+        let is_of_values = || term.jets.iter().all(|&jet| group.schema.jets[jet].degree.iter().all(|&n| n == 0));
+        let is_condition = || term.kind == TermKind::Residual && group.len() < MANY && is_of_values();
+        phase == Phase::Solve || term.kind == TermKind::Observation || is_condition()
+    }
+
+    /// The heads that have a prior in a phase: sources, or fields while only data are regressed.
     pub(super) fn believed(&self, phase: Phase) -> Vec<usize> {
-        let schema = self.bound.problem.scene().schema;
-        let is_observed = |head: usize| {
-            let mut terms = schema.groups.iter().flat_map(|group| group.terms.iter().map(move |term| (group, term)));
-            terms.any(|(group, term)| {
-                term.kind == TermKind::Observation && term.jets.iter().any(|&jet| group.jets[jet].head == head)
-            })
-        };
-        let is_believed = |head: &usize| match phase {
-            Phase::Solve => schema.heads[*head].source,
-            Phase::Regress => !schema.heads[*head].source && is_observed(*head),
-        };
-        (0..schema.heads.len()).filter(is_believed).collect()
+        let heads = &self.bound.problem.scene().schema.heads;
+        (0..heads.len()).filter(|&head| heads[head].source == (phase == Phase::Solve)).collect()
+    }
+
+    /// The heads whose roughness the evidence finds in a phase: sources, or observed fields while only data are regressed.
+    pub(super) fn judged(&self, phase: Phase) -> Vec<usize> {
+        let observed = self.bound.problem.scene().schema.observed();
+        self.believed(phase).into_iter().filter(|head| phase == Phase::Solve || observed.contains(head)).collect()
     }
 
     /// Gives the rows that keep sources small and smooth, or fields smooth while only data are regressed, with their classes;
@@ -133,7 +138,7 @@ impl Solver<'_> {
         for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, None);
             for (number, term) in group.schema.terms.iter().enumerate() {
-                if phase == Phase::Regress && term.kind != TermKind::Observation {
+                if !self.takes_part(at, term, phase) {
                     continue;
                 }
                 let loss = self.bound.losses[at][number];

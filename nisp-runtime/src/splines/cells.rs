@@ -16,7 +16,7 @@ const SMOOTH: usize = 5;
 /// Longest gap between the points of an equation, beside the mean one, that still counts as part of an interval.
 const GAP: f64 = 30.0;
 /// Points of an equation at least that stand for an interval.
-const MANY: usize = 8;
+pub(super) const MANY: usize = 8;
 
 /// Breakpoints of the cells: one at every place of a measurement, and more where those are far apart; fewer where a record is
 /// long and says no more.

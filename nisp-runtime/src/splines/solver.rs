@@ -16,6 +16,7 @@ use crate::weighed::{Class, Guess, of_terms};
 
 /// How fields are smooth while only data are regressed.
 const REGRESS: Smoothness = Smoothness { order: 2, stretched: false };
+const LEVEL: Smoothness = Smoothness { order: 1, stretched: false };
 /// Cells of a source's shortest wave, before the first step says how smooth it is.
 const SHORTEST: f64 = 12.0;
 /// Least roughness, and least amplitude of a source beside its natural size.
@@ -66,7 +67,10 @@ impl<'a> Solver<'a> {
         let classes = schema.groups.iter().map(|g| g.terms.iter().map(|_| next()).collect()).collect();
         let roughness = schema.heads.iter().map(|_| next()).collect();
         let amplitude = schema.heads.iter().map(|head| head.source.then(&mut next)).collect();
-        let priors = heads.bases.iter().map(|basis| Prior::new(basis, REGRESS)).collect();
+        let observed = schema.observed();
+        // Of fields that are not observed conditions are all that is known at first: they are level.
+        let regressed = |head: usize| if observed.contains(&head) { REGRESS } else { LEVEL };
+        let priors = heads.bases.iter().enumerate().map(|(head, basis)| Prior::new(basis, regressed(head))).collect();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len());
         let scalars = bound.scalars.clone();
@@ -139,10 +143,12 @@ impl<'a> Solver<'a> {
         let mut classes = of_terms(self.bound, noise);
         let open = |size: f64, least: f64| Class::open(size, Guess { size: 0.0, count: 0.0, least });
         let natural = self.length.sqrt();
-        // Fields are rougher than anything that the cells can hold, until the first step says how rough.
-        let field = |prior: &Prior| prior.roughness(natural, 1.0).max(1e9);
-        let rough = schema.heads.iter().zip(&self.priors).map(|(head, prior)| {
-            open(if head.source { prior.roughness(natural, SHORTEST) } else { field(prior) }, LEAST_ROUGHNESS)
+        let observed = schema.observed();
+        let rough = self.priors.iter().enumerate().map(|(head, prior)| {
+            let own = prior.roughness(natural, SHORTEST);
+            // Observed fields are rougher than anything that the cells can hold, until the first step says how rough.
+            let is_regressed = !schema.heads[head].source && observed.contains(&head);
+            open(if is_regressed { prior.roughness(natural, 1.0).max(1e9) } else { own }, LEAST_ROUGHNESS)
         });
         classes.extend(rough);
         classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));

@@ -10,6 +10,8 @@ use crate::weighed::{Tally, renew};
 
 /// How far equations may be off in the end, beside the sum of the magnitudes of their terms.
 pub(super) const TOLERANCE: f64 = 1e-6;
+/// How far they may be off, squared and beside their tolerance, for the sizes of noise and sources to be looked for.
+const STRAYED: f64 = 1e6;
 /// The fall of their tolerance from step to step.
 const TIGHTER: f64 = 0.1;
 /// Logarithm of the evidence that a larger source may cost and still be possible, and how many numbers must be told of a source
@@ -48,7 +50,7 @@ impl Solver<'_> {
         let covariance = self.triangle.covariance();
         let is_equation = self.equations();
         let mut tallies = vec![Tally::default(); state.classes.len() + 1];
-        let mut loss = 0.0;
+        let (mut loss, mut strayed, mut asked) = (0.0, 0.0, 0.0);
         let mut walk = rows.walk();
         while let Some(Counted { row, class, count }) = walk.step() {
             let tally = &mut tallies[class];
@@ -57,7 +59,9 @@ impl Solver<'_> {
             tally.squares += (row.value + along + beside).powi(2);
             tally.count += count as f64;
             // Equations are so much stricter than anything else that each settles an unknown.
-            if !is_equation[class] {
+            if is_equation[class] {
+                (strayed, asked) = (strayed + row.value.powi(2), asked + count as f64);
+            } else {
                 tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
             }
             loss += 0.5 * row.value.powi(2);
@@ -80,10 +84,11 @@ impl Solver<'_> {
         let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
-        // While equations are loose, they need no source.
-        let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
-        let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
-        renew(&mut next.classes, &tallies, |class| is_loose && is_prior(class));
+        // Equations that are loose need no source, and what is left of the data is no noise before they hold.
+        let is_loose = phase == Phase::Solve && (state.tolerance > TOLERANCE || strayed > STRAYED * asked);
+        let judged: Vec<usize> = self.judged(phase).into_iter().map(|head| self.roughness[head]).collect();
+        let is_other = |class| self.roughness.contains(&class) && !judged.contains(&class);
+        renew(&mut next.classes, &tallies, |class| is_loose || is_other(class));
         if phase == Phase::Solve {
             next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
         }
@@ -158,10 +163,11 @@ impl Solver<'_> {
             tallies[rough].count = tallies[amplitude].count - small;
             tallies[amplitude].count = small;
         }
+        let judged = self.judged(phase);
         let functions = match phase {
             Phase::Solve => self.heads.len(),
             // Nothing is asked of the others.
-            Phase::Regress => self.believed(phase).into_iter().map(|head| self.heads.bases[head].len()).sum(),
+            Phase::Regress => judged.iter().map(|&head| self.heads.bases[head].len()).sum(),
         };
         let unknowns = (functions + self.bound.learned.len()) as f64;
         let is_rough = |class: usize| self.roughness.contains(&class);
@@ -169,7 +175,7 @@ impl Solver<'_> {
         tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
         let used: f64 =
             tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();
-        let rough = || self.roughness.iter().copied();
+        let rough = || judged.iter().map(|&head| self.roughness[head]);
         let by_rows: f64 = rough().map(|class| tallies[class].used.clamp(0.0, tallies[class].count)).sum();
         let count: f64 = rough().map(|class| tallies[class].count).sum();
         let left = (unknowns - used).clamp(0.0, count);

@@ -85,11 +85,7 @@ impl Solver<'_> {
 
     /// The heads whose roughness the evidence finds in a phase: sources, or measured fields while only data are regressed.
     pub(super) fn judged(&self, phase: Phase) -> Vec<usize> {
-        let observations = self.schema().groups.iter().flat_map(|group| {
-            let terms = group.terms.iter().filter(|term| term.kind == TermKind::Observation);
-            terms.flat_map(|term| term.jets).map(|&jet| group.jets[jet].head)
-        });
-        let observed: Vec<usize> = observations.collect();
+        let observed = self.schema().observed();
         let heads = self.schema().heads.iter().enumerate();
         let is_judged = |&(head, declared): &(usize, &schema::Head)| match phase {
             Phase::Regress => !declared.source && observed.contains(&head),
