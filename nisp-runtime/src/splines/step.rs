@@ -1,6 +1,6 @@
 //! Gauss-Newton steps, while the evidence finds how noisy the data and how rough the sources are.
 
-use super::iterate::{Phase, State};
+use super::iterate::{LOOSE, Phase, State};
 use super::rows::Counted;
 use super::solver::Solver;
 use super::triangle::Covariance;
@@ -12,7 +12,7 @@ use crate::weighed::{Tally, renew};
 pub(super) const TOLERANCE: f64 = 1e-6;
 /// How far they may be off, squared and beside their tolerance, for the sizes of noise and sources to be looked for.
 const STRAYED: f64 = 1e6;
-/// The fall of their tolerance from step to step.
+/// The fall of their tolerance from step to step, and its rise after one that had to be short.
 const TIGHTER: f64 = 0.1;
 /// Logarithm of the evidence that a larger source may cost and still be possible, and how many numbers must be told of a source
 /// for the evidence to know its size.
@@ -90,7 +90,9 @@ impl Solver<'_> {
         let is_other = |class| self.roughness.contains(&class) && !judged.contains(&class);
         renew(&mut next.classes, &tallies, |class| is_loose || is_other(class));
         if phase == Phase::Solve {
-            next.tolerance = (state.tolerance * TIGHTER).max(TOLERANCE);
+            // Strict equations that are not linear leave steps no room: those that had to be short go on with looser ones.
+            let tighter = if share < 0.5 { TIGHTER.recip() } else { TIGHTER };
+            next.tolerance = (state.tolerance * tighter).clamp(TOLERANCE, LOOSE);
         }
         next.step += 1;
         let left = |class: usize| tallies[class].count - tallies[class].used;
