@@ -10,8 +10,8 @@ use crate::weighed::{Tally, renew};
 
 /// How far equations may be off in the end, beside the sum of the magnitudes of their terms.
 pub(super) const TOLERANCE: f64 = 1e-6;
-/// How far they may be off, squared and beside their tolerance, for the sizes of noise and sources to be looked for.
-const STRAYED: f64 = 1e6;
+/// How far they may be off for the sizes of noise and sources to be looked for.
+const STRAYED: f64 = 1e-3;
 /// The fall of their tolerance from step to step, and its rise after one that had to be short.
 const TIGHTER: f64 = 0.1;
 /// Logarithm of the evidence that a larger source may cost and still be possible, and how many numbers must be told of a source
@@ -84,11 +84,13 @@ impl Solver<'_> {
         let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
-        // Equations that are loose need no source, and what is left of the data is no noise before they hold.
-        let is_loose = phase == Phase::Solve && (state.tolerance > TOLERANCE || strayed > STRAYED * asked);
+        // Equations that are loose need no source, and what is left of the data is no noise before they nearly hold.
+        let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
+        let has_strayed = phase == Phase::Solve && strayed * state.tolerance.powi(2) > STRAYED.powi(2) * asked;
+        let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
         let judged: Vec<usize> = self.judged(phase).into_iter().map(|head| self.roughness[head]).collect();
         let is_other = |class| self.roughness.contains(&class) && !judged.contains(&class);
-        renew(&mut next.classes, &tallies, |class| is_loose || is_other(class));
+        renew(&mut next.classes, &tallies, |class| has_strayed || is_loose && is_prior(class) || is_other(class));
         if phase == Phase::Solve {
             // Strict equations that are not linear leave steps no room: those that had to be short go on with looser ones.
             let tighter = if share < 0.5 { TIGHTER.recip() } else { TIGHTER };
