@@ -11,6 +11,7 @@ mod basis;
 mod bounded;
 mod cells;
 mod course;
+mod expected;
 mod group;
 mod heads;
 mod iterate;
@@ -147,6 +148,13 @@ pub(crate) fn solve(
     let mut warnings = Vec::new();
     if let Some(Tried { state, .. }) = place.best().cloned() {
         place.state = State { step: place.state.step, ..state };
+        if status == Status::Converged
+            && solver.has_sources()
+            && let Some(best) = place.best()
+        {
+            solver.set_smoothness(KINDS[best.kind]);
+            place.state = State { step: place.state.step, ..solver.expected(place.state.clone())? };
+        }
         // A kind of smoothness was tried to its end.
         ahead = None;
     }
