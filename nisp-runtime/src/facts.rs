@@ -6,6 +6,10 @@ use crate::residual::Points;
 use crate::residual::Programs;
 use crate::schema;
 use crate::simd::Isa;
+use crate::solve::vector::root_mean_square;
+
+/// What is left of an equation, beside the sum of the magnitudes of its terms, where these balance each other.
+const BALANCED: f64 = 0.5;
 
 /// Values and derivatives of an answer at a group's points, in the engine's units.
 #[derive(Clone, Debug, Default)]
@@ -73,6 +77,31 @@ impl Facts {
         scalars: &[f64],
     ) -> Vec<Vec<f64>> {
         self.by_row(group, scalars, |points, rows| programs.magnitude(points, rows))
+    }
+
+    /// Sizes of all rows, as the sum of the magnitudes of what they add up; at least the `natural` ones of their terms where
+    /// nothing balances this yet, or ever, as in a quantity that vanishes. Of terms with `within` the natural ones.
+    pub(crate) fn sizes(
+        &self,
+        programs: &dyn Programs<f64>,
+        group: &schema::Group,
+        scalars: &[f64],
+        natural: &[f64],
+    ) -> Vec<f64> {
+        let [sizes, misfits] = [self.magnitudes(programs, group, scalars), self.plain_rows(programs, group, scalars)]
+            .map(|rows| rows.iter().map(|row| root_mean_square(row.iter().copied())).collect::<Vec<f64>>());
+        let mut found = vec![0.0; group.rows];
+        for (term, &natural) in group.terms.iter().zip(natural) {
+            for row in term.first..term.first + term.rows {
+                let (size, is_balanced) = (sizes[row], misfits[row] < BALANCED * sizes[row]);
+                found[row] = match term.within {
+                    None if is_balanced => size,
+                    None if size.is_finite() => size.max(natural),
+                    _ => natural,
+                };
+            }
+        }
+        found
     }
 
     /// Derivatives of a row by the jets, `[jet][point]`.

@@ -4,6 +4,7 @@ use nalgebra::{DMatrix, DVector};
 
 use crate::problem::Bound;
 use crate::schema;
+use crate::solve::vector::root_mean_square;
 
 /// Noise of what is observed.
 #[derive(Clone, Debug, PartialEq)]
@@ -92,11 +93,6 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
         }
     }
     Noise { observations }
-}
-
-fn root_mean_square(values: impl ExactSizeIterator<Item = f64>) -> f64 {
-    let count = values.len() as f64;
-    (values.map(|x| x * x).sum::<f64>() / count).sqrt()
 }
 
 /// Values in the order of their only coordinate.

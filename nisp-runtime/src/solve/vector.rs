@@ -114,6 +114,12 @@ fn all_finite_loop<E: Real>(a: &[E]) -> bool {
     a.chunks(64).all(|some| some.iter().fold(true, |all, x| all & x.is_finite()))
 }
 
+/// Root of the mean of the squares; zero of nothing.
+pub(crate) fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
+    let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), x| (sum + x * x, count + 1.0));
+    if count == 0.0 { 0.0 } else { (sum / count).sqrt() }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -15,7 +15,7 @@ const LANES: usize = 16;
 /// A group at its places.
 pub(super) struct Group {
     pub(super) schema: &'static schema::Group,
-    kernel: GroupKernel<f64>,
+    pub(super) kernel: GroupKernel<f64>,
     /// The cell of each place.
     cells: Vec<usize>,
     stride: usize,
@@ -181,11 +181,6 @@ impl Group {
             }
         }
         Evaluated { stride: self.stride, rows, bars }
-    }
-
-    /// Sizes of all rows as sums of the magnitudes of what they add up, by row and place.
-    pub(super) fn magnitudes(&self, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Vec<f64>> {
-        self.facts(heads, theta).magnitudes(self.kernel.programs, self.schema, scalars)
     }
 
     /// Places by cell, those that count: each cell with its places.

@@ -177,18 +177,15 @@ impl<'a> Solver<'a> {
         &self.scalars
     }
 
-    /// Sizes of equations as the sum of the magnitudes of their terms at a state; what units and data say where that is zero.
+    /// Takes over the sizes of equations at a state.
     pub(super) fn size(&mut self, state: &State) {
         self.set_learned(&state.learned);
         for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
-            let magnitudes = group.magnitudes(&self.heads, &state.theta, &self.scalars);
-            for (term, &natural) in group.schema.terms.iter().zip(&self.bound.sizes[at]) {
-                for (row, magnitudes) in magnitudes.iter().enumerate().skip(term.first).take(term.rows) {
-                    let squares = magnitudes.iter().map(|x| x * x).sum::<f64>();
-                    let size = (squares / group.len() as f64).sqrt();
-                    let is_size = size.is_finite() && size > 1e-9 * natural && term.within.is_none();
-                    self.sizes[at][row] =
-                        if is_size { size / term.weight.sqrt() } else { natural / term.weight.sqrt() };
+            let facts = group.facts(&self.heads, &state.theta);
+            let found = facts.sizes(group.kernel.programs, group.schema, &self.scalars, &self.bound.sizes[at]);
+            for term in group.schema.terms {
+                for row in term.first..term.first + term.rows {
+                    self.sizes[at][row] = found[row] / term.weight.sqrt();
                 }
             }
         }

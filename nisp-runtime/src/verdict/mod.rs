@@ -19,6 +19,7 @@ mod told;
 use crate::facts::Answer;
 use crate::noise::Noise;
 use crate::problem::Bound;
+use crate::solve::vector::root_mean_square;
 
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq)]
@@ -108,9 +109,4 @@ pub(crate) fn patches(name: &'static str, values: &[f64], level: f64) -> Check {
 /// That equations and conditions without data leave nothing open; `open` says what they do.
 pub(crate) fn determined(name: &'static str, open: String) -> Check {
     Check::new("determined", ("", name), (1.0, 0.0), open)
-}
-
-fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
-    let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), x| (sum + x * x, count + 1.0));
-    if count == 0.0 { 0.0 } else { (sum / count).sqrt() }
 }

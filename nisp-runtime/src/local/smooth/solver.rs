@@ -19,8 +19,6 @@ const STRICTEST: f64 = 1e-5;
 const EASIEST: f64 = 1e-3;
 /// The same in the first step: a state that is far off finds its way along loose equations.
 pub(super) const LOOSE: f64 = 1e-2;
-/// What is left of an equation, beside the sum of the magnitudes of its terms, where these balance each other.
-const BALANCED: f64 = 0.5;
 /// Least roughness.
 const LEAST_ROUGHNESS: f64 = 1e-12;
 
@@ -108,27 +106,15 @@ impl<'a> Solver<'a> {
         found.into_iter().map(|(_, slope)| slope).collect()
     }
 
-    /// Sizes of equations as the sum of the magnitudes of their terms at a state; at least what units and data say where nothing
-    /// balances these terms yet, or ever, as in a quantity that vanishes.
+    /// Takes over the sizes of equations at a state.
     pub(super) fn size(&mut self, state: &State) {
         for at in 0..self.groups.len() {
             let group = &self.groups[at];
             let facts = group.facts(&self.heads, &state.theta);
-            let magnitudes = facts.magnitudes(group.kernel.programs, group.schema, &self.scalars);
-            let misfits = facts.plain_rows(group.kernel.programs, group.schema, &self.scalars);
-            for (term, &natural) in group.schema.terms.iter().zip(&self.bound.sizes[at]) {
+            let found = facts.sizes(group.kernel.programs, group.schema, &self.scalars, &self.bound.sizes[at]);
+            for term in group.schema.terms {
                 for row in term.first..term.first + term.rows {
-                    let [size, misfit] = [&magnitudes, &misfits].map(|rows| root_mean_square(&rows[row]));
-                    let is_size = size.is_finite() && term.within.is_none();
-                    let is_balanced = misfit < BALANCED * size;
-                    let size = if is_size && is_balanced {
-                        size
-                    } else if is_size {
-                        size.max(natural)
-                    } else {
-                        natural
-                    };
-                    self.sizes[at][row] = size / term.weight.sqrt();
+                    self.sizes[at][row] = found[row] / term.weight.sqrt();
                 }
             }
         }
@@ -148,8 +134,4 @@ impl<'a> Solver<'a> {
             }
         }
     }
-}
-
-fn root_mean_square(values: &[f64]) -> f64 {
-    (values.iter().map(|x| x * x).sum::<f64>() / values.len().max(1) as f64).sqrt()
 }
