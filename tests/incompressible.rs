@@ -123,7 +123,7 @@ fn errors(nu: f64) -> (f64, f64) {
     problem.set_group("volume", bound(inside, in_volume), loads).unwrap();
     problem.set_group("faces", bound(on, on_faces), moved).unwrap();
     let local = Local { cells: 4, coarser: 1, degree: 2, tests: 2, finer: 1, source_dimensions: 3, patches: None };
-    let budget = Some(Duration::from_secs(3600));
+    let budget = Some(Duration::from_secs(300));
     let settings =
         Settings { carrier: Carrier::Local(local), iterations: Some(30), budget, threads: 2, ..Settings::default() };
     let solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();

@@ -108,7 +108,7 @@ fn bind_with_outliers(problem: &mut Problem, f: f64, a: f64, (noise, every): (f6
 fn solve(problem: &Problem, patches: Option<Patches>, threads: usize) -> Solution {
     let local = Local { cells: 24, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 2, patches };
     // Steps end the run, not time.
-    let budget = Some(Duration::from_secs(3600));
+    let budget = Some(Duration::from_secs(300));
     let settings =
         Settings { carrier: Carrier::Local(local), iterations: Some(40), budget, threads, ..Settings::default() };
     recover(problem, &settings, &mut |_| Flow::Continue).unwrap()
@@ -465,7 +465,7 @@ fn pressed_session(noise: f64) -> Session {
     let settings = Settings {
         carrier: Carrier::Local(local),
         iterations: Some(40),
-        budget: Some(Duration::from_secs(3600)),
+        budget: Some(Duration::from_secs(300)),
         threads: 2,
         ..Settings::default()
     };

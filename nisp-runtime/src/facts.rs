@@ -177,7 +177,7 @@ pub(crate) struct Score {
     pub(crate) change: f64,
 }
 
-/// How much is told of a source: its root mean square over the domain, in standard deviations of each place.
+/// How much is told of a source: its root mean square in standard deviations of each place, over the time along which it is alike.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Told {
     pub(crate) head: usize,

@@ -12,7 +12,7 @@ fn data(name: &str) -> PathBuf {
 }
 
 fn answer(place: &Place, line: &str) -> Value {
-    let ran = place.run(&format!("{line} --budget 3600 --json"));
+    let ran = place.run(&format!("{line} --budget 300 --json"));
     assert_eq!(ran.code, Some(0), "{line}: {} {}", ran.stderr, ran.stdout);
     serde_json::from_str(&ran.stdout).unwrap()
 }

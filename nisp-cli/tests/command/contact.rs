@@ -206,7 +206,7 @@ fn nothing_presses_a_free_membrane() {
 fn local_functions_find_the_patch_and_the_modulus() {
     let place = Place::new();
     let answer = |line: &str| {
-        let ran = place.run(&format!("solve {line} --budget 3600 --json"));
+        let ran = place.run(&format!("solve {line} --budget 300 --json"));
         assert_eq!(ran.code, Some(0), "{}", ran.stderr);
         object(&ran.stdout)
     };

@@ -3,6 +3,7 @@
 use super::basis::HIGHEST_DEGREE;
 use super::group::Group;
 use super::heads::Heads;
+use super::prior::Course;
 use super::triangle::{Covariance, Row, Triangle};
 use crate::bounds::limits;
 use crate::carrier::{Kept, Outputs};
@@ -81,11 +82,12 @@ impl KeptSplines {
         (0..count).flat_map(|at| root.root(0, &[], &unit(at))).collect()
     }
 
-    /// How much is told of every source; nothing without deviations.
-    pub(super) fn told(&self, schema: &Scene) -> Vec<Told> {
+    /// How much is told of every source, in the mean over the time along which it is alike; nothing without deviations.
+    pub(super) fn told(&self, schema: &Scene, course: Course) -> Vec<Told> {
         let ends = self.heads.bases[0].breakpoints();
         let (first, length) = (ends[0], ends[ends.len() - 1] - ends[0]);
-        let places: Vec<f64> = (0..=TELLING).map(|at| first + length * at as f64 / TELLING as f64).collect();
+        let place = |at: usize| first + length * course.passed(at as f64 / TELLING as f64);
+        let places: Vec<f64> = (0..=TELLING).map(place).collect();
         let of = |head: usize| {
             let (values, deviations) = (self.evaluate(head, &places), self.deviations(head, &places)?);
             let squares: f64 =

@@ -41,7 +41,7 @@ use crate::solve::fault::Fault;
 use crate::solve::state;
 
 use kept::Spread;
-use prior::KINDS;
+use prior::{Course, KINDS};
 pub(crate) use triangle::Triangle;
 
 use course::Run;
@@ -192,10 +192,11 @@ pub(crate) fn solve(
     }
     let scalars = solver.scalars(&place.state.learned).to_vec();
     let misfits = solver.misfits(&place.state);
+    let course = place.best().map(|best| KINDS[best.kind].course);
     let State { theta, learned, step: iterations, .. } = place.state;
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let kept = KeptSplines { heads, theta, learned, spreads };
-    let told = kept.told(schema);
+    let told = course.map(|course| kept.told(schema, course)).unwrap_or_default();
     let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told, ahead };
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })
 }
@@ -204,7 +205,7 @@ pub(crate) fn solve(
 fn kinds(has_sources: bool, stretches: bool) -> Vec<usize> {
     match (has_sources, stretches) {
         (false, _) => vec![0],
-        (true, false) => (0..KINDS.len()).filter(|&kind| !KINDS[kind].stretched).collect(),
+        (true, false) => (0..KINDS.len()).filter(|&kind| KINDS[kind].course == Course::Steady).collect(),
         (true, true) => (0..KINDS.len()).collect(),
     }
 }

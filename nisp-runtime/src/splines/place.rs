@@ -37,17 +37,17 @@ impl Place {
         Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new() }
     }
 
-    /// Keeps the iterate, and turns to the next kind. A time that the evidence rules out is not tried with other orders.
+    /// Keeps the iterate, and turns to the next kind. A course that the evidence rules out is not tried with other orders.
     pub(super) fn next(&mut self, evidence: f64) {
         let kind = self.kinds.remove(0);
         self.tried.push(Tried { kind, evidence, state: self.state.clone() });
         let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
         let best = most(&mut self.tried.iter());
-        let along =
-            [false, true].map(|time| most(&mut self.tried.iter().filter(|tried| KINDS[tried.kind].stretched == time)));
-        // Of a time that has not been tried nothing is known.
+        let tried = &self.tried;
+        // Of a course that has not been tried nothing is known.
         self.kinds.retain(|&kind| {
-            let own = along[usize::from(KINDS[kind].stretched)];
+            let is_alike = |tried: &&Tried| KINDS[tried.kind].course == KINDS[kind].course;
+            let own = most(&mut tried.iter().filter(is_alike));
             own.is_nan() || own >= best - NEAR
         });
     }

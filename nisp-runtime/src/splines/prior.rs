@@ -1,8 +1,9 @@
 //! What is believed of a source before any measurement: how large it is, and how smooth along which time.
 //!
-//! A source is a Gaussian process: `|f|^2 / amplitude^2 + |d^order f / ds^order|^2 / roughness^2` is small, in the mean over a
-//! time `s` that is the record's own, or that passes faster at the record's start. What is set off with the record answers at
-//! first in a layer that is thin beside the rest, and slower and slower later on.
+//! A source is a Gaussian process: `|g|^2 / amplitude^2 + |d^order g / ds^order|^2 / roughness^2` is small, in the mean over a
+//! time `s`. Either `s` is the record's own time and `g` the source; or `s` passes faster at the record's start, and `g = f dt/ds`
+//! is what the source adds up to in it. What is set off with the record answers at first in a layer that is thin beside the rest,
+//! then slower and slower, and dies away as it does so.
 
 use super::basis::{Basis, Line};
 use super::triangle::{Row, Triangle};
@@ -13,21 +14,41 @@ const SECOND: [f64; 7] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
 /// Range of a stretched time over the width of the layer at its start.
 const LAYER: f64 = 100.0;
 
+/// What is alike all along a record.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Course {
+    /// The source, along the record's own time.
+    Steady,
+    /// What the source adds up to in a stretched time: it falls off as that time slows down.
+    Fading,
+}
+
+impl Course {
+    /// The share of the record's own time that has passed at a share of this course's.
+    pub(super) fn passed(self, share: f64) -> f64 {
+        match self {
+            Self::Steady => share,
+            Self::Fading => (share * LAYER.ln_1p()).exp_m1() / LAYER,
+        }
+    }
+}
+
 /// A kind of smoothness.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Smoothness {
     /// Order of the derivative that is kept small.
     pub(super) order: usize,
-    /// True along a stretched time.
-    pub(super) stretched: bool,
+    pub(super) course: Course,
 }
 
 /// Kinds of smoothness that may be the right one, the first tried first.
-pub(super) const KINDS: [Smoothness; 6] =
-    [of(2, false), of(2, true), of(1, false), of(3, false), of(1, true), of(3, true)];
+pub(super) const KINDS: [Smoothness; 6] = {
+    use Course::{Fading, Steady};
+    [of(2, Steady), of(2, Fading), of(1, Steady), of(3, Steady), of(1, Fading), of(3, Fading)]
+};
 
-const fn of(order: usize, stretched: bool) -> Smoothness {
-    Smoothness { order, stretched }
+const fn of(order: usize, course: Course) -> Smoothness {
+    Smoothness { order, course }
 }
 
 /// True if something may be set off with the records of a scene: they are over time.
@@ -46,6 +67,8 @@ pub(super) struct Prior {
     order: usize,
     /// The head's functions along the time that the prior goes by.
     along: Basis,
+    /// What the head's coefficients are multiplied by for what is alike all along.
+    evened: Vec<f64>,
 }
 
 /// What the rows of a prior are worth.
@@ -60,21 +83,24 @@ impl Prior {
     /// Of functions over cells. The coefficients of a function of time are, to the second order in the width of a cell, those of
     /// the same function along another time.
     pub(super) fn new(basis: &Basis, kind: Smoothness) -> Self {
-        let along = if kind.stretched {
-            let places = basis.breakpoints();
-            let (first, length) = (places[0], places[places.len() - 1] - places[0]);
-            let stretch = |at: &f64| first + length * (LAYER * (at - first) / length).ln_1p() / LAYER.ln_1p();
-            Basis::new(basis.degree, &places.iter().map(stretch).collect::<Vec<f64>>())
-        } else {
-            basis.clone()
-        };
-        Self { order: kind.order, along }
+        let places = basis.breakpoints();
+        let (first, length) = (places[0], places[places.len() - 1] - places[0]);
+        match kind.course {
+            Course::Steady => Self { order: kind.order, along: basis.clone(), evened: vec![1.0; basis.len()] },
+            Course::Fading => {
+                let stretch = |at: &f64| first + length * (LAYER * (at - first) / length).ln_1p() / LAYER.ln_1p();
+                let along = Basis::new(basis.degree, &places.iter().map(stretch).collect::<Vec<f64>>());
+                let even = |function: usize| pace((basis.centre(function) - first) / length).recip();
+                Self { order: kind.order, along, evened: (0..basis.len()).map(even).collect() }
+            }
+        }
     }
 
     /// Rows that keep the head smooth: for each the first of its coefficients, and what so many of them are multiplied by.
     pub(super) fn smooth(&self, roughness: f64) -> impl Iterator<Item = (usize, Line)> + '_ {
         self.along.differences(self.order).map(move |(first, mut factors, width)| {
-            factors.iter_mut().for_each(|factor| *factor *= width.sqrt() / roughness);
+            let evened = self.evened[first..].iter();
+            factors.iter_mut().zip(evened).for_each(|(factor, even)| *factor *= even * width.sqrt() / roughness);
             (first, factors)
         })
     }
@@ -86,7 +112,7 @@ impl Prior {
 
     /// Rows that keep the head small: what each of its coefficients is multiplied by.
     pub(super) fn small(&self, amplitude: f64) -> impl Iterator<Item = f64> + '_ {
-        self.along.differences(0).map(move |(_, _, width)| width.sqrt() / amplitude)
+        self.along.differences(0).map(move |(at, _, width)| self.evened[at] * width.sqrt() / amplitude)
     }
 
     /// What all rows are worth.

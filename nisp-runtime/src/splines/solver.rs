@@ -4,7 +4,7 @@ use super::cells;
 use super::group::Group;
 use super::heads::Heads;
 use super::iterate::{LOOSE, Phase, State};
-use super::prior::{Prior, Smoothness};
+use super::prior::{Course, Prior, Smoothness};
 use super::triangle::Triangle;
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
@@ -15,8 +15,8 @@ use crate::solve::fault::Fault;
 use crate::weighed::{Class, Guess, of_terms};
 
 /// How fields are smooth while only data are regressed.
-const REGRESS: Smoothness = Smoothness { order: 2, stretched: false };
-const LEVEL: Smoothness = Smoothness { order: 1, stretched: false };
+const REGRESS: Smoothness = Smoothness { order: 2, course: Course::Steady };
+const LEVEL: Smoothness = Smoothness { order: 1, course: Course::Steady };
 /// Cells of a source's shortest wave, before the first step says how smooth it is.
 const SHORTEST: f64 = 12.0;
 /// Least roughness, and least amplitude of a source beside its natural size.

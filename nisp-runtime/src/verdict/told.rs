@@ -4,9 +4,9 @@ use super::Check;
 use crate::facts::Told;
 use crate::problem::Bound;
 
-/// Standard deviations that a source is large at least, in the mean over the domain. Of simulated sources that are smaller one in
-/// four is farther off than none would be, or outside of its bars; of larger ones one in fifty.
-const LEAST: f64 = 1.5;
+/// Standard deviations that a source is large at least, in the mean over the time along which it is alike. Of simulated sources
+/// that are smaller one in five is farther off than none would be, or outside of its bars; of larger ones one in thirty.
+const LEAST: f64 = 1.2;
 
 /// One check for every source that its carrier tells of.
 pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
