@@ -88,7 +88,7 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
                 _ => by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF }),
             };
             let found: Option<Vec<f64>> = columns().map(noise_of).collect();
-            let deviation = found.map(|found| root_mean_square(found.into_iter()));
+            let deviation = found.map(root_mean_square);
             observations.extend(deviation.map(|deviation| ObservationNoise { group: at, term, deviation, spread }));
         }
     }

@@ -113,9 +113,9 @@ impl<'a> Solver<'a> {
             let facts = group.facts(&self.heads, &state.theta);
             let found = facts.sizes(group.kernel.programs, group.schema, &self.scalars, &self.bound.sizes[at]);
             for term in group.schema.terms {
-                for row in term.first..term.first + term.rows {
-                    self.sizes[at][row] = found[row] / term.weight.sqrt();
-                }
+                let rows = term.first..term.first + term.rows;
+                let sizes = self.sizes[at][rows.clone()].iter_mut().zip(&found[rows]);
+                sizes.for_each(|(size, found)| *size = found / term.weight.sqrt());
             }
         }
     }
