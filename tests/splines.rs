@@ -136,6 +136,19 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// A vessel that runs empty while `q` fills it, of whose level a logarithm is measured.
+    mod gauge {
+        units: off;
+        coordinates: t;
+        fields: u;
+        sources: q;
+        on inside { balance: d(u, t) == q - u; }
+        on samples { observe level: ln(u) ~ lnu; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
     /// A source whose sum is known.
     mod summed {
         units: off;
@@ -524,6 +537,22 @@ fn a_rate_is_found_where_the_load_is_known_at_points_only() {
     for (x, found) in at.iter().zip(&of(&solution.evaluate(&at), "k").values) {
         assert!((found - rate(*x)).abs() < 1e-4, "{found} at {x}");
     }
+}
+
+#[test]
+fn a_logarithm_is_measured_of_a_field_that_starts_at_zero() {
+    let (u, q) = (|t: f64| 3.0 + (0.5 * t).sin(), |t: f64| 3.0 + (0.5 * t).sin() + 0.5 * (0.5 * t).cos());
+    let times: Vec<f64> = (0..200).map(|i| 20.0 * f64::from(i) / 199.0).collect();
+    let mut normal = normals(3);
+    let logarithms = times.iter().map(|&t| u(t).ln() + 0.003 * normal()).collect();
+    let mut problem = Problem::new(scene::<gauge::recover::Scene>());
+    problem.set_group("inside", times.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", times.clone().into(), vec![logarithms]).unwrap();
+    let solution = solve(&problem, Carrier::Splines);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let found = of(&solution.evaluate(&times), "q").values.clone();
+    let off = found.iter().zip(&times).map(|(found, &t)| (found - q(t)).powi(2)).sum::<f64>() / times.len() as f64;
+    assert!(off.sqrt() < 0.03, "{off}");
 }
 
 #[test]

@@ -30,6 +30,7 @@ pub mod schema;
 pub mod simd;
 pub mod solve;
 mod splines;
+mod start;
 pub mod tanh;
 pub mod values;
 pub mod verdict;

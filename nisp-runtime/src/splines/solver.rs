@@ -12,6 +12,7 @@ use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
+use crate::start;
 use crate::weighed::{Class, Guess, of_terms};
 
 /// How fields are smooth while only data are regressed.
@@ -137,8 +138,9 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Where the solver starts: heads at their offsets, noise as differences of the data say.
-    pub(super) fn first(&self, noise: &Noise) -> State {
+    /// Where the solver starts: heads at their offsets, or at another level where equations and data have no value there, and noise
+    /// as differences of the data say.
+    pub(super) fn first(&mut self, noise: &Noise) -> State {
         let schema = self.bound.problem.scene().schema;
         let mut classes = of_terms(self.bound, noise);
         let open = |size: f64, least: f64| Class::open(size, Guess { size: 0.0, count: 0.0, least });
@@ -152,13 +154,15 @@ impl<'a> Solver<'a> {
         });
         classes.extend(rough);
         classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));
-        State {
-            theta: vec![0.0; self.heads.len()],
-            learned: vec![0.0; self.bound.learned.len()],
-            classes,
-            tolerance: LOOSE,
-            step: 0,
-        }
+        let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
+        let mut state = State { theta, learned, classes, tolerance: LOOSE, step: 0 };
+        let level = start::level(|level| {
+            state.theta.fill(level);
+            self.size(&state);
+            self.loss(&state, Phase::Solve).is_finite()
+        });
+        state.theta.fill(level);
+        state
     }
 
     /// Takes over learned scalars; returns their derivatives by their parameters.

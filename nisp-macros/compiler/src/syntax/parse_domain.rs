@@ -88,6 +88,7 @@ fn region(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Region>
         "polygon" => RegionKind::Polygon(listed(stream, context, parse_expression::parse)?),
         "ball" => RegionKind::Ball(listed(stream, context, parse_expression::parse)?),
         "cylinder" => cylinder(stream, context)?,
+        _ if holds_range(stream) => return Err(context.errors.report(start, catalogue::no_region())),
         _ => RegionKind::Box(vec![range(stream, context)?]),
     };
     Ok(Region { kind, place: start.to(stream.previous()) })
@@ -98,6 +99,15 @@ fn holds_text(stream: &Stream<'_>) -> bool {
     let inside = stream.after_next().take_group(Delimiter::Parenthesis);
     let literal = inside.and_then(|(mut inside, _)| inside.take_literal());
     literal.is_some_and(|literal| literal.to_string().starts_with('"'))
+}
+
+/// True if `..` stands between the parentheses behind a word, which then names a shape.
+fn holds_range(stream: &Stream<'_>) -> bool {
+    let Some((mut inside, _)) = stream.after_next().take_group(Delimiter::Parenthesis) else { return false };
+    while !inside.at_end() && !inside.at("..") {
+        inside.skip();
+    }
+    stream.peek_word().is_some() && !inside.at_end()
 }
 
 /// `polygon("FILE")` or `solid("FILE" [unit])`.
@@ -162,7 +172,10 @@ fn listed<T>(
 
 /// `A .. B`
 fn range(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<(Expr, Expr)> {
+    let start = stream.place();
     let low = parse_expression::parse(stream, context)?;
-    recover::operator(stream, context, "..", "the lower end")?;
+    if stream.take("..").is_none() {
+        return Err(context.errors.report(start.to(stream.previous()), catalogue::no_region()));
+    }
     Ok((low, parse_expression::parse(stream, context)?))
 }

@@ -10,6 +10,7 @@ use crate::local::normal::Normal;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
+use crate::start;
 use crate::weighed::{Class, Guess, of_terms};
 
 /// How far equations may be off in the end, beside the sum of the magnitudes of their terms: a hundredth of what noise is of the
@@ -72,20 +73,22 @@ impl<'a> Solver<'a> {
         self.bound.problem.scene().schema
     }
 
-    /// Where the solver starts: heads at their offsets, noise as neighbouring data say.
-    pub(super) fn first(&self, noise: &Noise) -> State {
+    /// Where the solver starts: heads at their offsets, or at another level where equations and data have no value there, and noise
+    /// as neighbouring data say.
+    pub(super) fn first(&mut self, noise: &Noise) -> State {
         let mut classes = of_terms(self.bound, noise);
         let guess = Guess { size: 0.0, count: 0.0, least: LEAST_ROUGHNESS };
         classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess)));
-        State {
-            theta: vec![0.0; self.heads.len()],
-            learned: vec![0.0; self.bound.learned.len()],
-            classes,
-            tolerance: LOOSE,
-            phase: Phase::Regress,
-            step: 0,
-            since: 0,
-        }
+        let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
+        let mut state = State { theta, learned, classes, tolerance: LOOSE, phase: Phase::Solve, step: 0, since: 0 };
+        let level = start::level(|level| {
+            state.theta.fill(level);
+            self.size(&state);
+            self.set_sigmas(&state);
+            self.loss(&state).is_finite()
+        });
+        state.theta.fill(level);
+        State { phase: Phase::Regress, ..state }
     }
 
     /// Believes from now on that sources change little, instead of bending little, and begins the search for how little anew.

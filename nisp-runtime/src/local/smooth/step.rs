@@ -95,7 +95,7 @@ impl Solver<'_> {
     }
 
     /// Half the sum of squares of all rows, robust ones by what they cost.
-    fn loss(&mut self, state: &State) -> f64 {
+    pub(super) fn loss(&mut self, state: &State) -> f64 {
         self.set_learned(&state.learned);
         let mut sum = 0.0;
         for (at, group) in self.groups.iter().enumerate() {
