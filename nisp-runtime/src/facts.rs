@@ -177,11 +177,14 @@ pub(crate) struct Score {
     pub(crate) change: f64,
 }
 
-/// How much is told of a source: its root mean square in standard deviations of each place, over the time along which it is alike.
+/// How much is told of a source.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Told {
     pub(crate) head: usize,
+    /// Its root mean square in standard deviations of each place, over the time along which it is alike.
     pub(crate) size: f64,
+    /// Deviations by which the true source is nearer to it than to none, in the mean square.
+    pub(crate) nearer: f64,
 }
 
 /// The middle of a cloud, and its radius: the root mean square of the distances from there.

@@ -66,33 +66,51 @@ pub(crate) fn is_exact(deviation: f64, spread: f64) -> bool {
 
 /// Estimates the noise of every observation.
 pub(crate) fn estimate(bound: &Bound) -> Noise {
-    let schema = bound.problem.scene().schema;
-    let inputs = schema.coordinates.len();
     let mut observations = Vec::new();
-    for (at, group) in schema.groups.iter().enumerate() {
-        let places = &bound.coordinates[at];
+    for (at, group) in bound.problem.scene().schema.groups.iter().enumerate() {
         for (term, _) in group.terms.iter().enumerate().filter(|(_, term)| !term.columns.is_empty()) {
-            let schema = &group.terms[term];
-            let places = &bound.measured(at, schema, places);
-            let measured = |&column: &usize| bound.measured(at, schema, &bound.columns[at][column]);
-            let columns: Vec<Vec<f64>> = schema.columns.iter().map(measured).collect();
-            if places.is_empty() {
-                continue;
-            }
-            let columns = || columns.iter().map(|column| &column[..]);
-            let spread = root_mean_square(columns().map(deviation));
-            let outliers = bound.losses[at][term].is_robust();
-            let noise_of = |values: &[f64]| match (inputs, outliers) {
-                (1, false) => by_differences(&in_order(places, values)),
-                (1, true) => by_few_differences(&in_order(places, values)),
-                _ => by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF }),
-            };
-            let found: Option<Vec<f64>> = columns().map(noise_of).collect();
-            let deviation = found.map(root_mean_square);
-            observations.extend(deviation.map(|deviation| ObservationNoise { group: at, term, deviation, spread }));
+            let columns = measured(bound, at, term);
+            let spread = root_mean_square(columns.iter().map(|column| deviation(column)));
+            let found = of_columns(bound, at, term, &columns);
+            observations.extend(found.map(|deviation| ObservationNoise { group: at, term, deviation, spread }));
         }
     }
     Noise { observations }
+}
+
+/// The noise of an observation as a share of each value, where it may be one: no value is zero or of another sign. Also the values.
+pub(crate) fn relative(bound: &Bound, group: usize, term: usize) -> Option<(f64, Vec<Vec<f64>>)> {
+    let columns = measured(bound, group, term);
+    let has_sign = |column: &Vec<f64>| column.iter().all(|y| *y > 0.0) || column.iter().all(|y| *y < 0.0);
+    let logarithms = |column: &Vec<f64>| column.iter().map(|y| y.abs().ln()).collect();
+    let shares: Vec<Vec<f64>> = columns.iter().filter(|column| has_sign(column)).map(logarithms).collect();
+    (shares.len() == columns.len())
+        .then(|| of_columns(bound, group, term, &shares))
+        .flatten()
+        .map(|share| (share, columns))
+}
+
+/// The columns that an observation compares with, where they were measured.
+fn measured(bound: &Bound, group: usize, term: usize) -> Vec<Vec<f64>> {
+    let schema = &bound.problem.scene().schema.groups[group].terms[term];
+    schema.columns.iter().map(|&column| bound.measured(group, schema, &bound.columns[group][column])).collect()
+}
+
+/// The noise of values at an observation's places; nothing where it cannot be judged.
+fn of_columns(bound: &Bound, group: usize, term: usize, columns: &[Vec<f64>]) -> Option<f64> {
+    let schema = bound.problem.scene().schema;
+    let inputs = schema.coordinates.len();
+    let places = &bound.measured(group, &schema.groups[group].terms[term], &bound.coordinates[group]);
+    if places.is_empty() {
+        return None;
+    }
+    let outliers = bound.losses[group][term].is_robust();
+    let noise_of = |values: &Vec<f64>| match (inputs, outliers) {
+        (1, false) => by_differences(&in_order(places, values)),
+        (1, true) => by_few_differences(&in_order(places, values)),
+        _ => by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF }),
+    };
+    columns.iter().map(noise_of).collect::<Option<Vec<f64>>>().map(root_mean_square)
 }
 
 /// Values in the order of their only coordinate.

@@ -3,14 +3,11 @@
 use super::basis::HIGHEST_DEGREE;
 use super::group::Group;
 use super::heads::Heads;
-use super::prior::Course;
 use super::triangle::{Covariance, Row, Triangle};
 use crate::bounds::limits;
 use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;
-use crate::facts::Told;
 use crate::problem::Frame;
-use crate::schema::Scene;
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
 
@@ -19,8 +16,6 @@ pub(crate) const CARRIER: &str = "splines";
 
 /// Places whose rows are held at a time.
 const PART: usize = 4096;
-/// Parts of the domain at whose ends a source is compared with its deviations.
-const TELLING: usize = 200;
 
 /// Heads as splines, and what is known of them.
 #[derive(Clone, Debug)]
@@ -80,21 +75,6 @@ impl KeptSplines {
         let count = self.learned.len();
         let unit = |at: usize| (0..count).map(|other| f64::from(at == other)).collect::<Vec<f64>>();
         (0..count).flat_map(|at| root.root(0, &[], &unit(at))).collect()
-    }
-
-    /// How much is told of every source, in the mean over the time along which it is alike; nothing without deviations.
-    pub(super) fn told(&self, schema: &Scene, course: Course) -> Vec<Told> {
-        let ends = self.heads.bases[0].breakpoints();
-        let (first, length) = (ends[0], ends[ends.len() - 1] - ends[0]);
-        let place = |at: usize| first + length * course.passed(at as f64 / TELLING as f64);
-        let places: Vec<f64> = (0..=TELLING).map(place).collect();
-        let of = |head: usize| {
-            let (values, deviations) = (self.evaluate(head, &places), self.deviations(head, &places)?);
-            let squares: f64 =
-                values.iter().zip(&deviations).map(|(value, deviation)| (value / deviation).powi(2)).sum();
-            Some(Told { head, size: (squares / places.len() as f64).sqrt() })
-        };
-        (0..schema.heads.len()).filter(|&head| schema.heads[head].source).filter_map(of).collect()
     }
 
     /// Parameters of the learned scalars, and their standard deviations.

@@ -23,6 +23,7 @@ mod resolved;
 mod rows;
 mod solver;
 mod step;
+mod told;
 mod triangle;
 
 use std::time::Instant;
@@ -48,6 +49,7 @@ use course::Run;
 use iterate::State;
 use place::{Place, Tried};
 use solver::Solver;
+use told::Along;
 
 /// Coefficients up to which it is looked for what is open.
 const MANY: usize = 20_000;
@@ -162,12 +164,15 @@ pub(crate) fn solve(
     let mut roots = Vec::new();
     // Only a minimum has error bars.
     let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
+    let along = Along::sources(&solver.heads, schema, &place.state.theta);
+    let mut variances = Vec::new();
     if run.has_time_for(likely.len()) {
         for (share, Tried { kind, state, .. }) in likely {
             solver.set_smoothness(KINDS[kind]);
-            match solver.doubted(state)? {
-                Some((State { theta, learned, .. }, found)) => {
-                    spreads.push(Spread { share, theta, learned, covariance: found.covariance })
+            match solver.doubted(state, &along)? {
+                Some((State { theta, learned, .. }, found, own)) => {
+                    spreads.push(Spread { share, theta, learned, covariance: found.covariance });
+                    variances.push(own);
                 }
                 None => status = Status::NotConverged,
             }
@@ -196,7 +201,7 @@ pub(crate) fn solve(
     let State { theta, learned, step: iterations, .. } = place.state;
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let kept = KeptSplines { heads, theta, learned, spreads };
-    let told = course.map(|course| kept.told(schema, course)).unwrap_or_default();
+    let told = course.map(|course| told::told(&kept, course, &along, &variances)).unwrap_or_default();
     let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told, ahead };
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })
 }

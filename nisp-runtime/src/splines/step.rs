@@ -3,6 +3,7 @@
 use super::iterate::{LOOSE, Phase, State};
 use super::rows::Counted;
 use super::solver::Solver;
+use super::told::Along;
 use super::triangle::Covariance;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
@@ -38,6 +39,9 @@ pub(super) struct Found {
     /// By head, how many numbers rows other than its prior say of a source.
     told: Vec<f64>,
 }
+
+/// An iterate, the step about it, and variances.
+type Doubted = (State, Found, Vec<f64>);
 
 impl Solver<'_> {
     /// One step.
@@ -127,9 +131,11 @@ impl Solver<'_> {
 
     /// What error bars are taken from, and the step about it: sources as rough as a wave over the domain at least, and where
     /// hardly anything is told of them, as large as the evidence does not speak against. Where the evidence takes a source for
-    /// nothing, or for a polynomial, error bars should not.
-    pub(super) fn doubted(&mut self, mut state: State) -> Result<Option<(State, Found)>, Fault> {
+    /// nothing, or for a polynomial, error bars should not. Third, the variances along sources.
+    pub(super) fn doubted(&mut self, mut state: State, along: &[Along]) -> Result<Option<Doubted>, Fault> {
+        let variances = |solver: &Self| along.iter().map(|along| along.variance(&solver.triangle)).collect();
         let Some(mut found) = self.step(&state, Phase::Solve)? else { return Ok(None) };
+        let mut spread = variances(self);
         let (least, natural) = (found.evidence - DOUBT, self.length.sqrt());
         for head in 0..self.roughness.len() {
             let Some(amplitude) = self.amplitude[head] else { continue };
@@ -144,12 +150,12 @@ impl Solver<'_> {
                     break;
                 }
                 match self.step(&doubted, Phase::Solve)? {
-                    Some(next) if next.evidence > least => (state, found) = (doubted, next),
+                    Some(next) if next.evidence > least => (state, found, spread) = (doubted, next, variances(self)),
                     _ => break,
                 }
             }
         }
-        Ok(Some((state, found)))
+        Ok(Some((state, found, spread)))
     }
 
     /// What priors use up, and what they are worth; returns the logarithm of the determinant of their rows.

@@ -182,6 +182,11 @@ impl Triangle {
         x.iter().all(|x| x.is_finite()).then_some((x, shared))
     }
 
+    /// Unknowns that every row may have.
+    pub(super) fn shared(&self) -> usize {
+        self.shared
+    }
+
     /// `R^-T v` of a row `v` of the unknowns: products of two such are covariances of what the rows say.
     pub(super) fn root(&self, first: usize, slopes: &[f64], shared: &[f64]) -> Vec<f64> {
         let mut found = vec![0.0; self.len + self.shared];

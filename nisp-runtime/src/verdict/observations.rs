@@ -1,7 +1,7 @@
 //! What an answer leaves of observations: it should be noise, no larger than the data's own, without a pattern.
 
 use super::{Check, outliers, root_mean_square, slow, smooth};
-use crate::noise::{Noise, ObservationNoise, in_order};
+use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
 use crate::rhythm::rhythm;
 use crate::schema::TermKind;
@@ -76,6 +76,9 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
             } else {
                 0.0
             };
+            // Instruments may be off by a share of what they show.
+            let shares = (value > limit && !robust && !exact).then(|| share(bound, group, at, own)).flatten();
+            let value = shares.map_or(value, |share| value.min(share));
             checks.push(Check::new("misfit", place, (value, limit), said));
         }
         let record = bound.problem.scene().schema.coordinates.len() == 1;
@@ -129,6 +132,14 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
         }
     }
     checks
+}
+
+/// Misfit of values as a share of each, over the noise as a share of each; nothing where that cannot be told.
+fn share(bound: &Bound, group: usize, term: usize, rows: &[Vec<f64>]) -> Option<f64> {
+    let (noise, columns) = relative(bound, group, term)?;
+    let shares =
+        rows.iter().zip(&columns).flat_map(|(row, column)| row.iter().zip(column).map(|(misfit, y)| misfit / y));
+    (rows.len() == columns.len() && noise > 0.0).then(|| root_mean_square(shares) / noise)
 }
 
 /// Values of a measured column that stand alone.

@@ -4,21 +4,23 @@ use super::Check;
 use crate::facts::Told;
 use crate::problem::Bound;
 
-/// Standard deviations that a source is large at least, in the mean over the time along which it is alike. Of simulated sources
-/// that are smaller one in five is farther off than none would be, or outside of its bars; of larger ones one in thirty.
+/// Standard deviations that a source is large at least, in the mean over the time along which it is alike; or by which it is
+/// nearer to the truth than none: a source that is large in few places only. Of simulated sources that are smaller one in five is
+/// farther off than none would be, or outside of its bars; of larger ones one in thirty.
 const LEAST: f64 = 1.2;
+const NEARER: f64 = 3.0;
 
 /// One check for every source that its carrier tells of.
 pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
     let heads = bound.problem.scene().schema.heads;
     let check = |told: &Told| {
         let name = heads[told.head].name;
+        let size = told.size.max(told.nearer * LEAST / NEARER);
         let said = format!(
-            "`{name}` is {:.2} times as large as its standard deviation, and is told from none from {LEAST} on; below that, \
-             measure more often, more exactly, or for longer",
-            told.size
+            "`{name}` is {size:.2} times as large as its standard deviation, and is told from none from {LEAST} on; below that, \
+             measure more often, more exactly, or for longer"
         );
-        Check::new("told", ("", name), (told.size.recip(), 1.0 / LEAST), said)
+        Check::new("told", ("", name), (size.recip(), 1.0 / LEAST), said)
     };
     told.iter().map(check).collect()
 }

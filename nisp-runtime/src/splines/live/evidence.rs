@@ -64,7 +64,7 @@ impl Stretch {
         let Tried { kind, state, .. } = best.ok_or(LiveError::Open)?;
         solver.set_smoothness(KINDS[kind]);
         let classes = state.classes.clone();
-        let (state, found) = solver.doubted(state)?.ok_or(LiveError::Open)?;
+        let (state, found, _) = solver.doubted(state, &[])?.ok_or(LiveError::Open)?;
         let covariance = found.covariance;
         let weights = Weights {
             kind,
