@@ -1,16 +1,11 @@
 //! Which header answers to a name. For `q` in metres: `q`, `q [m]`, `q (m)` or `q_m`; anything longer must be asked for by its
 //! exact header, because guessing between `q_m_sigma0` and `q_m_sigma0.01` would be a quiet wrong answer.
 
-use super::units::factor;
+use nisp_units::{factor, is_unit};
+
 use super::{Column, Kind, Table};
 use crate::DataError;
 use crate::names::likeness;
-
-/// Unit symbols that may follow a name after an underscore (`dq_m_s`, `N_N_per_m`).
-const SYMBOLS: [&str; 34] = [
-    "m", "mm", "cm", "um", "km", "s", "ms", "us", "min", "h", "kg", "g", "N", "kN", "mN", "Pa", "kPa", "MPa", "GPa",
-    "V", "mV", "A", "mA", "K", "C", "rad", "deg", "Hz", "J", "W", "Nm", "mol", "per", "pct",
-];
 
 /// Headers less like a name are not meant by it, unless they begin with it.
 const ALIKE: f64 = 0.85;
@@ -66,8 +61,7 @@ impl Table {
         if let Some(error) = self.other_unit(&column.header, name, unit).filter(|_| column.header != name) {
             return Err(error);
         }
-        let own = unit_of(&column.header).filter(|_| column.header != name);
-        let size = own.and_then(|own| factor(own, unit)).unwrap_or(1.0);
+        let size = size(&column.header, unit).filter(|_| column.header != name).unwrap_or(1.0);
         Ok(values.iter().map(|value| value * size).collect())
     }
 
@@ -236,22 +230,25 @@ fn answers(header: &str, name: &str, unit: Option<&str>) -> bool {
     let Some(suffix) = rest.strip_prefix('_') else { return false };
     match unit {
         Some(unit) => !is_plain(unit) && fits(suffix, unit),
-        None => is_unit_suffix(suffix),
+        None => is_unit(suffix),
     }
 }
 
 fn fits(own: &str, unit: &str) -> bool {
-    is_plain(own) && is_plain(unit) || normal(own) == normal(unit) || factor(own, unit).is_some()
+    is_plain(own) && is_plain(unit) || own.trim() == unit.trim() || factor(own, unit).is_some()
 }
 
-/// The unit that a header ends with: `t [ms]`, `t (ms)`, `t_ms`.
-fn unit_of(header: &str) -> Option<&str> {
-    in_brackets(header).or_else(|| header.rsplit_once('_').map(|(_, suffix)| suffix))
+/// How many of a unit one of that is which a header ends with: `t [ms]`, `t (ms)`, `t_ms`.
+fn size(header: &str, unit: &str) -> Option<f64> {
+    match in_brackets(header) {
+        Some(own) => factor(own, unit),
+        None => header.match_indices('_').find_map(|(at, _)| factor(&header[at + 1..], unit)),
+    }
 }
 
 /// The unit that a header says it is in: anything in square brackets, and what is a unit in round ones.
 fn claimed(header: &str) -> Option<&str> {
-    in_brackets(header).filter(|inner| header.ends_with(']') || is_unit_suffix(inner))
+    in_brackets(header).filter(|inner| header.ends_with(']') || is_unit(inner))
 }
 
 fn in_brackets(header: &str) -> Option<&str> {
@@ -267,17 +264,4 @@ fn bracketed(text: &str) -> Option<&str> {
 
 fn is_plain(unit: &str) -> bool {
     matches!(unit.trim(), "" | "1" | "-")
-}
-
-/// One spelling for `m/s^2`, `m s^-2`, `m_s2` and `m_per_s2`: the symbols in order, with their powers' sizes.
-fn normal(unit: &str) -> Vec<String> {
-    unit.replace(['^', '-', '(', ')'], "")
-        .split(['/', '*', '_', '·', ' '])
-        .filter(|part| !matches!(*part, "" | "1" | "per"))
-        .map(str::to_string)
-        .collect()
-}
-
-fn is_unit_suffix(suffix: &str) -> bool {
-    suffix.split('_').all(|part| SYMBOLS.contains(&part.trim_end_matches(|digit: char| digit.is_ascii_digit())))
 }

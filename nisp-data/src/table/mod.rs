@@ -3,7 +3,6 @@
 mod lookup;
 mod read;
 mod rows;
-mod units;
 mod write;
 
 pub use rows::Rows;

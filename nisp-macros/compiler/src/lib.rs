@@ -20,10 +20,11 @@ pub mod loss;
 pub mod model;
 pub mod plan;
 pub mod program;
-pub mod rational;
 pub mod symbolic;
 pub mod syntax;
-pub mod unit;
+
+pub use nisp_units as unit;
+pub use nisp_units::rational;
 
 mod beliefs;
 mod outputs;

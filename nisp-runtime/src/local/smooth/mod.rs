@@ -4,6 +4,7 @@
 //! their points, to a tolerance that falls from step to step; all unknowns are found together by Gauss-Newton steps on sparse
 //! normal equations. The size of the noise, and how much every source bends, are those with the largest evidence (MacKay 1992).
 
+mod between;
 mod bounded;
 mod judged;
 mod meshes;
@@ -25,7 +26,7 @@ use crate::schema::{self, TermKind};
 use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
 use crate::solve::state::State as Saved;
 
-use solver::Solver;
+use solver::{Solver, groups};
 use state::{Phase, State};
 
 /// Name of the method in saved states.
@@ -66,7 +67,8 @@ pub(crate) fn solve(
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
 ) -> Result<LocalSolution, LocalError> {
     let start = Instant::now();
-    let mut solver = Solver::new(bound, noise)?;
+    let filled = between::filled(bound);
+    let mut solver = Solver::new(filled.as_ref().unwrap_or(bound), noise)?;
     let mut state = solver.first(noise);
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
@@ -102,8 +104,6 @@ pub(crate) fn solve(
             break Status::NotConverged;
         }
     };
-    let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
-    answer.ahead = (status != Status::Converged).then_some(ahead);
     let mut warnings = Vec::new();
     let wants_bars = status == Status::Converged && noise.is_there(bound.problem.scene().schema);
     let deviations = if !wants_bars {
@@ -115,6 +115,11 @@ pub(crate) fn solve(
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
         Deviations::default()
     };
+    if filled.is_some() {
+        solver.groups = groups(bound, &solver.heads);
+    }
+    let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
+    answer.ahead = (status != Status::Converged).then_some(ahead);
     if status == Status::NotConverged {
         let message = "the data and the equations leave some of the unknowns open: give more conditions or data".into();
         warnings.push(Warning { kind: WarningKind::Undetermined, message });

@@ -41,20 +41,24 @@ pub(super) struct Solver<'a> {
     pub(super) tolerance: f64,
 }
 
+/// The groups of a problem at its points.
+pub(super) fn groups(bound: &Bound, heads: &Heads) -> Vec<Group> {
+    let schema = bound.problem.scene().schema;
+    let group = |(at, kernel)| {
+        let columns = bound.filled_columns(at);
+        let points = (bound.coordinates[at].as_slice(), columns.as_slice());
+        Group::new((&schema.groups[at], &bound.losses[at]), kernel, heads, points, Vec::new(), (&heads.lattices[0], 0))
+    };
+    bound.problem.scene().double().into_iter().take(schema.groups.len()).enumerate().map(group).collect()
+}
+
 impl<'a> Solver<'a> {
     /// The scene must not be refused.
     pub(super) fn new(bound: &'a Bound, noise: &Noise) -> Result<Self, LocalError> {
         let schema = bound.problem.scene().schema;
         let (lattices, cells) = lattices(bound);
-        let base = lattices[0].clone();
         let heads = Heads::new(bound, lattices);
-        let kernels = bound.problem.scene().double();
-        let group = |(at, kernel)| {
-            let columns = bound.filled_columns(at);
-            let points = (bound.coordinates[at].as_slice(), columns.as_slice());
-            Group::new((&schema.groups[at], &bound.losses[at]), kernel, &heads, points, Vec::new(), (&base, 0))
-        };
-        let groups: Vec<Group> = kernels.into_iter().take(schema.groups.len()).enumerate().map(group).collect();
+        let groups = groups(bound, &heads);
         let mut numbers = 0..;
         let mut next = || numbers.next().unwrap_or(0);
         let classes = schema.groups.iter().map(|g| g.terms.iter().map(|_| next()).collect()).collect();

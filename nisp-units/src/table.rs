@@ -5,11 +5,13 @@ use crate::rational::ratio;
 
 /// A unit symbol's meaning: `coefficient * 10^exponent` of the SI unit of a dimension.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Symbol {
-    pub(crate) dimension: Dimension,
+pub struct Symbol {
+    /// Its dimension.
+    pub dimension: Dimension,
     /// Kept apart from the power of ten, so that `mg` and `uPa` come out correctly rounded.
-    pub(crate) coefficient: f64,
-    pub(crate) exponent: i32,
+    pub coefficient: f64,
+    /// The power of ten.
+    pub exponent: i32,
 }
 
 struct Row {
@@ -89,7 +91,7 @@ const PREFIXES: &[(&str, i32)] = &[
 ];
 
 /// What a unit symbol means: the symbol as it stands first (`min`, `Pa`), then prefix and symbol (`mm`).
-pub(crate) fn look_up(text: &str) -> Option<Symbol> {
+pub fn look_up(text: &str) -> Option<Symbol> {
     if let Some(row) = UNITS.iter().find(|row| row.symbol == text) {
         return Some(scaled(row, 0));
     }
@@ -101,7 +103,7 @@ pub(crate) fn look_up(text: &str) -> Option<Symbol> {
 }
 
 /// All symbols without prefixes, for suggestions.
-pub(crate) fn known_symbols() -> impl Iterator<Item = &'static str> {
+pub fn known_symbols() -> impl Iterator<Item = &'static str> {
     UNITS.iter().map(|row| row.symbol)
 }
 

@@ -1,4 +1,4 @@
-//! Exact rational numbers, in which all of the compiler's linear algebra is done.
+//! Exact rational numbers, in which exponents of units are kept, and all of the compiler's linear algebra is done.
 
 /// An exact rational number.
 pub type Rational = num_rational::Ratio<i128>;

@@ -1,13 +1,17 @@
-//! Physical units: exact rational exponents over the SI base units, and the factor to SI.
+//! Physical units: exact rational exponents over the SI base units, and the factor to SI. What equations, headers of tables and
+//! results know of units they know from here.
 
 use num_traits::{One, Zero};
 
 use crate::rational::{Rational, ratio};
 
+mod header;
+pub mod rational;
 mod show;
 mod table;
 
-pub(crate) use table::{known_symbols, look_up};
+pub use header::{factor, is_unit};
+pub use table::{Symbol, known_symbols, look_up};
 
 /// Number of SI base units: metre, kilogram, second, ampere, kelvin, mole, candela.
 pub const BASES: usize = 7;
@@ -42,7 +46,7 @@ impl Dimension {
     }
 
     /// One of the SI base dimensions.
-    pub(crate) fn base(index: usize) -> Self {
+    pub fn base(index: usize) -> Self {
         let mut exponents = [Rational::zero(); BASES];
         exponents[index] = Rational::one();
         Self(exponents)

@@ -1,0 +1,141 @@
+//! Units as headers of tables have them: `m/s^2`, `m s^-2`, `m_s2`, `N_per_m`, `mg/(l s)`.
+
+use num_traits::Signed;
+
+use crate::Dimension;
+use crate::rational::{Rational, ratio};
+use crate::table::{Symbol, look_up};
+
+/// More parts than this are no unit.
+const MOST_PARTS: usize = 8;
+
+/// A unit as a header has it: symbols with their exponents.
+struct Written {
+    parts: Vec<(Symbol, Rational)>,
+    /// True where signs are not written: `m_s2` is `m/s^2`, and `N_m` is a torque or a stiffness.
+    is_loose: bool,
+}
+
+/// How many units `to` one unit `from` is, both as headers have them; nothing where one of them is no unit, or where they are of
+/// different dimensions. A plain number is written `` or `1`.
+///
+/// Where underscores part symbols, all but the first have the signs with which the dimensions agree.
+pub fn factor(from: &str, to: &str) -> Option<f64> {
+    let (from, to) = (Written::read(from)?, Written::read(to)?);
+    to.all().find_map(|to| {
+        let from = from.all().find(|from| from.dimension == to.dimension)?;
+        let power: f64 = format!("1e{}", from.exponent - to.exponent).parse().ok()?;
+        Some(from.coefficient / to.coefficient * power)
+    })
+}
+
+/// True if a text is a unit, as headers have them.
+pub fn is_unit(text: &str) -> bool {
+    Written::read(text).is_some_and(|written| !written.parts.is_empty())
+}
+
+impl Written {
+    fn read(text: &str) -> Option<Self> {
+        let mut parts = Vec::new();
+        // The sign of what follows: of one symbol behind `/`, of all between parentheses, of all behind `per`.
+        let (mut next, mut within, mut after) = (1, 1, 1);
+        for part in split(text) {
+            match part {
+                "" | " " | "*" | "·" | "_" | "1" => {}
+                "/" => next = -1,
+                "(" => (within, next) = (next, 1),
+                ")" => within = 1,
+                "per" => after = -1,
+                _ => {
+                    let (symbol, exponent) = power(part)?;
+                    parts.push((symbol, exponent * ratio(next * within * after, 1)));
+                    next = 1;
+                }
+            }
+        }
+        let is_loose = text.contains('_') && !text.contains(['/', '^', '-']) && !text.contains("per");
+        (parts.len() <= MOST_PARTS).then_some(Self { parts, is_loose })
+    }
+
+    /// All units that may be meant, those with every symbol but the first below the line first.
+    fn all(&self) -> impl Iterator<Item = Symbol> + '_ {
+        let free = if self.is_loose { self.parts.len().saturating_sub(1) } else { 0 };
+        (0..1_u32 << free).filter_map(move |above| {
+            let mut unit = Symbol { dimension: Dimension::none(), coefficient: 1.0, exponent: 0 };
+            for (at, (symbol, exponent)) in self.parts.iter().enumerate() {
+                let is_below = self.is_loose && at > 0 && above & 1 << (at - 1) == 0;
+                let exponent = if is_below { -*exponent } else { *exponent };
+                unit.dimension = unit.dimension.times(&symbol.dimension.power(exponent)?)?;
+                let times = i32::try_from(exponent.to_integer()).ok()?;
+                unit.coefficient *= symbol.coefficient.powi(times);
+                unit.exponent += symbol.exponent * times;
+            }
+            Some(unit)
+        })
+    }
+}
+
+/// A text at its separators, which are parts too.
+fn split(text: &str) -> impl Iterator<Item = &str> {
+    text.split_inclusive(['/', '*', '·', ' ', '_', '(', ')']).flat_map(|part| {
+        let end = part
+            .char_indices()
+            .next_back()
+            .filter(|(_, last)| "/*· _()".contains(*last))
+            .map_or(part.len(), |(at, _)| at);
+        [&part[..end], &part[end..]]
+    })
+}
+
+/// A symbol with a whole exponent: `s`, `s2`, `s^2`, `s^-2`, `s-2`, `s²`.
+fn power(part: &str) -> Option<(Symbol, Rational)> {
+    let symbol = part.trim_end_matches(|c: char| c.is_ascii_digit() || "^-²³".contains(c));
+    let exponent = match part[symbol.len()..].trim_start_matches('^') {
+        "" => 1,
+        "²" => 2,
+        "³" => 3,
+        digits => digits.parse().ok()?,
+    };
+    let exponent = ratio(exponent, 1);
+    (exponent.abs() < ratio(100, 1)).then_some(())?;
+    Some((look_up(symbol)?, exponent))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn units_of_one_dimension_convert_and_others_do_not() {
+        let found = |from, to| factor(from, to).map(|found| (found * 1e12).round() / 1e12);
+        assert_eq!(found("ms", "s"), Some(1e-3));
+        assert_eq!(found("m", "mm"), Some(1e3));
+        assert_eq!(found("V", "s"), None);
+        assert_eq!(found("furlong", "m"), None);
+        assert_eq!(found("mm/s", "m/s"), Some(1e-3));
+        assert_eq!(found("km/h", "m/s"), Some(0.277_777_777_778));
+        assert_eq!(found("mg/l", "kg/m^3"), Some(1e-3));
+        assert_eq!(found("J/(kg K)", "kJ kg^-1 K^-1"), Some(1e-3));
+        assert_eq!(found("N*m", "J"), Some(1.0));
+        assert_eq!(found("%", "1"), Some(0.01));
+        assert_eq!(found("1/min", "Hz"), Some(0.016_666_666_667));
+    }
+
+    #[test]
+    fn underscores_part_symbols_whose_signs_are_those_of_the_other_unit() {
+        assert_eq!(factor("mm_s2", "m/s^2"), Some(1e-3));
+        assert_eq!(factor("N_m", "N m"), Some(1.0));
+        assert_eq!(factor("N_m", "N/m"), Some(1.0));
+        assert_eq!(factor("mN_per_m", "N/m"), Some(1e-3));
+        assert_eq!(factor("W_m_K", "W/(m K)"), Some(1.0));
+        assert_eq!(factor("m_s", "m^2"), None);
+    }
+
+    #[test]
+    fn words_are_no_units() {
+        assert!(is_unit("m_s2") && is_unit("W/(m^2 K)"));
+        for text in ["", "1", "in", "obs", "m_obs", "sigma0.01", "s^x", "m^1000", "left"] {
+            assert!(!is_unit(text), "{text}");
+        }
+    }
+}
