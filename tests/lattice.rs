@@ -54,6 +54,19 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// A cloud of dye that a stream of unknown speed carries.
+    pub mod stream {
+        units: off;
+        coordinates: x, t;
+        fields: u;
+        parameters: c = 1;
+        on inside { carried: d(u, t) + c * d(u, x) == 0; }
+        on samples { observe u; }
+        scene identify { learn c; }
+    }
+}
+
 /// This file, whose equations are read here once more.
 const TEXT: &str = include_str!("lattice.rs");
 
@@ -171,6 +184,20 @@ fn an_answer_that_steps_still_change_is_not_called_right() {
         let off = (solution.learned()[0].value / 0.5 - 1.0).abs();
         assert!(!solution.verdict.passed() || off < 0.01, "{iterations} steps: {off} off");
     }
+}
+
+#[test]
+fn an_equation_is_asked_between_points_that_are_few() {
+    // Rows of points that are close along `x` and far apart along `t`.
+    let (points, places) = (grid([25, 12], [2.0, 1.0], true), grid([20, 8], [2.0, 1.0], true));
+    let exact = pairs(&places).map(|[x, t]| (-((x - 0.4 * t - 0.7) / 0.3).powi(2)).exp()).collect();
+    let mut problem = Problem::new(scene::<stream::identify::Scene>());
+    problem.set_group("inside", points.into(), vec![]).unwrap();
+    problem.set_group("samples", places.into(), vec![exact]).unwrap();
+    let mut solution = solve(&problem);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
+    let off = solution.learned()[0].value / 0.4 - 1.0;
+    assert!(off.abs() < 1e-4, "{off}");
 }
 
 #[test]

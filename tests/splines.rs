@@ -149,6 +149,19 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// What decays at an unknown rate.
+    mod decay {
+        units: off;
+        coordinates: t;
+        fields: u;
+        parameters: k = 1;
+        on inside { decay: d(u, t) == -k * u; }
+        on samples { observe u; }
+        scene rate { learn k; }
+    }
+}
+
+nisp::pde! {
     /// A source whose sum is known.
     mod summed {
         units: off;
@@ -537,6 +550,25 @@ fn a_rate_is_found_where_the_load_is_known_at_points_only() {
     for (x, found) in at.iter().zip(&of(&solution.evaluate(&at), "k").values) {
         assert!((found - rate(*x)).abs() < 1e-4, "{found} at {x}");
     }
+}
+
+#[test]
+fn noise_that_is_a_share_of_every_value_is_no_misfit() {
+    let times: Vec<f64> = (0..200).map(|i| 10.0 * f64::from(i) / 199.0).collect();
+    let solved = |truth: &dyn Fn(f64) -> f64| {
+        let mut normal = normals(5);
+        let values = times.iter().map(|&t| truth(t) * (1.0 + 0.05 * normal())).collect();
+        let mut problem = Problem::new(scene::<decay::rate::Scene>());
+        problem.set_group("inside", times.clone().into(), vec![]).unwrap();
+        problem.set_group("samples", times.clone().into(), vec![values]).unwrap();
+        solve(&problem, Carrier::Splines)
+    };
+    let mut right = solved(&|t| 100.0 * (-0.4 * t).exp());
+    assert_eq!(right.status, Status::Converged, "{:?}", right.verdict);
+    let rate = &right.learned()[0];
+    assert!((rate.value - 0.4).abs() < 4.0 * rate.deviation.unwrap(), "{rate:?}");
+    // Another law with the same noise.
+    assert_eq!(solved(&|t| 100.0 / (1.0 + 0.8 * t)).status, Status::Inconsistent);
 }
 
 #[test]

@@ -4,6 +4,7 @@
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
+use crate::local::meshes::axes;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
@@ -11,13 +12,17 @@ use crate::schema::{self, TermKind};
 const ENOUGH: usize = 2000;
 
 /// The problem with equations asked between their points as well; nothing where these are enough. Where an equation reads what is
-/// known at its points alone it is left as it is.
+/// known at its points alone it is left as it is, and where a source of all coordinates may be anything between them.
 pub(super) fn filled(bound: &Bound) -> Option<Bound> {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
     let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
     let is_free = |group: &schema::Group| group.columns.is_empty() && group.order > 0 && is_equation(group);
     let count = |at: usize| bound.coordinates[at].len() / inputs;
+    let is_of_all = |head: usize| schema.heads[head].source && axes(schema, head).len() == inputs;
+    if (0..schema.heads.len()).any(is_of_all) {
+        return None;
+    }
     let at = (0..schema.groups.len()).filter(|&at| is_free(&schema.groups[at])).max_by_key(|&at| count(at))?;
     if count(at) >= ENOUGH || count(at) < 2 {
         return None;
@@ -69,5 +74,5 @@ fn between(points: &[f64], inputs: usize, more: usize) -> Vec<f64> {
         };
         (0..inputs).map(of).collect::<Vec<f64>>()
     };
-    (0..more).flat_map(|number| place(number)).collect()
+    (0..more).flat_map(&mut place).collect()
 }
