@@ -12,7 +12,7 @@ use nisp_data::cloud::LengthUnit;
 
 use crate::config;
 use crate::help::{EVAL_SEE_HELP, EVAL_TEACH, SEE_HELP, TEACH};
-use crate::options::{count, one_line, optimizers, pair, precisions, seconds, seed, show, size, value};
+use crate::options::{activations, count, one_line, optimizers, pair, precisions, seconds, seed, show, size, value};
 use crate::program::Program;
 use stream::StreamOptions;
 
@@ -185,7 +185,7 @@ pub(crate) struct Options {
     /// Element type of the network; auto is f32 as long as that helps, with methods that work in it, and then f64.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = precisions(), help_heading = METHOD)]
     pub(crate) precision: String,
-    /// What carries state and source; auto looks at the scene and the data. --optimizer means a network.
+    /// What carries state and source; auto looks at the scene and the data. --optimizer and --activation mean a network.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = ["auto", "network", "splines"],
           help_heading = METHOD)]
     pub(crate) carrier: String,
@@ -200,6 +200,9 @@ pub(crate) struct Options {
     #[arg(long, value_name = "N", default_value_t = 2, value_parser = size, allow_negative_numbers = true,
           help_heading = METHOD)]
     pub(crate) layers: usize,
+    /// What the units of a network do: tanh, or sine for fields that oscillate [default: tanh].
+    #[arg(long, value_name = "NAME", value_parser = activations(), help_heading = METHOD)]
+    pub(crate) activation: Option<String>,
     /// Train a network on a third of the equations' points, those where they are most off, drawn anew every N steps.
     #[arg(long, value_name = "N", value_parser = count, allow_negative_numbers = true, help_heading = METHOD)]
     pub(crate) resample: Option<usize>,

@@ -11,6 +11,11 @@ pub fn optimizers() -> PossibleValuesParser {
     nisp::Optimizer::ALL.map(nisp::Optimizer::name).into()
 }
 
+/// Names of all activations.
+pub fn activations() -> PossibleValuesParser {
+    nisp::network::Activation::ALL.map(nisp::network::Activation::name).into()
+}
+
 /// Names of all precisions.
 pub fn precisions() -> PossibleValuesParser {
     nisp::Width::ALL.map(nisp::Width::name).into()

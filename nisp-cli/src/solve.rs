@@ -6,7 +6,7 @@ use std::time::Duration;
 use crate::score::Found;
 use crate::terminal::{NOT_CONVERGED, NOT_WRITTEN, note, print, progress};
 use crate::{interrupt, processors};
-use nisp::network::Architecture;
+use nisp::network::{Activation, Architecture};
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Carrier, Checkpoint, Optimizer, Report, Resampling, Settings, Solution, Width, recover, resume};
 use nisp_data::OutDir;
@@ -121,18 +121,25 @@ fn settings(options: &Options, usual: Duration) -> Result<Settings, String> {
         return Err(format!("--threads {threads}: at most {MOST_THREADS}; leave it out for one per processor"));
     }
     let optimizer = Optimizer::from_name(&options.optimizer).unwrap_or(Optimizer::Auto);
+    let activation = options.activation.as_deref().and_then(Activation::from_name);
     let carrier = match options.carrier.as_str() {
         "network" => Carrier::Network,
         "splines" => Carrier::Splines,
-        // Methods are those that train networks.
-        _ if optimizer != Optimizer::Auto => Carrier::Network,
+        // Only networks are trained by methods, and have activations.
+        _ if optimizer != Optimizer::Auto || activation.is_some() => Carrier::Network,
         _ => Carrier::Auto,
+    };
+    let architecture = Architecture {
+        width: options.width,
+        layers: options.layers,
+        activation: activation.unwrap_or_default(),
+        ..Settings::default().architecture
     };
     Ok(Settings {
         carrier,
         precision: Width::from_name(&options.precision).unwrap_or(Width::Auto),
         optimizer,
-        architecture: Architecture { width: options.width, layers: options.layers, ..Settings::default().architecture },
+        architecture,
         resampling: options.resample.map(|every| Resampling { every: every as u64, ..Resampling::default() }),
         seed: options.seed,
         budget: Some(options.budget.map_or(usual, Duration::from_secs_f64)),

@@ -23,7 +23,7 @@ impl<E: Real> Kernel<E> for AffineKernel<'_, E> {
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
         let Self { isa, layers, layer } = self;
-        let Affine { shape, weights, bias, coordinates, value, slope, output } = layer;
+        let Affine { shape, activation, weights, bias, coordinates, value, slope, output } = layer;
         let (channels, dim) = (layers.channels, layers.coordinates);
         holds(shape, output, channels);
         holds(shape, value, 1);
@@ -52,9 +52,9 @@ impl<E: Real> Kernel<E> for AffineKernel<'_, E> {
                             }
                             a.store(value.add(i * V::LANES));
                         }
-                        phi.activate(value, None, value, slope, vectors);
+                        phi.activate(activation, value, None, value, slope, vectors);
                     }
-                    phi.derive(value, slope, vectors);
+                    phi.derive(activation, value, slope, vectors);
                     affine.point(|_, (slot, index)| match slot {
                         Slot::Phi => phi.derivative(index),
                         _ => weights.add(index * shape.width + unit),
@@ -85,7 +85,8 @@ impl<E: Real> Kernel<E> for AffineAdjointKernel<'_, E> {
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
         let Self { isa, layers, layer } = self;
-        let AffineAdjoint { shape, weights, coordinates, value, slope, seed, weights_bar, bias_bar } = layer;
+        let AffineAdjoint { shape, activation, weights, coordinates, value, slope, seed, weights_bar, bias_bar } =
+            layer;
         let (channels, dim) = (layers.channels, layers.coordinates);
         holds(shape, seed, channels);
         holds(shape, value, 1);
@@ -105,7 +106,7 @@ impl<E: Real> Kernel<E> for AffineAdjointKernel<'_, E> {
                 let bias_bar = bias_bar.as_mut_ptr().add(unit);
                 for point in 0..shape.points {
                     let row = point * shape.ld + unit;
-                    phi.derive(value.as_ptr().add(row), slope.as_ptr().add(row), vectors);
+                    phi.derive(activation, value.as_ptr().add(row), slope.as_ptr().add(row), vectors);
                     adjoint.point(|_, (slot, index)| match slot {
                         Slot::Phi => phi.derivative(index),
                         Slot::Seed => seed.add((point * channels + index) * shape.ld + unit),

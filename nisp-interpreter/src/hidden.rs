@@ -163,7 +163,7 @@ impl<E: Real> Kernel<E> for LayerKernel<'_, E> {
 
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
-        let Self { isa, layers, layer: Layer { shape, argument, bias, slope, output }, gate, last } = self;
+        let Self { isa, layers, layer: Layer { shape, activation, argument, bias, slope, output }, gate, last } = self;
         let channels = layers.channels;
         holds(shape, argument, channels);
         holds(shape, output, channels);
@@ -188,9 +188,9 @@ impl<E: Real> Kernel<E> for LayerKernel<'_, E> {
                     let block = Block { at: point * channels * shape.ld + unit, ld: shape.ld, vectors };
                     let (value, slope) = (argument.add(block.at), slope.add(point * shape.ld + unit));
                     if !given {
-                        phi.activate(value, Some(bias.as_ptr().add(unit)), value, slope, vectors);
+                        phi.activate(activation, value, Some(bias.as_ptr().add(unit)), value, slope, vectors);
                     }
-                    phi.derive(value, slope, vectors);
+                    phi.derive(activation, value, slope, vectors);
                     compose.point(|_, (slot, index)| match slot {
                         Slot::Phi => phi.derivative(index),
                         _ => argument.add(block.row(index)).cast_const(),
@@ -227,7 +227,7 @@ impl<E: Real> Kernel<E> for LayerAdjointKernel<'_, E> {
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
         let Self { isa, layers, layer, mut gate, last } = self;
-        let LayerAdjoint { shape, argument, slope, seed, argument_bar, output } = layer;
+        let LayerAdjoint { shape, activation, argument, slope, seed, argument_bar, output } = layer;
         let channels = layers.channels;
         for rows in [argument, seed, &*argument_bar, &*output] {
             holds(shape, rows, channels);
@@ -253,7 +253,7 @@ impl<E: Real> Kernel<E> for LayerAdjointKernel<'_, E> {
                 while unit < shape.width {
                     let vectors = vectors((shape.width - unit) / V::LANES);
                     let block = Block { at: point * channels * shape.ld + unit, ld: shape.ld, vectors };
-                    phi.derive(argument.add(block.at), slope.add(point * shape.ld + unit), vectors);
+                    phi.derive(activation, argument.add(block.at), slope.add(point * shape.ld + unit), vectors);
                     let read = |slot: Slot, index: usize| match slot {
                         Slot::Phi => phi.derivative(index),
                         _ => argument.add(block.row(index)),

@@ -38,7 +38,7 @@ impl Rules {
 pub(crate) struct InterpretedLayers {
     pub(crate) hidden: Rules,
     pub(crate) last: Rules,
-    /// `tanh` and its derivatives, as many as the rules read.
+    /// The activation and its derivatives, as many as the rules read.
     pub(crate) slopes: Slopes,
     pub(crate) channels: usize,
     pub(crate) coordinates: usize,

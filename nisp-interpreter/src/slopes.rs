@@ -1,18 +1,18 @@
 //! The activation and its derivatives on a block.
 
+use nisp_runtime::activation::Activation;
 use nisp_runtime::layer::takes_values;
 use nisp_runtime::real::Real;
 use nisp_runtime::simd::Simd;
-use nisp_runtime::tanh;
 
 use crate::block::{VECTORS, load};
 use crate::scratch::Scratch;
 
-/// How many derivatives of `tanh` are wanted: the compiled functions know it when they are compiled, so that one of a few is
-/// chosen.
+/// How many derivatives of the activation are wanted: the compiled functions know it when they are compiled, so that one
+/// of a few is chosen.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Slopes {
-    /// `tanh` itself and its derivatives.
+    /// The activation itself and its derivatives.
     count: usize,
 }
 
@@ -76,7 +76,7 @@ impl Slopes {
     }
 }
 
-/// `tanh` and its derivatives on a block.
+/// The activation and its derivatives on a block.
 pub(crate) struct SlopesRun<V: Simd> {
     count: usize,
     /// A block for each derivative.
@@ -85,13 +85,14 @@ pub(crate) struct SlopesRun<V: Simd> {
 }
 
 impl<V: Simd> SlopesRun<V> {
-    /// `tanh` and its slope of `argument`, with `bias` added if there is one.
+    /// The activation and its slope of `argument`, with `bias` added if there is one.
     ///
     /// # Safety
     /// All are valid for a block of so many vectors; `value` may be `argument`.
     #[inline(always)]
     pub(crate) unsafe fn activate(
         &self,
+        activation: Activation,
         argument: *const V::Elem,
         bias: Option<*const V::Elem>,
         value: *mut V::Elem,
@@ -105,25 +106,31 @@ impl<V: Simd> SlopesRun<V> {
                 if let Some(bias) = bias {
                     a = a.add(load(bias, i));
                 }
-                let (t, s) = with_count!(self.count, D => tanh::tanh_and_slope::<V, D>(a));
+                let (t, s) = with_count!(self.count, D => activation.value_and_slope::<V, D>(a));
                 t.store(value.add(i * V::LANES));
                 s.store(slope.add(i * V::LANES));
             }
         }
     }
 
-    /// All derivatives, from `tanh` and its slope.
+    /// All derivatives, from the activation and its slope.
     ///
     /// # Safety
     /// Both are valid for a block of so many vectors.
     #[inline(always)]
-    pub(crate) unsafe fn derive(&mut self, value: *const V::Elem, slope: *const V::Elem, vectors: usize) {
+    pub(crate) unsafe fn derive(
+        &mut self,
+        activation: Activation,
+        value: *const V::Elem,
+        slope: *const V::Elem,
+        vectors: usize,
+    ) {
         // SAFETY: as the caller vouches; the rows hold a block each.
         unsafe {
             for i in 0..vectors {
                 let (t, s) = (load::<V>(value, i), load::<V>(slope, i));
                 with_count!(self.count, D => {
-                    for (n, phi) in tanh::derivatives::<V, D>(t, s).into_iter().enumerate().take(self.count) {
+                    for (n, phi) in activation.derivatives::<V, D>(t, s).into_iter().enumerate().take(self.count) {
                         phi.store(self.row(n).add(i * V::LANES));
                     }
                 });

@@ -2,8 +2,8 @@
 //!
 //! `cargo run --release -p nisp-runtime --example tanh_errors [stride]`; the full run (stride 1) takes a minute.
 
+use nisp_runtime::activation::tanh::{derivatives, tanh_and_slope};
 use nisp_runtime::simd::{Element, Isa, Kernel, Simd, dispatch};
-use nisp_runtime::tanh::{derivatives, tanh_and_slope};
 use std::time::Instant;
 
 /// Elements in a piece: a multiple of every vector, and small enough for the nearest cache.

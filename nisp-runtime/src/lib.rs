@@ -2,6 +2,7 @@
 //!
 //! Data flows one way: points, channels through the network, residuals, loss, step, report.
 
+pub mod activation;
 pub mod aligned;
 mod bounds;
 mod bytes;
@@ -31,7 +32,6 @@ pub mod simd;
 pub mod solve;
 mod splines;
 mod start;
-pub mod tanh;
 pub mod values;
 pub mod verdict;
 mod weighed;

@@ -257,7 +257,7 @@ pub enum FileKind {
 }
 
 /// Floating-point operations of propagation rules on all channels, forward and on the way back (which computes a layer
-/// anew instead of storing it). `tanh` and its derivatives are not counted.
+/// anew instead of storing it). The activation and its derivatives are not counted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RuleFlops {
     /// The activation of a hidden layer.

@@ -1,7 +1,7 @@
 //! The network and the loss in plain loops over dense jets: what the engine is compared with.
 
 use nisp::engine::{Engine, Scaling};
-use nisp::network::{Architecture, Fourier, Inputs, Kind, Layout, Matrix, Stretched, initialise};
+use nisp::network::{Activation, Architecture, Fourier, Inputs, Kind, Layout, Matrix, Stretched, initialise};
 use nisp::schema::{self, Loss, TermKind};
 use nisp::simd::Isa;
 use nisp::solve::objective::LeastSquares;
@@ -150,7 +150,9 @@ impl<'m, M: Model> Reference<'m, M> {
             Inputs::Stretched(stretched) => logarithms(stretched.ratio, inputs),
             _ => inputs,
         };
-        let lifted: Vec<Vec<Jet<'s, T>>> = layout.affine.iter().map(|m| activate(affine(m, theta, &inputs))).collect();
+        let layer =
+            |m: &Matrix, input: &[Jet<'s, T>]| activate(layout.architecture.activation, affine(m, theta, input));
+        let lifted: Vec<Vec<Jet<'s, T>>> = layout.affine.iter().map(|m| layer(m, &inputs)).collect();
         let gate = |z: Vec<Jet<'s, T>>| -> Vec<Jet<'s, T>> {
             match layout.architecture.kind {
                 Kind::Plain => z,
@@ -162,7 +164,7 @@ impl<'m, M: Model> Reference<'m, M> {
             }
         };
         let first = gate(lifted[0].clone());
-        let last = layout.hidden.iter().fold(first, |z, m| gate(activate(affine(m, theta, &z))));
+        let last = layout.hidden.iter().fold(first, |z, m| gate(layer(m, &z)));
         let heads = affine(&layout.head, theta, &last).into_iter();
         heads
             .zip(self.scaling.scale.iter().zip(&self.scaling.offset))
@@ -319,8 +321,12 @@ fn logarithms<'s, T: Number>(ratio: f64, inputs: Vec<Jet<'s, T>>) -> Vec<Jet<'s,
     inputs.into_iter().chain(stretched).collect()
 }
 
-fn activate<T: Number>(arguments: Vec<Jet<'_, T>>) -> Vec<Jet<'_, T>> {
-    arguments.iter().map(Jet::tanh).collect()
+fn activate<'s, T: Number>(activation: Activation, arguments: Vec<Jet<'s, T>>) -> Vec<Jet<'s, T>> {
+    let of = |argument: &Jet<'s, T>| match activation {
+        Activation::Tanh => argument.tanh(),
+        Activation::Sine => argument.sin_cos().0,
+    };
+    arguments.iter().map(of).collect()
 }
 
 /// The engine of a problem, on this machine's best vectors.
@@ -328,8 +334,8 @@ pub(crate) fn engine<E: nisp::Precision>(problem: &Problem, architecture: Archit
     problem.engine(Isa::detect(), architecture).expect("a bound problem")
 }
 
-/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, all inputs, widths that
-/// need padding.
+/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, all inputs, both activations,
+/// widths that need padding.
 pub(crate) fn architectures() -> Vec<Architecture> {
     (1..=5)
         .flat_map(|layers| {
@@ -344,6 +350,7 @@ pub(crate) fn architectures() -> Vec<Architecture> {
                 3 => Inputs::Stretched(Stretched { ratio: 20.0 }),
                 _ => Inputs::Coordinates,
             },
+            activation: Activation::ALL[usize::from(at % 5 > 2)],
             ..architecture
         })
         .collect()

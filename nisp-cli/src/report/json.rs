@@ -191,6 +191,7 @@ fn settings(solution: &Solution, run: &Run<'_>) -> Value {
         "carrier": options.carrier,
         "width": options.width,
         "layers": options.layers,
+        "activation": settings.architecture.activation.name(),
         "resample": options.resample,
         "budget_s": settings.budget.map(|budget| budget.as_secs_f64()),
         "iterations": options.iterations,

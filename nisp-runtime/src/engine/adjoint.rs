@@ -48,6 +48,7 @@ impl<E: Precision> Network<'_, E> {
             });
             let layer = LayerAdjoint {
                 shape,
+                activation: self.layout.architecture.activation,
                 argument: &buffers.arguments[l],
                 slope: &buffers.hidden_slopes[l],
                 seed: &buffers.seed,

@@ -17,7 +17,7 @@ pub(crate) struct Buffers<E: Precision> {
     /// What features of the coordinates are made of, and their channels, if there are any.
     pub(super) table: AlignedVec<E>,
     pub(super) features: AlignedVec<E>,
-    /// `tanh` of the first layer and the gates (on features of the coordinates, their arguments), and its slope.
+    /// The activation of the first layer and the gates (on features of the coordinates, their arguments), and its slope.
     pub(super) values: Vec<AlignedVec<E>>,
     pub(super) slopes: Vec<AlignedVec<E>>,
     /// Channels of the first layer, of `c - d`, and of `d`.

@@ -1,6 +1,6 @@
 //! From coordinates to the channels of the first layer and the gates, and back to their weights.
 //!
-//! On raw coordinates these layers are affine maps under a `tanh`, whose channels have closed forms. On
+//! On raw coordinates these layers are affine maps under the activation, whose channels have closed forms. On
 //! features of the coordinates they are ordinary layers; the features themselves are fixed and need no adjoint.
 
 use super::adjoint::Parts;
@@ -21,6 +21,7 @@ impl<E: Precision> Network<'_, E> {
         given: Option<&Buffers<f64>>,
     ) {
         let rows = shape.points * kernel.channels();
+        let activation = self.layout.architecture.activation;
         if let Some(features) = &self.weights.features {
             let layer = Features {
                 shape: Shape { points: shape.points, ..features.shape },
@@ -46,7 +47,10 @@ impl<E: Precision> Network<'_, E> {
                         round_rows(shape, &given.values[j], value, 1);
                     }
                     let (weights, coordinates) = (self.weights.matrix(matrix), &buffers.coordinates[..]);
-                    kernel.affine(self.isa, Affine { shape, weights, bias, coordinates, value, slope, output });
+                    kernel.affine(
+                        self.isa,
+                        Affine { shape, activation, weights, bias, coordinates, value, slope, output },
+                    );
                 }
                 Some(features) => {
                     let lds = [features.shape.ld, shape.ld];
@@ -62,7 +66,12 @@ impl<E: Precision> Network<'_, E> {
                     if let Some(given) = given {
                         round_rows(shape, &given.values[j], value, kernel.channels());
                     }
-                    kernel.layer(self.isa, Layer { shape, argument: value, bias, slope, output }, None, false);
+                    kernel.layer(
+                        self.isa,
+                        Layer { shape, activation, argument: value, bias, slope, output },
+                        None,
+                        false,
+                    );
                 }
             }
         }
@@ -103,6 +112,7 @@ impl<E: Precision> Network<'_, E> {
             let (weights_bar, rest) = gradient[at + matrix.padded..].split_at_mut(matrix.padded_bias - matrix.padded);
             let layer = AffineAdjoint {
                 shape: Shape { points: count, ..shape },
+                activation: self.layout.architecture.activation,
                 weights: self.weights.matrix(matrix),
                 coordinates: &buffers.coordinates[first * self.layout.inputs..],
                 value: &buffers.values[j][first * shape.ld..],
@@ -129,6 +139,7 @@ impl<E: Precision> Network<'_, E> {
         let Buffers { bar, difference_bar, floor_bar, next_bar, output, values, slopes, features, .. } = buffers;
         let layer = LayerAdjoint {
             shape,
+            activation: self.layout.architecture.activation,
             argument: &values[j],
             slope: &slopes[j],
             seed: [&*bar, &*difference_bar, &*floor_bar][j],

@@ -10,7 +10,7 @@ use super::sites::Sites;
 use crate::aligned::AlignedVec;
 use crate::kernel::Precision;
 use crate::layer::{Gate, Gated, Layer, Layers, Shape, row_distance};
-use crate::network::{Layout, Weights};
+use crate::network::{Architecture, Layout, Weights};
 use crate::simd::{Isa, dispatch};
 use crate::wide::subtract;
 
@@ -91,7 +91,7 @@ impl<E: Precision> Network<'_, E> {
         self.lift(kernel, shape, buffers, given);
         let rows = shape.points * kernel.channels();
         let (first, gates) = split_gates(&mut buffers.lifted, rows * shape.ld);
-        let layers = self.layout.architecture.layers;
+        let Architecture { layers, activation, .. } = self.layout.architecture;
         match gates {
             Some(gate) => {
                 kernel.gate(self.isa, Gated { shape, input: first, gate, output: &mut buffers.output });
@@ -106,7 +106,14 @@ impl<E: Precision> Network<'_, E> {
                 round_rows(shape, &given.arguments[l], argument, kernel.channels());
                 round_rows(shape, &given.hidden_slopes[l], slope, 1);
             }
-            let layer = Layer { shape, argument, bias: self.weights.bias(matrix), slope, output: &mut buffers.output };
+            let layer = Layer {
+                shape,
+                activation,
+                argument,
+                bias: self.weights.bias(matrix),
+                slope,
+                output: &mut buffers.output,
+            };
             kernel.layer(self.isa, layer, gates, l + 2 == layers);
         }
     }

@@ -3,25 +3,27 @@
 use std::marker::PhantomData;
 
 use super::{Shape, load_channels, takes_values};
+use crate::activation::Activation;
 use crate::real::Real;
 use crate::rules::Rules;
 use crate::simd::{Kernel, Simd};
-use crate::tanh;
 
 /// An affine layer on raw coordinates: the first layer and the gates. No matrix product, and derivatives in closed form.
 #[derive(Debug)]
 pub struct Affine<'a, E> {
     /// Shape of the tile.
     pub shape: Shape,
+    /// Function of the units.
+    pub activation: Activation,
     /// Weights, `[coordinate][unit]`, `width` apart.
     pub weights: &'a [E],
     /// Biases, one per unit.
     pub bias: &'a [E],
     /// Network coordinates, `[point][coordinate]`.
     pub coordinates: &'a [E],
-    /// Output (input where layers [take values](crate::layer::Layers::takes_values)): `tanh`, `[point][unit]`.
+    /// Output (input where layers [take values](crate::layer::Layers::takes_values)): the activation, `[point][unit]`.
     pub value: &'a mut [E],
-    /// Output (input likewise): slope of `tanh`, `[point][unit]`.
+    /// Output (input likewise): slope of the activation, `[point][unit]`.
     pub slope: &'a mut [E],
     /// Output: channels, `[point][channel][unit]`.
     pub output: &'a mut [E],
@@ -32,13 +34,15 @@ pub struct Affine<'a, E> {
 pub struct AffineAdjoint<'a, E> {
     /// Shape of the tile.
     pub shape: Shape,
+    /// Function of the units.
+    pub activation: Activation,
     /// Weights, as in [`Affine`].
     pub weights: &'a [E],
     /// Network coordinates, as in [`Affine`].
     pub coordinates: &'a [E],
-    /// `tanh`, as [`Affine`] left it.
+    /// The activation, as [`Affine`] left it.
     pub value: &'a [E],
-    /// Slope of `tanh`, as [`Affine`] left it.
+    /// Slope of the activation, as [`Affine`] left it.
     pub slope: &'a [E],
     /// Adjoint of the output channels.
     pub seed: &'a [E],
@@ -60,7 +64,7 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
 
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
-        let Affine { shape, weights, bias, coordinates, value, slope, output } = self.0;
+        let Affine { shape, activation, weights, bias, coordinates, value, slope, output } = self.0;
         shape.holds(output, K);
         shape.holds(value, 1);
         shape.holds(slope, 1);
@@ -80,12 +84,12 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
                         for (i, &wi) in w.iter().enumerate() {
                             a = wi.mul_add(V::splat(*coordinates.get_unchecked(p * S + i)), a);
                         }
-                        let (t, s) = tanh::tanh_and_slope::<V, D>(a);
+                        let (t, s) = activation.value_and_slope::<V, D>(a);
                         t.store(value.as_mut_ptr().add(row));
                         s.store(slope.as_mut_ptr().add(row));
                         (t, s)
                     };
-                    let y = R::affine(&tanh::derivatives::<V, D>(t, s), &w);
+                    let y = R::affine(&activation.derivatives::<V, D>(t, s), &w);
                     for (k, yk) in y.into_iter().enumerate() {
                         yk.store(output.as_mut_ptr().add((p * K + k) * shape.ld + u));
                     }
@@ -107,7 +111,8 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
 
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
-        let AffineAdjoint { shape, weights, coordinates, value, slope, seed, weights_bar, bias_bar } = self.0;
+        let AffineAdjoint { shape, activation, weights, coordinates, value, slope, seed, weights_bar, bias_bar } =
+            self.0;
         shape.holds(seed, K);
         shape.holds(value, 1);
         shape.holds(slope, 1);
@@ -124,7 +129,7 @@ impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize>
                     let t = V::load(value.as_ptr().add(p * shape.ld + u));
                     let s = V::load(slope.as_ptr().add(p * shape.ld + u));
                     let y_bar: [V; K] = load_channels(seed.as_ptr().add(p * K * shape.ld + u), shape.ld);
-                    let (a_bar, way) = R::affine_adjoint(&tanh::derivatives::<V, D>(t, s), &w, &y_bar);
+                    let (a_bar, way) = R::affine_adjoint(&activation.derivatives::<V, D>(t, s), &w, &y_bar);
                     b_bar = b_bar.add(a_bar);
                     for i in 0..S {
                         let x = V::splat(*coordinates.get_unchecked(p * S + i));

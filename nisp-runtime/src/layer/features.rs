@@ -1,11 +1,12 @@
 //! Fixed features of the coordinates, with all their channels, on a tile of points.
 //!
 //! The argument is affine, so a channel of `phi(b . x + phase)` is a derivative of `phi` times a polynomial in `b`: the
-//! same rule as for an affine layer, with another function in the place of `tanh`.
+//! same rule as for an affine layer, with another function in the place of the activation.
 
 use std::marker::PhantomData;
 
 use super::Shape;
+use crate::activation::sine;
 use crate::real::Real;
 use crate::rules::Rules;
 use crate::simd::{Kernel, Simd};
@@ -71,24 +72,19 @@ pub(crate) fn tabulate<E: Real>(function: Function, point: &[E], projections: &[
 /// `phi(a)` and its derivatives, from the two entries of a table.
 #[inline(always)]
 pub fn derivatives<V: Simd, const D: usize>(function: Function, [value, other]: [V; 2]) -> [V; D] {
-    let mut phi = [V::splat(V::Elem::ZERO); D];
     match function {
-        Function::Sine => {
-            for (n, phi) in phi.iter_mut().enumerate() {
-                *phi = [value, other, value.neg(), other.neg()][n % 4];
-            }
-        }
+        Function::Sine => sine::derivatives(value, other),
         Function::Logarithm { scale } => {
-            phi[0] = value;
+            let mut phi = [value; D];
             // The other is the argument a; derivative n is scale (-1)^(n - 1) (n - 1)! / a^n.
             let mut last = V::splat(V::Elem::from_f64(scale)).div(other);
             for (n, phi) in phi.iter_mut().enumerate().skip(1) {
                 *phi = last;
                 last = last.mul(V::splat(V::Elem::from_f64(-(n as f64)))).div(other);
             }
+            phi
         }
     }
-    phi
 }
 
 impl<E: Real, R: Rules<K, D, S>, const K: usize, const D: usize, const S: usize> Kernel<E>

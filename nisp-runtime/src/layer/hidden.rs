@@ -4,22 +4,24 @@ use std::marker::PhantomData;
 
 use super::gate::{Ending, EndingAdjoint};
 use super::{Shape, load_channels, load_read, store_read, takes_values};
+use crate::activation::Activation;
 use crate::real::Real;
 use crate::rules::Rules;
 use crate::simd::{Kernel, Simd};
-use crate::tanh;
 
 /// A hidden layer after its matrix product.
 #[derive(Debug)]
 pub struct Layer<'a, E> {
     /// Shape of the tile.
     pub shape: Shape,
-    /// Channels of the activation's argument; row 0 is replaced by `tanh`, or has been where layers
+    /// Function of the units.
+    pub activation: Activation,
+    /// Channels of the activation's argument; row 0 is replaced by the activation, or has been where layers
     /// [take values](crate::layer::Layers::takes_values).
     pub argument: &'a mut [E],
     /// Biases, added to the argument's value.
     pub bias: &'a [E],
-    /// Output (input likewise): slope of `tanh`, `[point][unit]`.
+    /// Output (input likewise): slope of the activation, `[point][unit]`.
     pub slope: &'a mut [E],
     /// Output channels.
     pub output: &'a mut [E],
@@ -30,6 +32,8 @@ pub struct Layer<'a, E> {
 pub struct LayerAdjoint<'a, E> {
     /// Shape of the tile.
     pub shape: Shape,
+    /// Function of the units.
+    pub activation: Activation,
     /// Argument, as [`Layer`] left it.
     pub argument: &'a [E],
     /// Slope, as [`Layer`] left it.
@@ -63,7 +67,7 @@ where
     fn run<V: Simd<Elem = E>>(self) {
         // By value: pointers behind a reference would be read anew after every store.
         let Self { layer, gate, .. } = self;
-        let Layer { shape, argument, bias, slope, output } = layer;
+        let Layer { shape, activation, argument, bias, slope, output } = layer;
         shape.holds(argument, K);
         shape.holds(output, K);
         shape.holds(slope, 1);
@@ -78,12 +82,12 @@ where
                     let (t, s) = if const { takes_values::<E>(D, S) } {
                         (a[0], V::load(slope.as_ptr().add(p * shape.ld + u)))
                     } else {
-                        let (t, s) = tanh::tanh_and_slope::<V, D>(a[0].add(V::load(bias.as_ptr().add(u))));
+                        let (t, s) = activation.value_and_slope::<V, D>(a[0].add(V::load(bias.as_ptr().add(u))));
                         t.store(argument.as_mut_ptr().add(at));
                         s.store(slope.as_mut_ptr().add(p * shape.ld + u));
                         (t, s)
                     };
-                    let y = C::compose(&tanh::derivatives::<V, D>(t, s), &a);
+                    let y = C::compose(&activation.derivatives::<V, D>(t, s), &a);
                     let z = gate.end::<V, P, K, D, S>(at, shape.ld, y);
                     store_read(&z, output.as_mut_ptr().add(at), shape.ld, &P::READ);
                 }
@@ -112,7 +116,7 @@ where
     #[inline(always)]
     fn run<V: Simd<Elem = E>>(self) {
         let Self { layer, mut gate, .. } = self;
-        let LayerAdjoint { shape, argument, slope, seed, argument_bar, output } = layer;
+        let LayerAdjoint { shape, activation, argument, slope, seed, argument_bar, output } = layer;
         for rows in [argument, seed, &*argument_bar, &*output] {
             shape.holds(rows, K);
         }
@@ -126,7 +130,7 @@ where
                 unsafe {
                     let a: [V; K] = load_channels(argument.as_ptr().add(at), shape.ld);
                     let z_bar: [V; K] = load_read(seed.as_ptr().add(at), shape.ld, &P::READ);
-                    let phi = tanh::derivatives::<V, D>(a[0], V::load(slope.as_ptr().add(p * shape.ld + u)));
+                    let phi = activation.derivatives::<V, D>(a[0], V::load(slope.as_ptr().add(p * shape.ld + u)));
                     let y = C::compose(&phi, &a);
                     let (z, y_bar) = gate.end::<V, P, K, D, S>(at, shape.ld, y, z_bar);
                     let a_bar = C::compose_adjoint(&phi, &a, &y_bar);

@@ -6,6 +6,7 @@ mod inputs;
 mod layout;
 mod weights;
 
+pub use crate::activation::Activation;
 pub use cost::Cost;
 pub use init::initialise;
 pub use inputs::{Fourier, Inputs, Stretched};
@@ -28,6 +29,8 @@ pub struct Architecture {
     pub factorised: bool,
     /// What the first layer and the gates see of the coordinates.
     pub inputs: Inputs,
+    /// What the units do.
+    pub activation: Activation,
 }
 
 /// How a hidden layer ends.
@@ -40,9 +43,10 @@ pub enum Kind {
 }
 
 impl Architecture {
-    /// The gated network of a given size, on the plain coordinates, without factorisation.
+    /// The gated network of a given size, of tanh on the plain coordinates, without factorisation.
     pub fn modified(width: usize, layers: usize) -> Self {
-        Self { kind: Kind::Modified, width, layers, factorised: false, inputs: Inputs::Coordinates }
+        let (inputs, activation) = (Inputs::Coordinates, Activation::Tanh);
+        Self { kind: Kind::Modified, width, layers, factorised: false, inputs, activation }
     }
 
     /// The plain network of a given size.

@@ -1,7 +1,7 @@
 //! A network that was trained: its weights, and a root of their covariance.
 
 use crate::carrier::{Kept, Outputs};
-use crate::network::{Architecture, Fourier, Inputs, Kind, Layout, Stretched};
+use crate::network::{Activation, Architecture, Fourier, Inputs, Kind, Layout, Stretched};
 use crate::problem::Frame;
 use crate::solve::fault::Fault;
 use crate::solve::root::Root;
@@ -36,7 +36,7 @@ impl Kept for KeptNetwork {
     }
 
     fn save(&self) -> State {
-        let Architecture { kind, width, layers, factorised, inputs } = self.architecture;
+        let Architecture { kind, width, layers, factorised, inputs, activation } = self.architecture;
         let (features, settings) = match inputs {
             Inputs::Automatic => (0, [0.0; 2]),
             Inputs::Coordinates => (1, [0.0; 2]),
@@ -50,7 +50,8 @@ impl Kept for KeptNetwork {
             .with_counter("gated", u64::from(kind == Kind::Modified))
             .with_counter("width", width as u64)
             .with_counter("layers", layers as u64)
-            .with_counter("factorised", u64::from(factorised));
+            .with_counter("factorised", u64::from(factorised))
+            .with_counter("sine", u64::from(activation == Activation::Sine));
         match &self.root {
             Some(root) => state.with("root", root.numbers()),
             None => state,
@@ -82,6 +83,8 @@ impl KeptNetwork {
             layers: size("layers")?,
             factorised: state.counter("factorised")? == 1,
             inputs,
+            // Files from before there was a sine have no such counter.
+            activation: if state.counter("sine") == Ok(1) { Activation::Sine } else { Activation::Tanh },
         };
         if architecture.width.saturating_mul(architecture.layers) > theta.len() {
             return Err(Fault::state("width"));

@@ -1,8 +1,8 @@
 //! tanh and its derivatives in twice the precision, and how far the kernels' are off.
 
+use nisp_runtime::activation::tanh::{derivatives, tanh_and_slope};
 use nisp_runtime::real::Real;
 use nisp_runtime::simd::{Kernel, Simd};
-use nisp_runtime::tanh::{derivatives, tanh_and_slope};
 
 use crate::double_double::{Dd, exponential};
 

@@ -1,12 +1,9 @@
-//! tanh and its derivatives against references of twice the precision: f64 for f32, double-double for f64.
+//! tanh and its derivatives.
 
-mod double_double;
-mod tanh_errors;
-
-use double_double::Dd;
+use crate::double_double::Dd;
+use crate::tanh_errors::{D, Rows, Worst, largest_ratios, reference_double, reference_single};
 use nisp_runtime::real::Real;
 use nisp_runtime::simd::{Element, Isa, dispatch};
-use tanh_errors::{D, Rows, Worst, largest_ratios, reference_double, reference_single};
 
 fn check(worst: &Worst, isa: Isa, elem: &str, tanh: f64) {
     println!("{elem} {}: {:.2?} near zeros {:.2?}", isa.name(), worst.ulps, worst.near_zeros);
