@@ -334,8 +334,8 @@ pub(crate) fn engine<E: nisp::Precision>(problem: &Problem, architecture: Archit
     problem.engine(Isa::detect(), architecture).expect("a bound problem")
 }
 
-/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, all inputs, both activations,
-/// widths that need padding.
+/// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, all inputs, widths that
+/// need padding; and for some of them sine beside tanh.
 pub(crate) fn architectures() -> Vec<Architecture> {
     (1..=5)
         .flat_map(|layers| {
@@ -350,8 +350,12 @@ pub(crate) fn architectures() -> Vec<Architecture> {
                 3 => Inputs::Stretched(Stretched { ratio: 20.0 }),
                 _ => Inputs::Coordinates,
             },
-            activation: Activation::ALL[usize::from(at % 5 > 2)],
             ..architecture
+        })
+        .enumerate()
+        .flat_map(|(at, tanh)| {
+            let sine = Architecture { activation: Activation::Sine, ..tanh };
+            std::iter::once(tanh).chain(matches!(at, 1 | 4 | 6 | 9).then_some(sine))
         })
         .collect()
 }

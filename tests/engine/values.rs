@@ -1,7 +1,7 @@
 //! Rows and losses against the reference.
 
 use nisp::Precision;
-use nisp::network::Architecture;
+use nisp::network::{Activation, Architecture};
 
 use crate::models::{Heat, Karman, Triharmonic, each_model};
 use crate::reference::{Model, Reference, architectures, engine};
@@ -51,17 +51,23 @@ fn rows_are_those_of_dense_jets() {
 fn single_precision_rows_are_those_of_dense_jets() {
     for architecture in architectures().into_iter().filter(|a| a.layers >= 2) {
         let errors = [distance::<f32, _>(&Karman, architecture), distance::<f32, _>(&Heat, architecture)];
-        assert!(errors.iter().all(|&error| error <= 2e-6), "{architecture:?}: {errors:?}");
+        // Sines hand on rounding at full slope, layer after layer.
+        let most = if architecture.activation == Activation::Sine { 5e-6 } else { 2e-6 };
+        assert!(errors.iter().all(|&error| error <= most), "{architecture:?}: {errors:?}");
         let error = distance::<f32, _>(&Triharmonic, architecture);
         assert!(error <= 1e-5, "{architecture:?}: {error:e}");
     }
+}
+
+fn saturates(a: &Architecture) -> bool {
+    a.layers >= 4 && !a.factorised && a.activation == Activation::Tanh
 }
 
 /// Saturated layers multiply what their values lose to rounding: with values in single precision these networks are off by
 /// 7e-5 to 1.4e-4.
 #[test]
 fn sixth_derivatives_in_single_precision_survive_saturated_layers() {
-    for architecture in architectures().into_iter().filter(|a| a.layers >= 4 && !a.factorised) {
+    for architecture in architectures().into_iter().filter(saturates) {
         let reference = Reference::new(&Triharmonic, architecture);
         let mut theta = reference.theta(3);
         for m in reference.layout.matrices() {
