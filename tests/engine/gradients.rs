@@ -5,6 +5,7 @@ use nisp::network::Architecture;
 use crate::models::each_model;
 use crate::number::Dual;
 use crate::reference::{Model, Reference, architectures, engine};
+use crate::values::in_single_precision;
 
 fn direction(len: usize, seed: usize) -> Vec<f64> {
     (0..len).map(|i| ((i * (seed + 3)) as f64 * 0.37 + seed as f64).sin()).collect()
@@ -76,7 +77,11 @@ fn single_is_close_to_double<M: Model>(model: &M) {
         let norm = |x: &[f64]| x.iter().map(|x| x * x).sum::<f64>().sqrt();
         let difference: Vec<f64> = double.iter().zip(&single).map(|(a, &b)| a - f64::from(b)).collect();
         let error = norm(&difference) / norm(&double);
-        assert!(error <= 5e-6, "{} {architecture:?}: {error:e}", model.scene().schema.module);
+        assert!(
+            error <= in_single_precision(architecture, 5e-6),
+            "{} {architecture:?}: {error:e}",
+            model.scene().schema.module
+        );
     }
 }
 
