@@ -185,7 +185,7 @@ pub(crate) struct Options {
     /// Element type of the network; auto is f32 as long as that helps, with methods that work in it, and then f64.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = precisions(), help_heading = METHOD)]
     pub(crate) precision: String,
-    /// What carries state and source; auto looks at the scene and the data. --optimizer and --activation mean a network.
+    /// What carries state and source; auto looks at scene and data. --optimizer and --activation mean a network.
     #[arg(long, value_name = "NAME", default_value = "auto", value_parser = ["auto", "network", "splines"],
           help_heading = METHOD)]
     pub(crate) carrier: String,
