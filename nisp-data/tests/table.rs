@@ -143,6 +143,9 @@ fn the_repository_data_reads() {
     assert_eq!(truth.quantity("f", "N").unwrap()[0], 0.0744481331);
 }
 
+/// What tables are made of.
+const ALMOST_CSV: &str = "tq0123456789,;#\"[]_ .\n\re+-";
+
 proptest! {
     #[test]
     fn garbage_never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
@@ -155,8 +158,8 @@ proptest! {
     }
 
     #[test]
-    fn almost_csv_never_panics(text in "[tq0-9,;#\"\\[\\]_ .\\n\\re+-]{0,200}") {
-        if let Ok(table) = Table::parse(Path::new("g"), text.as_bytes()) {
+    fn almost_csv_never_panics(chosen in proptest::collection::vec(proptest::sample::select(ALMOST_CSV.as_bytes()), 0..200)) {
+        if let Ok(table) = Table::parse(Path::new("g"), &chosen) {
             let _ = (table.column("t"), table.quantity("q", "m"), table.require_increasing("q"));
         }
     }
