@@ -44,7 +44,8 @@ impl Entry {
         let given = [
             ("sample", request.sample.is_some()),
             ("cloud", request.cloud.is_some()),
-            ("unit", request.unit.is_some() && !self.sees()),
+            ("unit", request.view.unit.is_some() && !self.sees()),
+            ("camera", request.view.camera.is_some() && !self.sees()),
             ("calibration", request.calibration.is_some()),
         ];
         match given.into_iter().find(|(_, given)| *given) {

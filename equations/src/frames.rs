@@ -4,8 +4,6 @@ use std::path::{Path, PathBuf};
 
 use nisp::schema::TermKind;
 use nisp::{BindError, Problem};
-use nisp_data::cloud::LengthUnit;
-use nisp_data::nearest::Nearest;
 use nisp_data::{Cloud, DataError};
 
 use crate::PrepareError;
@@ -27,8 +25,6 @@ const POINTS_OF_A_CELL: usize = 4;
 /// What the clouds of a body have in common.
 #[derive(Clone, Debug)]
 pub struct Frames {
-    /// Unit of their coordinates; metres if not given.
-    pub(crate) unit: Option<LengthUnit>,
     /// Of the sensor that saw them.
     pub(crate) calibration: Option<Calibration>,
     /// What was observed, in words.
@@ -40,14 +36,11 @@ pub struct Frames {
 }
 
 impl Frames {
-    /// Takes a cloud of `source` into metres and the body's frame, without what the calibration tells, and thins it.
+    /// Takes from a cloud of `source`, in metres, what the calibration tells, and thins it.
     ///
     /// # Errors
     /// A cloud that cannot be one of the body.
     pub(crate) fn take(&self, source: &Path, cloud: &mut Cloud) -> Result<(), PrepareError> {
-        if let Some(unit) = self.unit {
-            cloud.convert_from(unit);
-        }
         if let Some(calibration) = &self.calibration {
             calibration.correct(cloud);
         }
@@ -66,12 +59,9 @@ impl Frames {
         Ok(cloud)
     }
 
-    /// Share of a surface's points, in metres, that a bound cloud shows.
-    pub fn seen(&self, surface: &[[f64; 3]], cloud: &Cloud) -> f64 {
-        let Ok(tree) = Nearest::new(&cloud.points) else { return 0.0 };
-        let near = (NEAR * self.cell).powi(2);
-        let shown = surface.iter().filter(|point| tree.nearest(point).squared_distance < near).count();
-        shown as f64 / surface.len().max(1) as f64
+    /// How near to a point of the surface a cloud's must be to show it, in metres.
+    pub(crate) fn near(&self) -> f64 {
+        NEAR * self.cell
     }
 
     /// Checks that the cloud can be one of a body in the box, with a unit that makes it so.

@@ -10,6 +10,7 @@
 mod bodies;
 #[cfg(feature = "shipped")]
 pub mod bubble;
+mod camera;
 pub mod catalogue;
 pub mod contact;
 mod copies;
@@ -36,6 +37,7 @@ mod tables;
 pub mod truth;
 mod yardsticks;
 
+pub use camera::camera;
 #[cfg(feature = "shipped")]
 pub use catalogue::catalogue;
 pub use contact::Contact;

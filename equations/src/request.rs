@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use nisp_data::Cloud;
-use nisp_data::cloud::LengthUnit;
+use nisp_data::cloud::View;
 
 use crate::error::PrepareError;
 
@@ -24,8 +24,8 @@ pub struct Request {
     pub cloud: Option<usize>,
     /// Calibration of the sensor that saw the cloud.
     pub calibration: Option<PathBuf>,
-    /// Unit of the cloud's coordinates; metres if not given.
-    pub unit: Option<LengthUnit>,
+    /// How clouds are to be read.
+    pub view: View,
     /// Truth to score against.
     pub truth: Option<PathBuf>,
     /// A network even where local functions suit the scene better.

@@ -119,6 +119,9 @@ pub(crate) struct Frames {
     /// Unit of the clouds' coordinates: m, cm, mm, um or in [default: m].
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
+    /// TOML of the camera that took depth images: fx, fy, cx, cy, and where it is.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) camera: Option<PathBuf>,
     /// Wall time for each law of the material.
     #[arg(long, value_name = "SECONDS", default_value_t = 30.0, value_parser = seconds, allow_negative_numbers = true)]
     pub(crate) budget: f64,
@@ -160,6 +163,9 @@ pub(crate) struct Options {
     /// Unit of the cloud's coordinates: m, cm, mm, um or in [default: m].
     #[arg(long, value_name = "UNIT", help_heading = DATA)]
     pub(crate) unit: Option<LengthUnit>,
+    /// TOML of the camera that took a depth image (PNG of 16 bit, or NPY): fx, fy, cx, cy, and where it is.
+    #[arg(long, value_name = "FILE", help_heading = DATA)]
+    pub(crate) camera: Option<PathBuf>,
     /// Header of the column that holds a quantity, for instance q=q_m_sigma0.01. Repeatable.
     #[arg(long, value_name = "NAME=HEADER", value_parser = pair, help_heading = DATA)]
     pub(crate) column: Vec<(String, String)>,

@@ -17,6 +17,7 @@ use nisp_equations::{Entry, PrepareError, Request};
 use serde_json::json;
 
 use crate::args::Frames;
+use crate::options::view;
 use crate::program::Program;
 
 /// What is written.
@@ -80,7 +81,7 @@ fn fit(entry: &Entry, law: &'static str, options: &Frames) -> Result<Result<Fit,
     let request = Request {
         scene: Some(law.into()),
         data: options.reference.iter().map(|path| (None, path.clone())).collect(),
-        unit: options.unit,
+        view: view(options.unit, options.camera.as_deref())?,
         parameters: options.set.clone(),
         ..Request::default()
     };

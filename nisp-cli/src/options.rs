@@ -2,9 +2,12 @@
 
 use clap::builder::PossibleValuesParser;
 use clap::error::ErrorKind;
+use std::path::Path;
 use std::process::ExitCode;
 
 use crate::terminal::BAD_INPUT;
+use nisp_data::cloud::{LengthUnit, View};
+use nisp_equations::{PrepareError, camera};
 
 /// Names of all methods.
 pub fn optimizers() -> PossibleValuesParser {
@@ -113,4 +116,9 @@ pub fn value(text: &str) -> Result<(String, f64), String> {
     let number = value.trim().parse::<f64>().ok().filter(|number| number.is_finite());
     let number = number.ok_or("the value must be a finite number, in the declared unit and without it")?;
     Ok((name.trim().into(), number))
+}
+
+/// How clouds are read, as `--unit` and `--camera` say.
+pub(crate) fn view(unit: Option<LengthUnit>, file: Option<&Path>) -> Result<View, PrepareError> {
+    Ok(View { unit, camera: file.map(camera).transpose()? })
 }

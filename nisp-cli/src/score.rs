@@ -12,6 +12,8 @@ pub struct Found {
     pub scores: Vec<Score>,
     /// Of a contact, where the scene has one.
     pub contact: Option<ContactScore>,
+    /// Share of the contact's surface that the cloud shows.
+    pub seen: Option<f64>,
     /// Standard deviation of the contact's net force in newtons, where the method gives it.
     pub force_deviation: Option<f64>,
     /// Of the contact by a classical way.
@@ -79,6 +81,7 @@ impl Found {
         Self {
             scores: truth.map_or_else(Vec::new, |truth| score(solution, truth)),
             contact: scored.map(|(_, score)| score),
+            seen: prepared.contact.as_ref().and_then(|contact| contact.seen(&values)),
             force_deviation,
             rival: None,
             learned,

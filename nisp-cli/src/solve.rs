@@ -14,6 +14,7 @@ use nisp_equations::{Prepared, Request, Truth, Wanted};
 
 use crate::args::Options;
 use crate::checkpoint::{self, Keeper};
+use crate::options::view;
 use crate::program::Program;
 use crate::report::{self, Run};
 use crate::results;
@@ -28,7 +29,7 @@ pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, St
         sample: options.sample.clone(),
         cloud: options.cloud,
         calibration: options.calibration.clone(),
-        unit: options.unit,
+        view: view(options.unit, options.camera.as_deref()).map_err(|error| error.to_string())?,
         wanted: wanted(options),
         truth: options.truth.clone(),
         network: settings.carrier == Carrier::Network,

@@ -121,8 +121,6 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         problem.set_group(group.name, points, Vec::new())?;
     }
     let frames = Frames {
-        // Of many files, each was taken into metres.
-        unit: request.unit.filter(|_| !calibrates),
         calibration,
         body: "membrane",
         within: ([-a, -b, 0.0], [a, b, b]),
@@ -153,6 +151,8 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         eye: [-65.0, 40.0],
         truth: None,
         rival: pressure.and(theory.rival).map(|rival| rival(&given, &observed, [a, b])).transpose()?,
+        near: frames.near(),
+        cloud: observed.cloud.points,
     };
     contact.truth = contact.true_contact(schema, observed.truth.as_ref().zip(truth.as_ref()), headers)?;
     Ok(Prepared {

@@ -90,10 +90,7 @@ impl Observed {
     pub(super) fn all(request: &Request) -> Result<Self, PrepareError> {
         let mut cloud = Cloud::default();
         for (_, path) in &request.data {
-            let mut one = Cloud::read(path)?;
-            if let Some(unit) = request.unit {
-                one.convert_from(unit);
-            }
+            let mut one = request.view.read(path)?;
             cloud.points.append(&mut one.points);
             cloud.warnings.append(&mut one.warnings);
         }
@@ -118,16 +115,16 @@ impl Observed {
         let alone = |what: &str| Err(PrepareError::Cloud { index: request.cloud.unwrap_or(0), instead: what.into() });
         let (source, cloud) = match (&sample, data) {
             (_, Some(_)) if request.cloud.is_some() => return alone("--data names a cloud already"),
-            (_, Some(data)) => (data.to_path_buf(), Cloud::read(data)?),
+            (_, Some(data)) => (data.to_path_buf(), request.view.read(data)?),
             (Some(sample), None) => {
                 let path = sample.cloud(request.cloud.unwrap_or(0))?;
-                let cloud = Cloud::read(&path)?;
+                let cloud = request.view.read(&path)?;
                 (path, cloud)
             }
             (None, None) if request.cloud.is_some() => return alone("name the sample with --sample"),
             (None, None) => {
                 let path = PathBuf::from(example.cloud_path);
-                let cloud = Cloud::parse(&path, example.cloud)?;
+                let cloud = request.view.parse(&path, example.cloud)?;
                 (path, cloud)
             }
         };

@@ -110,13 +110,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let assumed = given.assumed()?;
     let side = given.size("side")?;
     let (low, high) = ([-0.5 * side, -0.5 * side, -side], [0.5 * side, 0.5 * side, 0.0]);
-    let frames = Frames {
-        unit: request.unit,
-        calibration: None,
-        body: "sponge",
-        within: (low, high),
-        cell: side / LOCAL.cells as f64,
-    };
+    let frames = Frames { calibration: None, body: "sponge", within: (low, high), cell: side / LOCAL.cells as f64 };
     frames.take(&observed.source, &mut observed.cloud)?;
 
     let vector = |names: [&'static str; 3]| -> Result<[f64; 3], PrepareError> {
@@ -158,6 +152,8 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         load: Load::Fixed(presses),
         face: Face::new(3, on_the_bottom(FINE, side))?,
         surface: surface(side),
+        near: frames.near(),
+        cloud: observed.cloud.points,
         // From below, where the pressure is.
         eye: [-60.0, -35.0],
         truth: None,

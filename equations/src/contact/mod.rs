@@ -23,6 +23,7 @@ pub use pose::Pose;
 pub use score::{Against, ContactScore, TrueContact, Values};
 
 use nisp::schema::Scene;
+use nisp_data::nearest::Nearest;
 use nisp_data::{DataError, Table};
 
 use crate::truth::{Headers, Truth};
@@ -44,6 +45,10 @@ pub struct Contact {
     pub load: Load,
     /// Where it can act.
     pub face: Face,
+    /// What was seen of it: points in metres.
+    pub cloud: Vec<[f64; 3]>,
+    /// How near to a point of the surface one of the cloud's must be to show it, in metres.
+    pub near: f64,
     /// The surface, for pictures.
     pub surface: Surface,
     /// From where a picture shows it: degrees from x towards y, and degrees above the plane of both.
@@ -84,6 +89,17 @@ impl Contact {
             std::array::from_fn(along)
         };
         points.chunks_exact(self.face.dim.max(1)).enumerate().map(place).collect()
+    }
+
+    /// Share of the surface's points, where an answer has moved them, that the cloud shows.
+    pub fn seen(&self, values: &Values<'_>) -> Option<f64> {
+        let [Some(x), Some(y), Some(z)] = self.displacement.map(|name| values(name, &self.surface.points)) else {
+            return None;
+        };
+        let surface = self.deformed(&self.surface.points, [&x, &y, &z]);
+        let tree = Nearest::new(&self.cloud).ok()?;
+        let is_near = |point: &&[f64; 3]| tree.nearest(point).squared_distance < self.near.powi(2);
+        Some(surface.iter().filter(is_near).count() as f64 / surface.len().max(1) as f64)
     }
 }
 

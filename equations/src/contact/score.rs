@@ -151,6 +151,8 @@ mod tests {
             load: Load::Fixed([0.0, 0.0, -1.0]),
             face: Face::new(2, square.interior(40_000, Sampling::Grid, 0).coords).unwrap(),
             surface: Surface { points: vec![], triangles: vec![], loaded: vec![] },
+            cloud: vec![],
+            near: 0.0,
             eye: [0.0, 90.0],
             truth: None,
             rival: None,
@@ -194,6 +196,19 @@ mod tests {
         let against = contact.score(&found(0.3), Some(&truth)).unwrap().against.unwrap();
         assert_eq!(against.iou, 1.0);
         assert!((against.patch_chamfer_mm2.unwrap() - 2.0).abs() < 1e-9, "{against:?}");
+    }
+
+    /// Of a square of 21 x 21 points 3 mm up, a cloud at x = 0 shows the two columns that are nearer than 0.06.
+    #[test]
+    fn a_cloud_shows_what_is_near_to_it() {
+        let (mut contact, _) = body();
+        let line = |count: usize| (0..count).map(move |at| at as f64 / (count - 1) as f64);
+        contact.surface.points = line(21).flat_map(|x| line(21).flat_map(move |y| [x, y])).collect();
+        contact.cloud = line(101).map(|y| [0.0, y, 3e-3]).collect();
+        contact.near = 0.06;
+        assert_eq!(contact.seen(&found(0.3)), Some(2.0 / 21.0));
+        contact.cloud.iter_mut().for_each(|point| point[2] += 0.06);
+        assert_eq!(contact.seen(&found(0.3)), Some(0.0));
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use nisp::schema::{Group, Scene, Term, TermKind};
-use nisp_data::Cloud;
-use nisp_data::cloud::LengthUnit;
+use nisp_data::DataError;
+use nisp_data::cloud::View;
 
 use super::{Found, Tables};
 use crate::error::PrepareError;
@@ -40,17 +40,25 @@ pub(super) fn named(schema: &Scene, name: Option<&str>) -> Option<[&'static str;
 /// # Errors
 /// A cloud that is missing or cannot be read.
 pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) -> Result<(), PrepareError> {
-    let unit = request.unit.map_or(1.0, LengthUnit::metres);
     for group in found.problem.scene().schema.groups {
         for term in terms(group) {
             let file = tables.clouds.iter().rev().find(|cloud| cloud.of == [group.name, term.name]);
             let Some(file) = file else {
                 return Err(PrepareError::Unseen { group: group.name, term: term.name });
             };
-            let cloud = Cloud::read(file.path)?;
-            found.warnings.extend(cloud.warnings);
+            let is_plain = term.unit.text.is_empty();
             // Clouds are in metres, or in the unit that the user names; numbers without unit are what they are.
-            let size = if term.unit.text.is_empty() { 1.0 } else { unit / term.unit.factor };
+            let view = View { unit: request.view.unit.filter(|_| !is_plain), ..request.view.clone() };
+            let cloud = view.read(file.path)?;
+            if is_plain && cloud.is_in_metres {
+                let what = format!(
+                    "`{}.{}` has no unit, and the headers of its cloud say one: correct them",
+                    group.name, term.name
+                );
+                return Err(DataError::File { path: file.path.into(), what }.into());
+            }
+            found.warnings.extend(cloud.warnings);
+            let size = if is_plain { 1.0 } else { term.unit.factor.recip() };
             let points = cloud.points.iter().flat_map(|point| point.iter().take(term.rows)).map(|x| x * size);
             found.problem.set_cloud(group.name, term.name, points.collect())?;
         }

@@ -28,6 +28,9 @@ pub(crate) struct StreamOptions {
     /// Unit of the clouds' coordinates: m, cm, mm, um or in [default: m].
     #[arg(long, value_name = "UNIT")]
     pub(crate) unit: Option<LengthUnit>,
+    /// TOML of the camera that took depth images: fx, fy, cx, cy, and where it is.
+    #[arg(long, value_name = "FILE")]
+    pub(crate) camera: Option<PathBuf>,
     /// A parameter's value in its declared unit, for all frames. Repeatable.
     #[arg(long, value_name = "NAME=VALUE", value_parser = value)]
     pub(crate) set: Vec<(String, f64)>,
@@ -57,6 +60,7 @@ impl StreamOptions {
             ("--sample", self.sample.is_some()),
             ("--calibration", self.calibration.is_some()),
             ("--unit", self.unit.is_some()),
+            ("--camera", self.camera.is_some()),
             ("--maps", self.maps.is_some()),
         ];
         given.into_iter().find(|(_, given)| *given).map(|(option, _)| option)

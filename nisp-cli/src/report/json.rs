@@ -44,6 +44,7 @@ pub(crate) fn json(solution: &Solution, run: &Run<'_>, found: &Found) -> String 
     if let Some(contact) = &found.contact {
         object["force"] = json!(contact.force);
         object["force_sd"] = json!(found.force_deviation);
+        object["seen"] = json!(found.seen);
         object["patches"] = contact.patches.iter().map(patch).collect();
     }
     format!("{object}\n")
@@ -183,6 +184,7 @@ fn settings(solution: &Solution, run: &Run<'_>) -> Value {
         "cloud": options.cloud,
         "calibration": options.calibration.as_deref().map(text),
         "unit": options.unit.map(LengthUnit::symbol),
+        "camera": options.camera.as_deref().map(text),
         "truth": options.truth.as_deref().map(text),
         "columns": pairs(&options.column),
         "parameters": options.set.iter().cloned().collect::<std::collections::BTreeMap<_, _>>(),

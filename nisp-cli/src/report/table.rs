@@ -75,6 +75,9 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
     }
     if let Some(contact) = &found.contact {
         contact_rows(contact, found.force_deviation, found.rival.as_ref()).into_iter().for_each(&mut line);
+        if let Some(seen) = found.seen {
+            line(format!("  {:26} {:.0} % of the surface", "seen", 100.0 * seen));
+        }
     }
     for learned in &found.learned {
         let deviation = learned.deviation.map_or_else(String::new, |deviation| format!(" ± {deviation:.2e}"));

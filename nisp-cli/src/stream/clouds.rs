@@ -17,6 +17,7 @@ use serde_json::{Value, json};
 use super::input::{self, Frame};
 use super::line::{self, Head};
 use crate::args::stream::StreamOptions;
+use crate::options::view;
 use crate::report::{learned, patch, status};
 use crate::results::contact_map;
 
@@ -29,7 +30,8 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
         std::fs::create_dir_all(folder).map_err(|error| format!("--maps {}: {error}", folder.display()))?;
     }
     let start = Instant::now();
-    let frames = input::frames(&options.from)?;
+    let view = view(options.unit, options.camera.as_deref()).map_err(|error| error.to_string())?;
+    let frames = input::frames(&options.from, view)?;
     let mut sensor = None;
     while let Some((frame, dropped)) = frames.take() {
         let Frame { name, came, parameters, cloud, live } = frame;
@@ -122,7 +124,6 @@ impl Sensor {
             frame: Some((PathBuf::from(name), cloud.clone())),
             sample: options.sample.clone(),
             calibration: options.calibration.clone(),
-            unit: options.unit,
             cells: Some(CELLS),
             parameters: [&options.set, parameters].concat(),
             ..Request::default()
@@ -148,7 +149,8 @@ impl Sensor {
         let cloud = cloud.map_err(|error| error.to_string())?;
         let stop = || if interrupt::asked() { Flow::Stop } else { Flow::Continue };
         let solution = self.session.update(&mut |_| stop()).map_err(|error| error.to_string())?;
-        Ok(members(solution, &self.contact, |surface| self.frames.seen(surface, &cloud)))
+        self.contact.cloud = cloud.points;
+        Ok(members(solution, &self.contact))
     }
 
     /// Draws the last answer.
@@ -163,8 +165,8 @@ impl Sensor {
     }
 }
 
-/// What is said of an answer; `seen` gives the share of a surface that the cloud shows.
-fn members(solution: &mut Solution, contact: &Contact, seen: impl Fn(&[[f64; 3]]) -> f64) -> Value {
+/// What is said of an answer.
+fn members(solution: &mut Solution, contact: &Contact) -> Value {
     let mut members = json!({ "status": status(solution) });
     let failed: Vec<_> = solution.verdict.failed().map(|check| check.message.clone()).collect();
     if !failed.is_empty() {
@@ -186,8 +188,6 @@ fn members(solution: &mut Solution, contact: &Contact, seen: impl Fn(&[[f64; 3]]
         members["force_sd_N"] = json!(deviation);
         members["patches"] = score.patches.iter().map(patch).collect();
     }
-    if let [Some(x), Some(y), Some(z)] = contact.displacement.map(|name| values(name, &contact.surface.points)) {
-        members["seen"] = seen(&contact.deformed(&contact.surface.points, [&x, &y, &z])).into();
-    }
+    members["seen"] = json!(contact.seen(&values));
     members
 }

@@ -9,6 +9,7 @@ use std::time::{Duration, Instant};
 
 use crate::interrupt;
 use nisp_data::Cloud;
+use nisp_data::cloud::View;
 use nisp_data::input::MOST_BYTES;
 
 use super::latest::Latest;
@@ -18,7 +19,7 @@ use crate::options::value;
 /// How often a folder is looked at.
 const LOOK: Duration = Duration::from_millis(5);
 /// Endings of clouds in a folder; other files are not frames.
-const ENDINGS: [&str; 6] = ["ply", "pcd", "npy", "npz", "csv", "xyz"];
+const ENDINGS: [&str; 7] = ["ply", "pcd", "npy", "npz", "csv", "xyz", "png"];
 
 /// A cloud that came.
 pub(super) struct Frame {
@@ -36,9 +37,9 @@ pub(super) struct Frame {
 
 impl Frame {
     /// Reads a file.
-    fn read(path: &Path, parameters: Vec<(String, f64)>, live: bool) -> Self {
+    fn read((path, view): (&Path, &View), parameters: Vec<(String, f64)>, live: bool) -> Self {
         let came = Instant::now();
-        let cloud = Cloud::read(path).map_err(|error| error.to_string());
+        let cloud = view.read(path).map_err(|error| error.to_string());
         Self { name: path.display().to_string(), came, parameters, cloud, live }
     }
 }
@@ -47,14 +48,14 @@ impl Frame {
 ///
 /// # Errors
 /// A pattern that is none or names nothing, a folder that is not there.
-pub(super) fn frames(from: &From) -> Result<Arc<Latest<Frame>>, String> {
+pub(super) fn frames(from: &From, view: View) -> Result<Arc<Latest<Frame>>, String> {
     let latest = Latest::new();
     let place = latest.clone();
     let bring: Box<dyn FnOnce() + Send> = match from {
         From { frames: Some(pattern), .. } => {
             let paths = matching(pattern)?;
             Box::new(move || {
-                let _ = paths.iter().all(|path| bring(&place, Frame::read(path, Vec::new(), false)));
+                let _ = paths.iter().all(|path| bring(&place, Frame::read((path, &view), Vec::new(), false)));
                 place.end();
             })
         }
@@ -63,14 +64,14 @@ pub(super) fn frames(from: &From) -> Result<Arc<Latest<Frame>>, String> {
             Box::new(move || {
                 while !interrupt::asked() {
                     for path in folder.look() {
-                        bring(&place, Frame::read(&path, Vec::new(), true));
+                        bring(&place, Frame::read((&path, &view), Vec::new(), true));
                     }
                     sleep(LOOK);
                 }
             })
         }
         _ => Box::new(move || {
-            standard_input(&place);
+            standard_input(&place, &view);
             place.end();
         }),
     };
@@ -145,14 +146,14 @@ impl Folder {
 }
 
 /// Frames on standard input. One that is a file has all its frames answered.
-fn standard_input(place: &Latest<Frame>) {
+fn standard_input(place: &Latest<Frame>, view: &View) {
     let live = !std::fs::metadata("/dev/stdin").is_ok_and(|input| input.is_file());
     let mut input = stdin().lock();
     // The length of a cloud has zeros in its upper bytes, and no name has any.
     let are_clouds = input.fill_buf().is_ok_and(|bytes| bytes.iter().take(8).any(|byte| *byte == 0));
     if are_clouds {
         let mut number = 0;
-        while let Some(frame) = block(&mut input, number, live) {
+        while let Some(frame) = block(&mut input, (number, view), live) {
             number += 1;
             if !bring(place, frame) {
                 return;
@@ -161,7 +162,7 @@ fn standard_input(place: &Latest<Frame>) {
         return;
     }
     for line in input.lines().map_while(Result::ok) {
-        if let Some(frame) = named(&line, live)
+        if let Some(frame) = named(&line, view, live)
             && !bring(place, frame)
         {
             return;
@@ -170,7 +171,7 @@ fn standard_input(place: &Latest<Frame>) {
 }
 
 /// The frame of a line: a name, and parameters; nothing of an empty line.
-fn named(line: &str, live: bool) -> Option<Frame> {
+fn named(line: &str, view: &View, live: bool) -> Option<Frame> {
     let mut name = line.trim();
     let mut parameters = Vec::new();
     // Names may have blanks in them, parameters have none.
@@ -180,11 +181,11 @@ fn named(line: &str, live: bool) -> Option<Frame> {
         parameters.insert(0, parameter);
         name = before.trim_end();
     }
-    (!name.is_empty()).then(|| Frame::read(Path::new(name), parameters, live))
+    (!name.is_empty()).then(|| Frame::read((Path::new(name), view), parameters, live))
 }
 
 /// The next cloud of a stream of clouds; nothing at its end.
-fn block(input: &mut impl Read, number: u64, live: bool) -> Option<Frame> {
+fn block(input: &mut impl Read, (number, view): (u64, &View), live: bool) -> Option<Frame> {
     let mut length = [0; 8];
     input.read_exact(&mut length).ok()?;
     let length = u64::from_le_bytes(length);
@@ -194,7 +195,7 @@ fn block(input: &mut impl Read, number: u64, live: bool) -> Option<Frame> {
     let came = Instant::now();
     let cloud = match read {
         _ if length > MOST_BYTES => Err(format!("{length} bytes are more than a cloud may have")),
-        Ok(read) if read as u64 == length => Cloud::parse(Path::new(&name), &bytes).map_err(|error| error.to_string()),
+        Ok(read) if read as u64 == length => view.parse(Path::new(&name), &bytes).map_err(|error| error.to_string()),
         _ => Err("the stream ended within the cloud".into()),
     };
     Some(Frame { name, came, parameters: Vec::new(), cloud, live })

@@ -31,6 +31,8 @@ fn a_sphere_presses_with_its_force_where_it_is() {
     let place = Place::new();
     let found = answer(&place, "solve bubble");
     let truth = [-0.2927, 0.0001, -8.2804];
+    let seen = found["seen"].as_f64().unwrap();
+    assert!(0.0 < seen && seen <= 1.0, "{seen}");
     let force = vector(&found["force"]);
     assert!(distance(force, truth) < 0.25, "{force:?}");
     let deviation = found["force_sd"].as_f64().unwrap();

@@ -178,9 +178,21 @@ fn units_and_missing_points_are_taken_care_of() {
         assert!(matches!(ran.code, Some(0 | 3)), "{line}: {}", ran.stderr);
         object(&ran.stdout)
     };
+    // Seen by a camera over the body that looks down: y of its frame is -y of the body's, and z is depth.
+    let below = |line: &str| {
+        let [x, y, z] = [0, 1, 2].map(|axis| line.split(',').nth(axis).unwrap().parse::<f64>().unwrap());
+        format!("{:e},{:e},{:e}\n", 100.0 * (x - 0.01), -100.0 * y, 100.0 * (0.2 - z))
+    };
+    let seen: String = cloud(1.0, "").lines().map(below).collect();
+    place.put("seen.csv", &("x_cm,y_cm,z_cm\n".to_string() + &seen));
+    let turned = "rotation = [[1, 0, 0], [0, -1, 0], [0, 0, -1]]\nposition = [0.01, 0, 0.2]\n";
+    place.put("camera.toml", &format!("fx = 400\nfy = 400\ncx = 320\ncy = 240\n{turned}"));
+
     let (metres, millimetres, holes) = (ran("m.csv"), ran("mm.csv --unit mm"), ran("holes.csv"));
     let force = |object: &Value| object["errors"]["force_N"].as_f64().unwrap();
-    assert!((force(&metres) / force(&millimetres) - 1.0).abs() < 1e-6, "{metres} {millimetres}");
+    for same in [millimetres, ran("seen.csv --camera camera.toml")] {
+        assert!((force(&metres) / force(&same) - 1.0).abs() < 1e-6, "{metres} {same}");
+    }
     assert_eq!(force(&metres), force(&holes));
     assert!(holes["warnings"].to_string().contains("2 of 502 points were not finite"), "{holes}");
     // Without a truth there is a force, and nothing to compare it with.

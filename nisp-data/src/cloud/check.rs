@@ -69,9 +69,15 @@ impl FromStr for LengthUnit {
 }
 
 impl Cloud {
-    /// Turns coordinates given in `unit` into metres.
-    pub fn convert_from(&mut self, unit: LengthUnit) {
+    /// Takes the points into metres, from `unit` where the file does not say it. What the file says goes first, with a warning.
+    pub fn take_into_metres(&mut self, unit: LengthUnit) {
+        if self.is_in_metres {
+            let symbol = unit.symbol();
+            self.warnings.push(format!("the cloud's headers say its unit, so that --unit {symbol} is not used"));
+            return;
+        }
         self.points.iter_mut().flatten().for_each(|value| *value *= unit.metres());
+        self.is_in_metres = true;
     }
 
     /// Lower and upper corner, without the outermost points (which may be outliers).

@@ -1,6 +1,8 @@
-//! Point clouds and surfaces from files: PLY, PCD, CSV, XYZ, NPY, NPZ; STL for surfaces.
+//! Point clouds and surfaces from files: PLY, PCD, CSV, XYZ, NPY, NPZ; depth images in PNG and NPY; STL for surfaces.
 
+mod camera;
 mod check;
+mod image;
 mod npy;
 mod npz;
 mod pcd;
@@ -8,11 +10,14 @@ mod ply;
 mod stl;
 mod text;
 mod thin;
+mod view;
 
 use std::path::Path;
 
+pub use camera::Camera;
 pub use check::LengthUnit;
 pub use stl::Surface;
+pub use view::View;
 
 use crate::DataError;
 use crate::input::{MOST_BYTES, read_bytes};
@@ -24,6 +29,8 @@ pub struct Cloud {
     pub points: Vec<[f64; 3]>,
     /// What the user should know: dropped points, and the like. One line each.
     pub warnings: Vec<String>,
+    /// True if the file says the unit of its points, which are in metres then.
+    pub is_in_metres: bool,
 }
 
 /// File formats, as told by their first bytes or, where those say nothing, by the file's ending.
@@ -33,6 +40,7 @@ enum Format {
     Pcd,
     Npy,
     Npz,
+    Png,
     Text,
 }
 
@@ -48,14 +56,20 @@ impl Cloud {
         if bytes.is_empty() {
             return Err(DataError::file(path, "the file is empty; a point cloud is needed"));
         }
-        let points = match recognise(path, bytes)? {
-            Format::Ply => ply::parse(path, bytes)?,
-            Format::Pcd => pcd::parse(path, bytes)?,
-            Format::Npy => npy::Array::new(path, bytes)?.points(path)?,
-            Format::Npz => npz::parse(path, bytes)?,
+        let (points, is_in_metres) = match recognise(path, bytes)? {
+            Format::Ply => (ply::parse(path, bytes)?, false),
+            Format::Pcd => (pcd::parse(path, bytes)?, false),
+            Format::Npy => (npy::Array::new(path, bytes)?.points(path)?, false),
+            Format::Npz => (npz::parse(path, bytes)?, false),
+            Format::Png => return Err(DataError::file(path, "is a picture; a point cloud is needed")),
             Format::Text => text::parse(path, bytes)?,
         };
-        Cloud::finite(path, points)
+        Ok(Cloud { is_in_metres, ..Cloud::finite(path, points)? })
+    }
+
+    /// The points of a depth image, in metres and the camera's frame. Pixels without depth are no points, and are not counted.
+    fn seen(path: &Path, image: &image::Image, camera: &Camera) -> Result<Cloud, DataError> {
+        Ok(Cloud { is_in_metres: true, ..Cloud::finite(path, camera.points(image))? })
     }
 
     /// Drops points that are not finite, and counts them. A cloud of none is an error.
@@ -74,7 +88,7 @@ impl Cloud {
         if dropped > 0 {
             warnings.push(format!("{}: {dropped} of {all} points were not finite and left out", path.display()));
         }
-        Ok(Cloud { points: kept, warnings })
+        Ok(Cloud { points: kept, warnings, is_in_metres: false })
     }
 }
 
@@ -84,6 +98,7 @@ fn recognise(path: &Path, bytes: &[u8]) -> Result<Format, DataError> {
         _ if bytes.starts_with(b"ply") => Some(Format::Ply),
         _ if bytes.starts_with(b"\x93NUMPY") => Some(Format::Npy),
         _ if bytes.starts_with(b"PK") => Some(Format::Npz),
+        _ if bytes.starts_with(b"\x89PNG") => Some(Format::Png),
         _ if bytes.starts_with(b"# .PCD") || bytes.starts_with(b"VERSION") => Some(Format::Pcd),
         _ => None,
     };
@@ -91,16 +106,16 @@ fn recognise(path: &Path, bytes: &[u8]) -> Result<Format, DataError> {
         (Some(format), _) => Ok(format),
         (None, "csv" | "xyz" | "txt" | "asc" | "pts" | "") => Ok(Format::Text),
         (None, "pcd") => Ok(Format::Pcd),
-        (None, "ply" | "npy" | "npz") => Err(DataError::file(
+        (None, "ply" | "npy" | "npz" | "png") => Err(DataError::file(
             path,
             format!("does not begin as a {ending} file does; is it damaged or of another kind?"),
         )),
         (None, "stl" | "obj") => Err(DataError::file(
             path,
-            "is a surface, not a point cloud; sample it, or give a PLY, PCD, CSV, XYZ, NPY or NPZ file",
+            "is a surface, not a point cloud; sample it, or give a PLY, PCD, CSV, XYZ, NPY, NPZ or PNG file",
         )),
         (None, _) => {
-            let what = format!("unknown kind of file `.{ending}`; give a PLY, PCD, CSV, XYZ, NPY or NPZ file");
+            let what = format!("unknown kind of file `.{ending}`; give a PLY, PCD, CSV, XYZ, NPY, NPZ or PNG file");
             Err(DataError::file(path, what))
         }
     }

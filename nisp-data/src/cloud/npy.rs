@@ -1,15 +1,19 @@
-//! NumPy arrays of n rows and at least three columns.
+//! NumPy arrays: points in rows of at least three columns, organised points, depth images.
 
 use std::path::Path;
 
 use npyz::{NpyFile, NpyHeader, Order};
 
+use super::image::Image;
 use crate::DataError;
 
 /// Bytes of a header at most, as in NumPy itself.
 const MOST_HEADER: usize = 10_000;
 /// Brackets within brackets of a header at most: a name, a tuple and a list need three.
 const DEEPEST: usize = 16;
+
+/// Columns from which on an array is a depth image: no point has so many members.
+const IMAGE: u64 = 17;
 
 /// An array whose numbers are all there.
 pub(super) struct Array<'a> {
@@ -37,14 +41,37 @@ impl<'a> Array<'a> {
 
     /// Whether it may be a cloud.
     pub(super) fn is_cloud(&self) -> bool {
-        matches!(self.header.shape(), &[_, width] if width >= 3)
+        matches!(self.header.shape(), &[_, width] | &[_, _, width] if (3..IMAGE).contains(&width))
+    }
+
+    /// A depth image, if it is one.
+    pub(super) fn image(self, path: &Path) -> Result<Option<Image>, DataError> {
+        let &[height, width] = self.header.shape() else { return Ok(None) };
+        if width < IMAGE {
+            return Ok(None);
+        }
+        let is_by_rows = self.header.order() == Order::C;
+        let file = NpyFile::with_header(self.header, self.numbers);
+        let (height, width) = (height as usize, width as usize);
+        let (flat, is_whole) = match file.try_data::<u16>() {
+            Ok(data) => {
+                let whole: std::io::Result<Vec<f64>> = data.map(|value| value.map(f64::from)).collect();
+                (whole.map_err(|error| unreadable(path, &error))?, true)
+            }
+            Err(file) => (numbers(path, file)?, false),
+        };
+        let by_columns = || (0..height * width).map(|index| flat[index % width * height + index / width]).collect();
+        let depths = if is_by_rows { flat } else { by_columns() };
+        Ok(Some(if is_whole { Image::of_numbers(width, depths) } else { Image { width, depths, metres: 1.0 } }))
     }
 
     /// Its points.
     pub(super) fn points(self, path: &Path) -> Result<Vec<[f64; 3]>, DataError> {
         let (shape, order) = (self.header.shape().to_vec(), self.header.order());
-        let &[count, width] = shape.as_slice() else {
-            return Err(DataError::file(path, format!("an array of shape {shape:?}; (n, 3) is needed")));
+        let (count, width) = match *shape.as_slice() {
+            [count, width] => (count, width),
+            [rows, columns, width] if order == Order::C => (rows * columns, width),
+            _ => return Err(DataError::file(path, format!("an array of shape {shape:?}; (n, 3) is needed"))),
         };
         if width < 3 {
             let what = format!("an array of shape {shape:?}; x, y and z are needed in each row");

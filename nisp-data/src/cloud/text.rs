@@ -5,20 +5,16 @@ use std::path::Path;
 use crate::input::decode;
 use crate::{DataError, Table};
 
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Vec<[f64; 3]>, DataError> {
+/// The points, and true where headers say their unit, which makes metres of them.
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Vec<[f64; 3]>, bool), DataError> {
     let text = decode(path, bytes)?;
     let mut rows = content(text).peekable();
     let first = rows.peek().map_or(Vec::new(), |(_, line)| cells(line));
     if first.iter().any(|cell| cell.parse::<f64>().is_err()) {
-        return table(path, bytes);
+        return Table::parse(path, bytes)?.points();
     }
-    rows.map(|(number, line)| bare_row(path, number, &cells(line), first.len())).collect()
-}
-
-fn table(path: &Path, bytes: &[u8]) -> Result<Vec<[f64; 3]>, DataError> {
-    let table = Table::parse(path, bytes)?;
-    let [x, y, z] = [table.raw("x")?, table.raw("y")?, table.raw("z")?];
-    Ok((0..table.rows()).map(|row| [x[row], y[row], z[row]]).collect())
+    let points: Result<_, _> = rows.map(|(number, line)| bare_row(path, number, &cells(line), first.len())).collect();
+    Ok((points?, false))
 }
 
 /// Lines with something on them, numbered from one.

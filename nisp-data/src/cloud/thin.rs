@@ -58,6 +58,10 @@ impl Cloud {
         let nearest = |cube: &Vec<usize>| cube.iter().copied().min_by(|i, j| off(*i).total_cmp(&off(*j)));
         let mut kept: Vec<usize> = cubes.values().filter(|cube| cube.len() >= least).filter_map(nearest).collect();
         kept.sort_unstable();
-        Self { points: kept.into_iter().map(|index| self.points[index]).collect(), warnings: self.warnings.clone() }
+        Self {
+            points: kept.into_iter().map(|index| self.points[index]).collect(),
+            warnings: self.warnings.clone(),
+            ..*self
+        }
     }
 }

@@ -58,11 +58,16 @@ impl Table {
         read: fn(&'a Table, &'a Column) -> Result<&'a [f64], DataError>,
     ) -> Result<Vec<f64>, DataError> {
         let values = read(self, column)?;
-        if let Some(error) = self.other_unit(&column.header, name, unit).filter(|_| column.header != name) {
-            return Err(error);
-        }
-        let size = size(&column.header, unit).filter(|_| column.header != name).unwrap_or(1.0);
+        let size = self.size_of(column, (name, unit))?.unwrap_or(1.0);
         Ok(values.iter().map(|value| value * size).collect())
+    }
+
+    /// How many of a unit one of that is which the header of a column says; nothing where it says none.
+    fn size_of(&self, column: &Column, (name, unit): (&str, &str)) -> Result<Option<f64>, DataError> {
+        if column.header == name {
+            return Ok(None);
+        }
+        self.other_unit(&column.header, name, unit).map_or_else(|| Ok(size(&column.header, unit)), Err)
     }
 
     /// What is wrong with a header that says that it is in another unit.
@@ -79,9 +84,26 @@ impl Table {
         self.find(name, None).is_ok()
     }
 
-    /// As [`Table::column`], but cells that are no finite numbers pass, as NaN or infinity.
-    pub(crate) fn raw(&self, name: &str) -> Result<&[f64], DataError> {
-        let column = self.find(name, None)?;
+    /// The coordinates of points, and true where their headers say the unit, which makes metres of them. Cells that are no finite
+    /// numbers pass, as NaN or infinity.
+    pub(crate) fn points(&self) -> Result<(Vec<[f64; 3]>, bool), DataError> {
+        let columns = [self.find("x", None)?, self.find("y", None)?, self.find("z", None)?];
+        let mut sizes = [None; 3];
+        for ((column, name), size) in columns.iter().zip(["x", "y", "z"]).zip(&mut sizes) {
+            *size = self.size_of(column, (name, "m"))?;
+        }
+        if sizes.iter().any(Option::is_some) && sizes.iter().any(Option::is_none) {
+            let headers = list(columns.iter().map(|column| column.header.as_str()));
+            let what = format!("{headers}: some say their unit and others do not; write it in all three or in none");
+            return Err(DataError::Column { path: self.path.clone(), what });
+        }
+        let [x, y, z] = [self.raw(columns[0])?, self.raw(columns[1])?, self.raw(columns[2])?];
+        let [a, b, c] = sizes.map(|size| size.unwrap_or(1.0));
+        let points = (0..self.rows()).map(|row| [a * x[row], b * y[row], c * z[row]]).collect();
+        Ok((points, sizes[0].is_some()))
+    }
+
+    fn raw<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
         match &column.fault {
             Some(fault) if matches!(fault.kind, Kind::Word | Kind::Empty) => self.checked(column),
             _ => Ok(&column.values),

@@ -1,6 +1,7 @@
 //! Clouds: every format gives the same points, and no bytes make a reader panic.
 
 mod damaged;
+mod depth;
 mod samples;
 mod thin;
 
@@ -106,7 +107,7 @@ fn millimetres_are_noticed() {
     cloud.points.iter_mut().flatten().for_each(|value| *value *= 1e3);
     let message = cloud.require_near(&low, &high).unwrap_err().to_string();
     assert!(message.contains("the domain 0.12 x 0.08 m: is the cloud in millimetres? give --unit mm"), "{message}");
-    cloud.convert_from("mm".parse::<LengthUnit>().unwrap());
+    cloud.take_into_metres("mm".parse::<LengthUnit>().unwrap());
     cloud.require_near(&low, &high).unwrap();
     assert_eq!(cloud.share_within([-0.06, -0.04, -1.0], [0.06, 0.04, 1.0]), 1.0);
     assert_eq!(Cloud { points: vec![[0.0; 3], [2.0; 3]], ..Cloud::default() }.share_within([-1.0; 3], [1.0; 3]), 0.5);
@@ -114,6 +115,26 @@ fn millimetres_are_noticed() {
     cloud.points.iter_mut().for_each(|point| point[0] += 3.0);
     assert!(cloud.require_near(&low, &high).unwrap_err().to_string().contains("another frame"));
     assert!("furlong".parse::<LengthUnit>().is_err());
+}
+
+#[test]
+fn headers_say_the_unit_of_a_cloud() {
+    let parse = |text: &str| Cloud::parse(Path::new("c.csv"), text.as_bytes());
+    let mut cloud = parse("x_mm,y [cm],z (m)\n1,2,3\n4,5,nan\n").unwrap();
+    assert_eq!(cloud.points, [[1e-3, 2e-2, 3.0]]);
+    // The header goes before the unit that is given.
+    cloud.take_into_metres(LengthUnit::Inch);
+    assert_eq!(cloud.points, [[1e-3, 2e-2, 3.0]]);
+    assert!(cloud.warnings.iter().any(|warning| warning.contains("--unit in is not used")), "{:?}", cloud.warnings);
+
+    let mut plain = parse("x,y,z\n1,2,3\n0,0,0\n").unwrap();
+    assert!(!plain.is_in_metres);
+    plain.take_into_metres(LengthUnit::Inch);
+    assert_eq!(plain.points[0], [0.0254, 2.0 * 0.0254, 3.0 * 0.0254]);
+
+    let fault = |text: &str| parse(text).unwrap_err().to_string();
+    assert!(fault("x_mm,y,z_mm\n1,2,3\n4,5,6\n").contains("in all three or in none"));
+    assert!(fault("x [s],y [m],z [m]\n1,2,3\n4,5,6\n").contains("`x [s]` is in s"));
 }
 
 proptest! {

@@ -10,7 +10,7 @@ fn plane() -> Cloud {
         (0..5).flat_map(move |k| (0..8).map(move |l| at(k, 0.06 + 0.12 * f64::from(l))))
     };
     let points = (-50..50).flat_map(|i| (-50..50).flat_map(move |j| square(i, j))).collect();
-    Cloud { points, warnings: Vec::new() }
+    Cloud { points, ..Cloud::default() }
 }
 
 #[test]
@@ -55,7 +55,7 @@ fn outliers_are_as_frequent_as_before() {
 #[test]
 fn every_cube_keeps_the_point_nearest_to_its_middle() {
     let points = vec![[0.1, 0.1, 0.1], [0.4, 0.5, 0.6], [-0.5, 0.5, 0.5], [1.5, 0.0, 0.0], [0.9, 0.9, 0.9]];
-    let cloud = Cloud { points, warnings: Vec::new() };
+    let cloud = Cloud { points, ..Cloud::default() };
     assert_eq!(cloud.one_of_each_cube(1.0, 1).points, [[0.4, 0.5, 0.6], [-0.5, 0.5, 0.5], [1.5, 0.0, 0.0]]);
     assert_eq!(cloud.one_of_each_cube(1.0, 3).points, [[0.4, 0.5, 0.6]]);
 }

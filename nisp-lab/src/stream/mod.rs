@@ -181,7 +181,7 @@ fn seen(membrane: &Membrane, options: &Options, random: &mut Random) -> Cloud {
             points.push(point);
         }
     }
-    Cloud { points, warnings: Vec::new() }
+    Cloud { points, ..Cloud::default() }
 }
 
 fn prepared(cloud: &Cloud, cells: Option<usize>) -> Result<Prepared, String> {
