@@ -12,7 +12,9 @@ use nisp_data::cloud::LengthUnit;
 
 use crate::config;
 use crate::help::{EVAL_SEE_HELP, EVAL_TEACH, SEE_HELP, TEACH};
-use crate::options::{activations, count, one_line, optimizers, pair, precisions, seconds, seed, show, size, value};
+use crate::options::{
+    activations, count, one_line, optimizers, pair, precisions, seconds, seed, show, size, value, whole,
+};
 use crate::program::Program;
 use stream::StreamOptions;
 
@@ -293,10 +295,7 @@ fn data(word: OsString) -> Result<(Option<String>, PathBuf), String> {
 
 fn points(text: &str) -> Result<(String, usize), String> {
     let (group, number) = text.split_once('=').ok_or("write GROUP=N, for instance inside=4000")?;
-    match count(number.trim())? {
-        number if number <= MOST_POINTS => Ok((group.trim().into(), number)),
-        _ => Err(format!("at most {MOST_POINTS} points")),
-    }
+    Ok((group.trim().into(), whole(number.trim(), MOST_POINTS)?))
 }
 
 /// What a command line turned out to be.

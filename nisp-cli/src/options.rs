@@ -32,8 +32,13 @@ const MOST: usize = 1_000_000_000;
 /// # Errors
 /// Anything else; what to give.
 pub fn count(text: &str) -> Result<usize, String> {
-    let number = text.parse::<usize>().ok().filter(|number| (1..=MOST).contains(number));
-    number.ok_or_else(|| "give a whole number of at least 1".into())
+    whole(text, MOST)
+}
+
+/// A whole number from 1 to `most`.
+pub(crate) fn whole(text: &str, most: usize) -> Result<usize, String> {
+    let number = text.parse::<usize>().ok().filter(|number| (1..=most).contains(number));
+    number.ok_or_else(|| format!("give a whole number from 1 to {most}"))
 }
 
 /// Networks wider or deeper than this are a slip.
@@ -44,8 +49,7 @@ const WIDEST: usize = 4096;
 /// # Errors
 /// Anything else; what to give.
 pub fn size(text: &str) -> Result<usize, String> {
-    let number = text.parse::<usize>().ok().filter(|number| (1..=WIDEST).contains(number));
-    number.ok_or_else(|| format!("give a whole number of at least 1 and at most {WIDEST}"))
+    whole(text, WIDEST)
 }
 
 /// Any seed.

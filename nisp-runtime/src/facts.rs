@@ -210,4 +210,9 @@ pub(crate) struct Answer {
     /// The largest change of a learned scalar's parameter in one more whole Gauss-Newton step; nothing at the end of the steps, and
     /// where the carrier does not tell.
     pub(crate) ahead: Option<f64>,
+    /// What to do where the carrier may be too coarse.
+    pub(crate) finer: &'static str,
 }
+
+/// What to do where splines, on a line or a lattice, may be too coarse: their cells are as fine as the data can tell.
+pub(crate) const OTHER_THAN_SPLINES: &str = "--carrier network tries another one";

@@ -22,7 +22,15 @@ impl Engine<f64> {
                 }
             }
         }
-        Answer { facts, clouds: seen, scalars: self.scalars.clone(), scores: Vec::new(), told: Vec::new(), ahead: None }
+        Answer {
+            facts,
+            clouds: seen,
+            scalars: self.scalars.clone(),
+            scores: Vec::new(),
+            told: Vec::new(),
+            ahead: None,
+            finer: "more --budget, more --width or another --seed",
+        }
     }
 
     /// Values and derivatives at the points of a group.

@@ -2,7 +2,7 @@
 
 use super::place::State;
 use super::solver::Solver;
-use crate::facts::{Answer, CloudFacts};
+use crate::facts::{Answer, CloudFacts, OTHER_THAN_SPLINES};
 
 /// Distances to a cloud that splines do not follow, as a share of a cell.
 const UNRESOLVED: f64 = 0.03;
@@ -28,6 +28,7 @@ impl Solver {
             scores: Vec::new(),
             told: Vec::new(),
             ahead: None,
+            finer: OTHER_THAN_SPLINES,
         }
     }
 }

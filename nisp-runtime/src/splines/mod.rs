@@ -32,7 +32,7 @@ use thiserror::Error;
 
 use crate::bounds;
 use crate::carrier::Progress;
-use crate::facts::Answer;
+use crate::facts::{Answer, OTHER_THAN_SPLINES};
 use crate::memory::{self, Exceeded};
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -202,7 +202,8 @@ pub(crate) fn solve(
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let kept = KeptSplines { heads, theta, learned, spreads };
     let told = course.map(|course| told::told(&kept, course, &along, &variances)).unwrap_or_default();
-    let answer = Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told, ahead };
+    let answer =
+        Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told, ahead, finer: OTHER_THAN_SPLINES };
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })
 }
 

@@ -5,7 +5,7 @@
 //! is compared with its own target, and one whose target is zero with what the same quantity is elsewhere.
 
 use super::{Check, root_mean_square};
-use crate::facts::Facts;
+use crate::facts::{Answer, Facts};
 use crate::problem::Bound;
 use crate::residual::Programs;
 use crate::schema::{self, Jet, Term, TermKind};
@@ -60,6 +60,7 @@ struct Judged<'a> {
     programs: &'a dyn Programs<f64>,
     sizes: &'a Sizes,
     scalars: &'a [f64],
+    finer: &'static str,
 }
 
 /// Checks of the equations and conditions of a group.
@@ -68,10 +69,10 @@ pub(super) fn checks(
     group: usize,
     (facts, rows): (&Facts, &[Vec<f64>]),
     programs: &dyn Programs<f64>,
-    (sizes, scalars): (&Sizes, &[f64]),
+    (sizes, answer): (&Sizes, &Answer),
 ) -> Vec<Check> {
     let schema = &bound.problem.scene().schema.groups[group];
-    let judged = Judged { bound, schema, facts, programs, sizes, scalars };
+    let judged = Judged { bound, schema, facts, programs, sizes, scalars: &answer.scalars, finer: answer.finer };
     let mut checks = Vec::new();
     for term in schema.terms {
         match term.kind {
@@ -106,11 +107,12 @@ impl Judged<'_> {
             };
             let value = if rms == 0.0 { 0.0 } else { rms / scale };
             let message = format!(
-                "`{name}.{}` is off by {:.2e} {unit}, where {said} is {:.2e} {unit}: the answer does not solve it; give more \
-                 --budget or --width, or check the parameters and data that contradict it",
+                "`{name}.{}` is off by {:.2e} {unit}, where {said} is {:.2e} {unit}: the answer does not solve it; check the \
+                 parameters and data that contradict it, or the carrier is too coarse ({})",
                 term.name,
                 rms * outward,
-                scale * outward
+                scale * outward,
+                self.finer
             );
             let check = Check::new(kind, (name, term.name), (value, limit), message);
             if worst.as_ref().is_none_or(|worst| check.value.total_cmp(&worst.value).is_gt()) {

@@ -80,8 +80,8 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         }
         let programs = kernels[at].programs;
         let rows = facts.rows(programs, group, &answer.scalars);
-        checks.extend(equations::checks(bound, at, (facts, &rows), programs, (&sizes, &answer.scalars)));
-        checks.extend(observations::checks(bound, at, &rows, noise));
+        checks.extend(equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer)));
+        checks.extend(observations::checks(bound, at, (&rows, noise), answer.finer));
     }
     checks.extend(outside::checks(bound));
     checks.extend(settled::check(bound, answer.ahead));

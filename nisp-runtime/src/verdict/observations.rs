@@ -30,7 +30,7 @@ const OUTLIERS: f64 = 1.0;
 const ROUNDING: f64 = 1e-5;
 
 /// Checks of the observations of a group.
-pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noise) -> Vec<Check> {
+pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &Noise), finer: &str) -> Vec<Check> {
     let schema = &bound.problem.scene().schema.groups[group];
     let mut checks = Vec::new();
     let terms = schema.terms.iter().enumerate();
@@ -63,7 +63,7 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
                 if exact { (of.spread, EXACT) } else { (of.deviation, MISFIT.max(by_chance(own)) * doubt(own)) };
             let said = format!(
                 "`{}` is not resolved: it is missed by {:.2e} {unit} (rms), while the data's noise is {:.2e} {unit}: the equations or a parameter \
-                 do not fit these data, or the carrier is too coarse (more --width, another --seed, more --budget)",
+                 do not fit these data, or the carrier is too coarse ({finer})",
                 term.name,
                 rms * outward,
                 of.deviation * outward
@@ -118,7 +118,7 @@ pub(super) fn checks(bound: &Bound, group: usize, rows: &[Vec<f64>], noise: &Noi
         if let Some(swing) = of.and_then(|of| rhythm(places, &own[0], of)) {
             let said = format!(
                 "what is left of `{}` goes up and down {} times over the record by {:.2e} {unit}, which noise does not: a rhythm \
-                 was smoothed away (another --seed, more --width)",
+                 was smoothed away ({finer})",
                 term.name,
                 swing.periods,
                 swing.amplitude * outward

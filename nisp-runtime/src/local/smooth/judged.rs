@@ -2,7 +2,7 @@
 
 use super::solver::Solver;
 use super::state::{Phase, State};
-use crate::facts::Answer;
+use crate::facts::{Answer, OTHER_THAN_SPLINES};
 use crate::local::draws::{Deviations, Draws};
 use crate::local::group::Group;
 use crate::local::misfits::Misfits;
@@ -57,6 +57,7 @@ impl Solver<'_> {
             scores: Vec::new(),
             told: Vec::new(),
             ahead: None,
+            finer: OTHER_THAN_SPLINES,
         }
     }
 
