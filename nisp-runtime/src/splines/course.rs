@@ -20,8 +20,9 @@ const RESTING: f64 = 0.05;
 const SETTLED: f64 = 1e-3;
 /// Change of a coefficient that says that steps lead nowhere.
 const WANDERING: f64 = 5e-3;
-/// Steps of a kind of smoothness at most.
+/// Steps of a kind of smoothness at most, and those after which equations that are still loose are left so.
 const MOST_STEPS: u64 = 60;
+const MOST_LOOSE_STEPS: u64 = 120;
 /// The end of the error bars' steps at the latest, beside the budget.
 const LATE: f64 = 1.05;
 
@@ -73,7 +74,10 @@ impl Run<'_> {
                 Phase::Regress if resting || place.since >= REGRESS => {
                     (place.phase, place.since) = (Phase::Solve, 0);
                 }
-                Phase::Solve if is_tight && (resting && found.change < SETTLED || place.since >= MOST_STEPS) => {
+                Phase::Solve
+                    if is_tight && (resting && found.change < SETTLED || place.since >= MOST_STEPS)
+                        || place.since >= MOST_LOOSE_STEPS =>
+                {
                     place.since = 0;
                     // An iterate that wanders about has no evidence.
                     place.next(if found.change < WANDERING { found.evidence } else { f64::MIN });

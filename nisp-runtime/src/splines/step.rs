@@ -13,8 +13,11 @@ use crate::weighed::{Tally, renew};
 pub(super) const TOLERANCE: f64 = 1e-6;
 /// How far they may be off for the sizes of noise and sources to be looked for.
 const STRAYED: f64 = 1e-3;
-/// The fall of their tolerance from step to step, and its rise after one that had to be short.
+/// The fall of their tolerance from step to step, and its rise after one that led nearly nowhere.
 const TIGHTER: f64 = 0.1;
+/// Shares of a step that were taken: below the first it led nearly nowhere, below the second it had to be short.
+const STUCK: f64 = 0.1;
+const SHORT: f64 = 0.5;
 /// Logarithm of the evidence that a larger source may cost and still be possible, and how many numbers must be told of a source
 /// for the evidence to know its size.
 const DOUBT: f64 = 2.0;
@@ -96,8 +99,12 @@ impl Solver<'_> {
         let is_other = |class| self.roughness.contains(&class) && !judged.contains(&class);
         renew(&mut next.classes, &tallies, |class| has_strayed || is_loose && is_prior(class) || is_other(class));
         if phase == Phase::Solve {
-            // Strict equations that are not linear leave steps no room: those that had to be short go on with looser ones.
-            let tighter = if share < 0.5 { TIGHTER.recip() } else { TIGHTER };
+            // Strict equations that are not linear leave steps no room: where they lead nowhere, looser ones do.
+            let tighter = match share {
+                ..STUCK => TIGHTER.recip(),
+                ..SHORT => 1.0,
+                _ => TIGHTER,
+            };
             next.tolerance = (state.tolerance * tighter).clamp(TOLERANCE, LOOSE);
         }
         next.step += 1;

@@ -19,7 +19,7 @@ const SHARE: f64 = 1e-2;
 const STRICTEST: f64 = 1e-5;
 const EASIEST: f64 = 1e-3;
 /// The same in the first step: a state that is far off finds its way along loose equations.
-pub(super) const LOOSE: f64 = 1e-2;
+const LOOSE: f64 = 1e-2;
 /// Least roughness.
 const LEAST_ROUGHNESS: f64 = 1e-12;
 

@@ -5,7 +5,7 @@ use std::ops::Range;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
-use super::solver::{LOOSE, Solver};
+use super::solver::Solver;
 use super::state::{Phase, State};
 use crate::local::LocalError;
 use crate::local::block::Block;
@@ -20,6 +20,9 @@ use crate::weighed::{Tally, renew};
 const TIGHTER: f64 = 0.1;
 /// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
 const RIDGE: f64 = 1e-6;
+/// How much rougher fields may be than the data alone say, times the tolerance of their equations. Where a source sets in, fields
+/// change in a small part of the domain and time: a prior that speaks beside the data flattens the source.
+const FREE: f64 = 10.0;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
 const LEARNED: f64 = 10.0;
 /// Largest change of a learned parameter in a step.
@@ -116,9 +119,10 @@ impl Solver<'_> {
     }
 
     fn prior_rows(&self, state: &State, head: usize) -> Vec<Block> {
-        // Equations say of fields what the prior says of sources: it lets fields go as equations tighten.
+        // Equations say of fields what the prior says of sources: it lets fields go as equations tighten, and keeps only those
+        // directions bounded of which nothing else speaks.
         let is_free = state.phase == Phase::Solve && !self.schema().heads[head].source;
-        let times = if is_free { LOOSE / state.tolerance } else { 1.0 };
+        let times = if is_free { FREE / state.tolerance } else { 1.0 };
         let roughness = times * state.classes[self.roughness[head]].size;
         self.priors[head].blocks(&state.theta, roughness, state.learned.len())
     }
