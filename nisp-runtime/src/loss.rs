@@ -57,6 +57,16 @@ impl Loss {
         self != Self::Square
     }
 
+    /// The loss itself or, where it leaves out what is far off, Huber's that bends where it does. Of a state that fits nothing yet
+    /// such a loss would leave out what is right; a convex one has one minimum.
+    pub(crate) fn convex(self) -> Self {
+        match self {
+            Self::Square | Self::Huber(_) => self,
+            Self::Welsch(c) => Self::Huber(0.6 * c),
+            Self::Tukey(c) => Self::Huber(0.35 * c),
+        }
+    }
+
     /// `sign(u) sqrt(2 rho(u))` and its derivative: half the square of such a row is the loss.
     pub(crate) fn row(self, u: f64) -> (f64, f64) {
         let value = (2.0 * self.rho(u)).sqrt();
@@ -97,6 +107,17 @@ mod tests {
         let welsch = 4.0 * (1.0 - (-(u / 2.0).powi(2) / 2.0).exp());
         let tukey = 9.0 / 6.0 * (1.0 - (1.0 - (u / 3.0).powi(2)).max(0.0).powi(3));
         [(Loss::Square, u * u / 2.0), (Loss::Huber(1.5), huber), (Loss::Welsch(2.0), welsch), (Loss::Tukey(3.0), tukey)]
+    }
+
+    #[test]
+    fn convex_losses_weigh_small_misfits_alike_and_large_ones_more() {
+        for loss in [Loss::Welsch(2.0), Loss::Tukey(4.0)] {
+            let convex = loss.convex();
+            assert!((convex.weight(0.2) - loss.weight(0.2)).abs() < 0.02, "{loss:?}");
+            assert!(convex.weight(8.0) > 0.1 && loss.weight(8.0) < 1e-3, "{loss:?}");
+            assert_eq!(convex.convex(), convex);
+        }
+        assert_eq!(Loss::Square.convex(), Loss::Square);
     }
 
     #[test]

@@ -5,6 +5,7 @@ use super::iterate::{Phase, State};
 use super::rows::Rows;
 use super::solver::Solver;
 use super::triangle::Row;
+use crate::loss::Loss;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 
@@ -24,6 +25,12 @@ impl Solver<'_> {
         }
     }
 
+    /// How the misfits of a group's term count at a state.
+    fn loss_of(&self, state: &State, (group, term): (usize, usize)) -> Loss {
+        let loss = self.bound.losses[group][term];
+        if state.convex { loss.convex() } else { loss }
+    }
+
     /// Rows about a state with their classes, in the order of their unknowns, and what [`Solver::loss`] makes of them; what is
     /// not finite is a fault.
     pub(super) fn rows(&mut self, state: &State, phase: Phase) -> Result<(Rows, f64), Fault> {
@@ -41,7 +48,7 @@ impl Solver<'_> {
                 if self.left_out == Some(self.classes[at][number]) {
                     continue;
                 }
-                let loss = self.bound.losses[at][number];
+                let loss = self.loss_of(state, (at, number));
                 let lacking = self.bound.lacking(at, term);
                 let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
                 for row in term.first..term.first + term.rows {
@@ -141,7 +148,7 @@ impl Solver<'_> {
                 if !self.takes_part(at, term, phase) {
                     continue;
                 }
-                let loss = self.bound.losses[at][number];
+                let loss = self.loss_of(state, (at, number));
                 let lacking = self.bound.lacking(at, term);
                 let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
                 for row in term.first..term.first + term.rows {

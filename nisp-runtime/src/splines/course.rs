@@ -79,10 +79,14 @@ impl Run<'_> {
                         || place.since >= MOST_LOOSE_STEPS =>
                 {
                     place.since = 0;
-                    // An iterate that wanders about has no evidence.
-                    place.next(if found.change < WANDERING { found.evidence } else { f64::MIN });
-                    if let Some(&kind) = place.kinds.first() {
-                        solver.change_smoothness(KINDS[kind], &mut place.state);
+                    if place.state.convex {
+                        place.state.convex = false;
+                    } else {
+                        // An iterate that wanders about has no evidence.
+                        place.next(if found.change < WANDERING { found.evidence } else { f64::MIN });
+                        if let Some(&kind) = place.kinds.first() {
+                            solver.change_smoothness(KINDS[kind], &mut place.state);
+                        }
                     }
                 }
                 _ => {}

@@ -15,6 +15,8 @@ pub(super) struct State {
     pub(super) classes: Vec<Class>,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,
+    /// Whether losses that leave out what is far off are still convex ones in their place.
+    pub(super) convex: bool,
     pub(super) step: u64,
 }
 
@@ -33,6 +35,7 @@ impl State {
             .with(&format!("{prefix}theta"), &self.theta)
             .with(&format!("{prefix}learned"), &self.learned)
             .with(&format!("{prefix}tolerance"), &[self.tolerance])
+            .with_counter(&format!("{prefix}convex"), u64::from(self.convex))
             .with_counter(&format!("{prefix}step"), self.step)
     }
 
@@ -42,6 +45,7 @@ impl State {
         self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
         self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
         [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
+        self.convex = saved.counter(&format!("{prefix}convex"))? == 1;
         self.step = saved.counter(&format!("{prefix}step"))?;
         Ok(())
     }

@@ -155,7 +155,8 @@ impl<'a> Solver<'a> {
         classes.extend(rough);
         classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
-        let mut state = State { theta, learned, classes, tolerance: LOOSE, step: 0 };
+        let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
+        let mut state = State { theta, learned, classes, tolerance: LOOSE, convex, step: 0 };
         let level = start::level(|level| {
             state.theta.fill(level);
             self.size(&state);
