@@ -180,7 +180,8 @@ fn solve(
             let course = Course::new(fingerprint, limits, start, from, &mut *monitor);
             let solved = attempt.carrier.solve(bound, settings, course)?;
             let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
-            let is_over = solution.is_clear() || solution.status == Status::Interrupted;
+            let bends = first.as_ref().is_some_and(|first| first.verdict.speaks_against(&solution.verdict));
+            let is_over = solution.is_clear() && !bends || solution.status == Status::Interrupted;
             let solution = if is_over { solution } else { first.take().unwrap_or(solution) };
             match attempts.next().filter(|_| !is_over && has_time_again(settings, start)) {
                 Some(next) => (attempt, first) = (next, Some(solution)),

@@ -21,6 +21,9 @@ use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::solve::vector::root_mean_square;
 
+/// What is left of an equation that is held firmly, as a share of what may be left.
+const FIRM: f64 = 0.25;
+
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
@@ -52,6 +55,18 @@ impl Verdict {
     /// True if every check passes.
     pub fn passed(&self) -> bool {
         self.checks.iter().all(|check| check.passed)
+    }
+
+    /// True where an answer that held its equations firmly missed the data, and another one fits the data by holding them less
+    /// firmly: these equations do not describe the data.
+    pub(crate) fn speaks_against(&self, other: &Self) -> bool {
+        let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "rhythm");
+        self.failed().any(misses) && self.is_firm() && !other.is_firm()
+    }
+
+    /// True where what is left of every equation is a small part of what may be.
+    fn is_firm(&self) -> bool {
+        self.checks.iter().filter(|check| check.check == "equation").all(|check| check.value <= FIRM * check.limit)
     }
 
     /// The checks that do not pass.
@@ -109,4 +124,22 @@ pub(crate) fn patches(name: &'static str, values: &[f64], level: f64) -> Check {
 /// That equations and conditions without data leave nothing open; `open` says what they do.
 pub(crate) fn determined(name: &'static str, open: String) -> Check {
     Check::new("determined", ("", name), (1.0, 0.0), open)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn verdict(equation: f64, misfit: f64) -> Verdict {
+        let check = |kind, value| Check::new(kind, ("", ""), (value, 0.2), String::new());
+        Verdict { checks: vec![check("equation", equation), check("misfit", misfit)] }
+    }
+
+    #[test]
+    fn an_answer_that_bends_equations_until_data_fit_does_not_replace_one_that_held_them() {
+        let (held, bent, right) = (verdict(1e-6, 0.9), verdict(0.15, 0.1), verdict(1e-3, 0.1));
+        assert!(held.speaks_against(&bent) && !held.speaks_against(&right));
+        // One that did not hold its equations either is no witness, and neither is one that fits.
+        assert!(!verdict(0.15, 0.9).speaks_against(&bent) && !right.speaks_against(&bent));
+    }
 }
