@@ -143,6 +143,19 @@ fn the_repository_data_reads() {
     assert_eq!(truth.quantity("f", "N").unwrap()[0], 0.0744481331);
 }
 
+#[test]
+fn headers_that_speak_of_no_known_unit_are_not_taken_for_another() {
+    let table = parse("t (Min),T_degC,u [rpm],v (measured)\n0,20,1,2\n1,21,2,3\n");
+    let fault = |name: &str, header: &str, unit: &str| table.chosen(name, header, unit).unwrap_err().to_string();
+    assert!(fault("t", "t (Min)", "s").contains("is `min` meant?"), "{}", fault("t", "t (Min)", "s"));
+    assert!(fault("T", "T_degC", "K").contains("add 273.15 to every value"));
+    assert!(fault("u", "u [rpm]", "1/s").contains("no such unit is known"));
+    assert_eq!(table.chosen("v", "v (measured)", "m").unwrap(), [2.0, 3.0]);
+    // Nothing is suggested that would be refused.
+    let missing = table.quantity("T", "K").unwrap_err().to_string();
+    assert!(missing.contains("add 273.15"), "{missing}");
+}
+
 /// What tables are made of.
 const ALMOST_CSV: &str = "tq0123456789,;#\"[]_ .\n\re+-";
 

@@ -10,6 +10,9 @@ use crate::names::likeness;
 /// Headers less like a name are not meant by it, unless they begin with it.
 const ALIKE: f64 = 0.85;
 
+/// Degrees that begin elsewhere than the kelvin's: no factor turns one into the other.
+const CELSIUS: [&str; 5] = ["degC", "°C", "℃", "celsius", "Celsius"];
+
 impl Table {
     /// The column that answers to `name`: an exact header, or the only one of the forms `name [unit]`, `name (unit)` and
     /// `name_unit`.
@@ -72,10 +75,19 @@ impl Table {
 
     /// What is wrong with a header that says that it is in another unit.
     fn other_unit(&self, header: &str, name: &str, unit: &str) -> Option<DataError> {
-        let own = claimed(header).filter(|own| !fits(own, unit))?;
+        let own = claimed(header).or_else(|| misspelt(header)).filter(|own| !fits(own, unit))?;
         let wanted = if is_plain(unit) { "a number without unit".into() } else { format!("in {unit}") };
-        let what =
-            format!("`{header}` is in {own}, where `{name}` is {wanted}: choose another column, or correct the header");
+        let instead = match own.trim() {
+            celsius if CELSIUS.contains(&celsius) => {
+                format!("add 273.15 to every value, and call the column `{name} [K]`")
+            }
+            unit if is_unit(unit) => "choose another column, or correct the header".into(),
+            unit if is_unit(&unit.to_lowercase()) => format!("is `{}` meant? correct the header", unit.to_lowercase()),
+            unit => {
+                format!("no such unit is known: put it into one that is, or correct the header if `{unit}` is none")
+            }
+        };
+        let what = format!("`{header}` is in {own}, where `{name}` is {wanted}: {instead}");
         Some(DataError::Column { path: self.path.clone(), what })
     }
 
@@ -271,6 +283,14 @@ fn size(header: &str, unit: &str) -> Option<f64> {
 /// The unit that a header says it is in: anything in square brackets, and what is a unit in round ones.
 fn claimed(header: &str) -> Option<&str> {
     in_brackets(header).filter(|inner| header.ends_with(']') || is_unit(inner))
+}
+
+/// What stands for a unit at the end of a header, and is none: numbers would be taken for those of another unit.
+fn misspelt(header: &str) -> Option<&str> {
+    let is_celsius = |own: &&str| CELSIUS.contains(own);
+    let within = in_brackets(header).map(str::trim);
+    let behind = header.rsplit_once('_').map(|(_, own)| own).filter(is_celsius);
+    within.filter(|own| is_celsius(own) || !is_unit(own) && is_unit(&own.to_lowercase())).or(behind)
 }
 
 fn in_brackets(header: &str) -> Option<&str> {
