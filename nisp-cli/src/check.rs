@@ -96,7 +96,8 @@ fn held(group: &Group, prepared: &Prepared) -> Vec<String> {
             let _ = write!(text, ", not measured in {} of {} rows", values.len() - measured.len(), values.len());
         }
         let (at, values): (Vec<f64>, Vec<f64>) = measured.into_iter().unzip();
-        if let (1, Ok(noise)) = (axes, noise_level(&at, &values)) {
+        // A classical smoother takes a course that it cannot follow for no noise at all.
+        if let (1, Some(noise)) = (axes, noise_level(&at, &values).ok().filter(|noise| *noise > 0.0)) {
             let _ = write!(text, ", noise about {noise:.1e}");
         }
         lines.push(text);

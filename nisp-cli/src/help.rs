@@ -69,9 +69,10 @@ options as before, goes on as if the run had not stopped, to the last bit on the
 from now, --iterations from the first start. A checkpoint that is damaged or of another problem is refused.
 
 Exit codes:
-  0  solved, or the budget is spent (status `converged`, `budget`)
+  0  the answer passes all checks (status `converged`, or `budget` where the time was spent)
   2  bad input; nothing was written
-  3  not converged, or interrupted (status `not_converged`); the best state was written
+  3  a check failed (status `inconsistent` or `budget`), not converged or interrupted (`not_converged`);
+     the best state was written
   4  the results could not be written to the folder of --out, or to standard output";
 
 /// Behind the short help of `eval`.
