@@ -12,6 +12,7 @@ mod prior;
 mod solver;
 mod state;
 mod step;
+mod told;
 
 use std::time::Instant;
 
@@ -127,6 +128,7 @@ pub(crate) fn solve(
     let checkpoint = state.save();
     let State { theta, learned, step: iterations, .. } = state;
     let kept = KeptLattices { heads: solver.heads, theta, learned, draws: deviations };
+    answer.told = told::told(bound, &kept);
     let factor = factor.filter(|_| wants_bars);
     Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits })
 }
