@@ -106,7 +106,7 @@ fn values() {
         ("--set f0", &["NAME=VALUE"]),
         ("--set f0=nan", &["finite number"]),
         ("--width 0", &["--width", "from 1 to"]),
-        ("--width 100000", &["at most 4096"]),
+        ("--width 100000", &["from 1 to 4096"]),
         ("--width 400 --optimizer broyden", &["too costly", "smaller width", "lbfgs"]),
         ("--width 4096 --layers 4096", &["4096 layers of 4096 units cannot be built"]),
         ("--layers 0", &["--layers", "from 1 to"]),
