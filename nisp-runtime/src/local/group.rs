@@ -167,6 +167,13 @@ impl Group {
         self.tests.par_iter().map_init(Vec::new, tested).collect()
     }
 
+    /// Lets misfits count by other losses, by term.
+    pub(super) fn set_losses(&mut self, losses: impl Iterator<Item = Loss>) {
+        for (term, loss) in self.schema.terms.iter().zip(losses) {
+            self.losses[term.first..term.first + term.rows].iter_mut().for_each(|own| own.0 = loss);
+        }
+    }
+
     /// Multiplies rows over their tolerances so that their squares have the slopes of robust losses.
     fn majorise(&self, block: &mut Block, rows: &[usize]) {
         let robust = |row: usize| Some(self.losses[row]).filter(|(loss, _)| loss.is_robust());

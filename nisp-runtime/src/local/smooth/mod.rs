@@ -98,11 +98,13 @@ pub(crate) fn solve(
         if monitor(Progress { iteration: state.step, elapsed_s, loss, checkpoint }) == Flow::Stop {
             break Status::Interrupted;
         }
-        if before == Phase::Solve && is_tight && is_resting && (found.change < SETTLED || found.gain < SETTLED) {
-            break Status::Converged;
-        }
-        if state.since >= MOST_STEPS {
-            break Status::NotConverged;
+        let is_settled =
+            before == Phase::Solve && is_tight && is_resting && (found.change < SETTLED || found.gain < SETTLED);
+        match (is_settled, state.since >= MOST_STEPS) {
+            (false, false) => {}
+            _ if state.convex => (state.convex, state.since) = (false, 0),
+            (true, _) => break Status::Converged,
+            (false, true) => break Status::NotConverged,
         }
     };
     let mut warnings = Vec::new();

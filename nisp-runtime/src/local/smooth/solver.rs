@@ -7,6 +7,7 @@ use crate::local::LocalError;
 use crate::local::group::Group;
 use crate::local::heads::Heads;
 use crate::local::normal::Normal;
+use crate::loss::Loss;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
@@ -84,7 +85,9 @@ impl<'a> Solver<'a> {
         let guess = Guess { size: 0.0, count: 0.0, least: LEAST_ROUGHNESS };
         classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess)));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
-        let mut state = State { theta, learned, classes, tolerance: LOOSE, phase: Phase::Solve, step: 0, since: 0 };
+        let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
+        let (tolerance, phase) = (LOOSE, Phase::Solve);
+        let mut state = State { theta, learned, classes, tolerance, convex, phase, step: 0, since: 0 };
         let level = start::level(|level| {
             state.theta.fill(level);
             self.size(&state);
@@ -101,6 +104,12 @@ impl<'a> Solver<'a> {
             self.priors[head] = Prior::flat(&self.heads, head);
             state.classes[self.roughness[head]].restart(self.priors[head].natural);
         }
+    }
+
+    /// How the misfits of a group's terms count at a state.
+    pub(super) fn losses(&self, state: &State, group: usize) -> Vec<Loss> {
+        let own = self.bound.losses[group].iter();
+        own.map(|loss| if state.convex { loss.convex() } else { *loss }).collect()
     }
 
     /// Takes over learned scalars; returns their derivatives by their parameters.

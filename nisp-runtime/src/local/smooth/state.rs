@@ -21,6 +21,8 @@ pub(super) struct State {
     pub(super) classes: Vec<Class>,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,
+    /// Whether losses that leave out what is far off are still convex ones in their place.
+    pub(super) convex: bool,
     pub(super) phase: Phase,
     /// Steps, and those of the phase.
     pub(super) step: u64,
@@ -33,6 +35,7 @@ impl State {
             .with("theta", &self.theta)
             .with("learned", &self.learned)
             .with("tolerance", &[self.tolerance])
+            .with_counter("convex", u64::from(self.convex))
             .with_counter("phase", u64::from(self.phase == Phase::Solve))
             .with_counter("iterations", self.step)
             .with_counter("since", self.since)
@@ -45,6 +48,7 @@ impl State {
         self.theta = saved.sized("theta", self.theta.len())?;
         self.learned = saved.sized("learned", self.learned.len())?;
         [self.tolerance] = saved.scalars("tolerance")?;
+        self.convex = saved.counter("convex")? == 1;
         self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
         (self.step, self.since) = (saved.counter("iterations")?, saved.counter("since")?);
         Ok(())

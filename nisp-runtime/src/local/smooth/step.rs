@@ -107,7 +107,7 @@ impl Solver<'_> {
                 continue;
             }
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
-            for (term, loss) in group.schema.terms.iter().zip(&self.bound.losses[at]) {
+            for (term, loss) in group.schema.terms.iter().zip(self.losses(state, at)) {
                 for (row, counts) in counts.iter().enumerate().skip(term.first).take(term.rows) {
                     let there = (0..group.sites.count).filter(|&p| counts[p]);
                     sum += there.map(|p| loss.rho(found.row(row, p) / group.sigma[row])).sum::<f64>();
@@ -132,6 +132,10 @@ impl Solver<'_> {
         let slopes = self.set_learned(&state.learned);
         self.size(state);
         self.set_sigmas(state);
+        for at in 0..self.groups.len() {
+            let losses = self.losses(state, at);
+            self.groups[at].set_losses(losses.into_iter());
+        }
         let loss = self.loss(state);
         let blocks = self.assemble(state, &slopes)?;
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
