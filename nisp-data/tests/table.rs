@@ -156,9 +156,6 @@ fn headers_that_speak_of_no_known_unit_are_not_taken_for_another() {
     assert!(missing.contains("add 273.15"), "{missing}");
 }
 
-/// What tables are made of.
-const ALMOST_CSV: &str = "tq0123456789,;#\"[]_ .\n\re+-";
-
 proptest! {
     #[test]
     fn garbage_never_panics(bytes in proptest::collection::vec(any::<u8>(), 0..400)) {
@@ -171,8 +168,8 @@ proptest! {
     }
 
     #[test]
-    fn almost_csv_never_panics(chosen in proptest::collection::vec(proptest::sample::select(ALMOST_CSV.as_bytes()), 0..200)) {
-        if let Ok(table) = Table::parse(Path::new("g"), &chosen) {
+    fn almost_csv_never_panics(text in "[tq0-9,;#\"\\[\\]_ .\\n\\re+-]{0,200}") {
+        if let Ok(table) = Table::parse(Path::new("g"), text.as_bytes()) {
             let _ = (table.column("t"), table.quantity("q", "m"), table.require_increasing("q"));
         }
     }

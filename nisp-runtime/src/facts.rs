@@ -214,5 +214,5 @@ pub(crate) struct Answer {
     pub(crate) finer: &'static str,
 }
 
-/// What to do where splines, on a line or a lattice, may be too coarse: their cells are as fine as the data can tell.
+/// What to do where splines, on a line or a lattice, may be too coarse: no option makes their cells finer.
 pub(crate) const OTHER_THAN_SPLINES: &str = "--carrier network tries another one";

@@ -62,8 +62,9 @@ impl Loss {
     pub(crate) fn convex(self) -> Self {
         match self {
             Self::Square | Self::Huber(_) => self,
-            Self::Welsch(c) => Self::Huber(0.6 * c),
-            Self::Tukey(c) => Self::Huber(0.35 * c),
+            // Of the same weight at Welsch's threshold, and at half of Tukey's.
+            Self::Welsch(c) => Self::Huber(0.61 * c),
+            Self::Tukey(c) => Self::Huber(0.28 * c),
         }
     }
 

@@ -52,7 +52,7 @@ pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) ->
             let cloud = view.read(file.path)?;
             if is_plain && cloud.is_in_metres {
                 let what = format!(
-                    "`{}.{}` has no unit, and the headers of its cloud say one: correct them",
+                    "`{}.{}` has no unit, and its cloud has one: give the equation units, or the cloud none",
                     group.name, term.name
                 );
                 return Err(DataError::File { path: file.path.into(), what }.into());

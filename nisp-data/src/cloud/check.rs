@@ -73,7 +73,7 @@ impl Cloud {
     pub fn take_into_metres(&mut self, unit: LengthUnit) {
         if self.is_in_metres {
             let symbol = unit.symbol();
-            self.warnings.push(format!("the cloud's headers say its unit, so that --unit {symbol} is not used"));
+            self.warnings.push(format!("the file says its own unit, so that --unit {symbol} is not used"));
             return;
         }
         self.points.iter_mut().flatten().for_each(|value| *value *= unit.metres());

@@ -78,7 +78,7 @@ impl Table {
         let own = claimed(header).or_else(|| misspelt(header)).filter(|own| !fits(own, unit))?;
         let wanted = if is_plain(unit) { "a number without unit".into() } else { format!("in {unit}") };
         let instead = match own.trim() {
-            celsius if CELSIUS.contains(&celsius) => {
+            celsius if CELSIUS.contains(&celsius) && factor("K", unit).is_some() => {
                 format!("add 273.15 to every value, and call the column `{name} [K]`")
             }
             unit if is_unit(unit) => "choose another column, or correct the header".into(),
