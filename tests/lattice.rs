@@ -217,6 +217,45 @@ fn a_source_that_does_not_change_is_found_from_exact_data() {
     assert_eq!(own.values, found);
 }
 
+/// A field bends most where a source sets in; what is believed of it beforehand must not flatten the source.
+#[test]
+fn a_narrow_source_that_sets_in_at_the_start_is_not_flattened() {
+    // Sines of the rod that add up to two bells, and how they warm it from rest.
+    let bell =
+        |middle: f64, width: f64, n: f64| (-(n * PI * width).powi(2) / 2.0).exp() * width * (n * PI * middle).sin();
+    let part = |n: f64| 2.0 * (2.0 * PI).sqrt() * (0.6 * bell(0.3, 0.06, n) + 2.0 * bell(0.65, 0.08, n));
+    let sum = |x: f64, of: &dyn Fn(f64) -> f64| -> f64 {
+        (1..=30).map(f64::from).map(|n| of(n) * part(n) * (n * PI * x).sin()).sum()
+    };
+    let warm = |[x, t]: [f64; 2]| {
+        sum(x, &|n| {
+            let rate = 0.5 * (n * PI).powi(2);
+            (1.0 - (-rate * t).exp()) / rate
+        })
+    };
+    let samples: Vec<f64> =
+        (1..=20).flat_map(|j| (1..=9).flat_map(move |i| [f64::from(i) / 10.0, 0.06 * f64::from(j)])).collect();
+    let mut normal = normals(3);
+    let measured = pairs(&samples).map(|place| warm(place) + 6e-4 * normal()).collect();
+    let mut problem = Problem::new(scene::<heated::recover::Scene>());
+    problem.set_group("rod", grid([20, 40], [1.0, 1.2], false).into(), Vec::new()).unwrap();
+    let ends = (0..80).flat_map(|i| [0.0, 1.0].into_iter().flat_map(move |x| [x, 1.2 * f64::from(i) / 79.0]));
+    problem.set_group("ends", ends.collect::<Vec<f64>>().into(), Vec::new()).unwrap();
+    let start = (0..160).flat_map(|i| [f64::from(i) / 159.0, 0.0]);
+    problem.set_group("start", start.collect::<Vec<f64>>().into(), Vec::new()).unwrap();
+    problem.set_group("samples", samples.into(), vec![measured]).unwrap();
+    let mut solution = solve(&problem);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
+    let places = grid([60, 1], [1.0, 1.2], false);
+    let (found, deviations) = values(&mut solution, "q", &places);
+    let exact = || pairs(&places).map(|[x, _]| sum(x, &|_| 1.0));
+    let off = root_mean_square(found.iter().zip(exact()).map(|(q, exact)| q - exact));
+    assert!(off < 0.12 * root_mean_square(exact()), "{off}");
+    let within =
+        found.iter().zip(deviations.unwrap()).zip(exact()).filter(|((q, sd), exact)| (*q - exact).abs() < 2.0 * sd);
+    assert!(within.count() >= 48, "fewer than four fifths of 60 places are within two deviations");
+}
+
 #[test]
 fn a_text_has_the_answer_of_the_compiled_scene() {
     let answers = |compiled: SceneRef, bind: &dyn Fn(SceneRef) -> Problem, name: &str| {
