@@ -40,7 +40,11 @@ fn greys(color: ColorType, bits: BitDepth, bytes: &[u8]) -> Vec<u8> {
 }
 
 fn npy(kind: &str, order: &str, bytes: &[u8]) -> Vec<u8> {
-    let mut header = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': ({HEIGHT}, {WIDTH}), }}");
+    array((kind, order), &format!("{HEIGHT}, {WIDTH}"), bytes)
+}
+
+fn array((kind, order): (&str, &str), shape: &str, bytes: &[u8]) -> Vec<u8> {
+    let mut header = format!("{{'descr': '{kind}', 'fortran_order': {order}, 'shape': ({shape}), }}");
     header.push_str(&" ".repeat(63 - (10 + header.len()) % 64));
     header.push('\n');
     [b"\x93NUMPY\x01\x00", &(header.len() as u16).to_le_bytes()[..], header.as_bytes(), bytes].concat()
@@ -88,6 +92,15 @@ fn depth_images_are_points_of_the_body() {
     let message = view.parse(Path::new("a.png"), &picture).unwrap_err().to_string();
     assert!(message.contains("greys of 16 bit"), "{message}");
     assert!(view.parse(Path::new("a.png"), &picture[..60]).is_err());
+}
+
+#[test]
+fn organised_clouds_are_clouds() {
+    let bytes: Vec<u8> = (0..18).flat_map(|x| f64::from(x).to_le_bytes()).collect();
+    let read = |order| View::default().parse(Path::new("a.npy"), &array(("<f8", order), "3, 2, 3", &bytes));
+    let cloud = read("False").unwrap();
+    assert_eq!((cloud.points.len(), cloud.points[4]), (6, [12.0, 13.0, 14.0]));
+    assert!(read("True").unwrap_err().to_string().contains("(n, 3) is needed"));
 }
 
 #[test]
