@@ -16,6 +16,13 @@ pub struct Unit {
     pub text: &'static str,
 }
 
+impl Unit {
+    /// The unit as it stands behind a number, with a space; nothing if dimensionless.
+    pub(crate) fn behind(&self) -> String {
+        if self.text.is_empty() { String::new() } else { format!(" {}", self.text) }
+    }
+}
+
 /// A scene of a `pde!` module: one specialisation of its equations.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene {

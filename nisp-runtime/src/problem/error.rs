@@ -123,7 +123,7 @@ pub(super) fn within(scalar: &schema::Scalar, value: f64) -> Result<(), BindErro
 
 /// The range of a scalar in its declared unit, in words.
 fn range(scalar: &schema::Scalar) -> String {
-    let unit = unit_text(scalar.unit.text);
+    let unit = scalar.unit.behind();
     let shown = |bound: f64| {
         // Rounding of the unit's factor should not show.
         let outward = bound / scalar.unit.factor;

@@ -38,10 +38,10 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
                     let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len().max(1) as f64).sqrt();
                     let level = noise.of(at, number).filter(|level| follows_noise(rms, *level));
                     level.map(|level| {
-                        let (rms, sigma, unit) = (rms * outward, level.deviation * outward, term.unit.text);
+                        let (rms, sigma, unit) = (rms * outward, level.deviation * outward, term.unit.behind());
                         format!(
                             "`{}` follows its noise: the misfit is far below that of the data; take the optimizer `evidence`, \
-                             or a smaller network (rms {rms:.2e} {unit}, noise {sigma:.2e} {unit})",
+                             or a smaller network (rms {rms:.2e}{unit}, noise {sigma:.2e}{unit})",
                             term.name
                         )
                     })

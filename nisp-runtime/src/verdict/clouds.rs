@@ -32,7 +32,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let Some(term) = schema.terms.iter().find(|term| term.name == cloud.term) else { return Vec::new() };
     let place = (schema.name, term.name);
     let outward = bound.system.outward(&term.unit);
-    let unit = term.unit.text;
+    let unit = term.unit.behind();
     let all = cloud.points.iter().zip(&cloud.places).zip(&cloud.misfits);
     let found: Vec<_> = all.filter_map(|((point, place), misfit)| Some((*point, *place, (*misfit)?))).collect();
     let lost = cloud.points.len() - found.len();
@@ -54,7 +54,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let within = tolerance.or(term.within.map(|within| within / bound.system.size(&term.unit)));
     let rough = within.or_else(|| roughness(&points, &places, &tree)).unwrap_or(0.0).max(cloud.resolution);
     let said = format!(
-        "the surface misses `{}` by {:.2e} {unit} (rms), while the cloud's own roughness is {:.2e} {unit}: check the pose, the \
+        "the surface misses `{}` by {:.2e}{unit} (rms), while the cloud's own roughness is {:.2e}{unit}: check the pose, the \
          unit and the parameters; if they are right, the equations do not describe this body",
         term.name,
         rms * outward,
@@ -68,7 +68,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let systematic = correlation.max(0.0).sqrt() * rms;
     let matters = correlation > SLIGHT && systematic > tolerance.unwrap_or(cloud.resolution / 2.0);
     let said = format!(
-        "what is left of `{}` is no noise: neighbours correlate by {correlation:.2}, so the surface is off by some {:.2e} {unit} \
+        "what is left of `{}` is no noise: neighbours correlate by {correlation:.2}, so the surface is off by some {:.2e}{unit} \
          over whole regions: wrong equations (large strains?), a wrong parameter or a wrong pose",
         term.name,
         systematic * outward

@@ -88,7 +88,7 @@ impl Judged<'_> {
     fn residual(&self, term: &'static Term, rows: &[Vec<f64>]) -> Vec<Check> {
         let name = self.schema.name;
         let outward = self.bound.system.outward(&term.unit);
-        let unit = term.unit.text;
+        let unit = term.unit.behind();
         let condition = self.facts.points <= FEW_POINTS;
         let mut worst: Option<Check> = None;
         let beyond = (term.first..term.first + term.rows).filter(|_| condition).find_map(|row| self.beyond(term, row));
@@ -107,7 +107,7 @@ impl Judged<'_> {
             };
             let value = if rms == 0.0 { 0.0 } else { rms / scale };
             let message = format!(
-                "`{name}.{}` is off by {:.2e} {unit}, where {said} is {:.2e} {unit}: the answer does not solve it; check the \
+                "`{name}.{}` is off by {:.2e}{unit}, where {said} is {:.2e}{unit}: the answer does not solve it; check the \
                  parameters and data that contradict it, or the carrier is too coarse ({})",
                 term.name,
                 rms * outward,
@@ -139,13 +139,13 @@ impl Judged<'_> {
         let stated = root_mean_square(self.row(row, &jets, &self.facts.columns));
         let outward = self.bound.system.outward(&term.unit);
         let said = format!(
-            "`{}.{}` states {:.2e} {unit}, where the equations and the data speak of {:.2e} {unit}: check its value and the units \
+            "`{}.{}` states {:.2e}{unit}, where the equations and the data speak of {:.2e}{unit}: check its value and the units \
              of the data",
             self.schema.name,
             term.name,
             stated * outward,
             natural * outward,
-            unit = term.unit.text
+            unit = term.unit.behind()
         );
         let check = Check::new("stated", (self.schema.name, term.name), (stated / natural, STATED), said);
         Some(check).filter(|check| !check.passed)
@@ -292,12 +292,12 @@ impl Judged<'_> {
                 None => (size.max(targets[row].abs()), PART),
             };
             let said = format!(
-                "`{}.{}` sums to {:.3e} {} where {:.3e} is wanted: the answer does not meet it; check what is given against the \
+                "`{}.{}` sums to {:.3e}{} where {:.3e} is wanted: the answer does not meet it; check what is given against the \
                  other data",
                 self.schema.name,
                 term.name,
                 sum * outward,
-                term.unit.text,
+                term.unit.behind(),
                 targets[row] * outward
             );
             let value = if off == 0.0 { 0.0 } else { off / scale };

@@ -59,7 +59,7 @@ fn said(bound: &Bound, answer: &Answer, score: &Score) -> String {
         Known::Scalar(slot) => {
             let scalar = &schema.scalars[slot];
             let now = answer.scalars[slot] * bound.system.outward(&scalar.unit);
-            let unit = if scalar.unit.text.is_empty() { String::new() } else { format!(" {}", scalar.unit.text) };
+            let unit = scalar.unit.behind();
             format!("`{}` about {:.3e}{unit} instead of {now:.3e}{unit}", scalar.name, now * (1.0 + score.change))
         }
         Known::Place { cloud, axis: at } => {

@@ -48,10 +48,10 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
         let rms = if robust { middle(own) } else { root_mean_square(own.iter().flatten().copied()) };
         let exact = of.is_some_and(|of| of.is_exact());
         let outward = bound.system.outward(&term.unit);
-        let unit = term.unit.text;
+        let unit = term.unit.behind();
         if let Some(within) = term.within.map(|within| within / bound.system.size(&term.unit)) {
             let said = format!(
-                "`{}` is not resolved: it is missed by {:.2e} {unit} (rms), where {:.2e} {unit} is declared: check the equations, the parameters \
+                "`{}` is not resolved: it is missed by {:.2e}{unit} (rms), where {:.2e}{unit} is declared: check the equations, the parameters \
                  and the tolerance",
                 term.name,
                 rms * outward,
@@ -62,7 +62,7 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
             let (scale, limit) =
                 if exact { (of.spread, EXACT) } else { (of.deviation, MISFIT.max(by_chance(own)) * doubt(own)) };
             let said = format!(
-                "`{}` is not resolved: it is missed by {:.2e} {unit} (rms), while the data's noise is {:.2e} {unit}: the equations or a parameter \
+                "`{}` is not resolved: it is missed by {:.2e}{unit} (rms), while the data's noise is {:.2e}{unit}: the equations or a parameter \
                  do not fit these data, or the carrier is too coarse ({finer})",
                 term.name,
                 rms * outward,
@@ -117,7 +117,7 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
         }
         if let Some(swing) = of.and_then(|of| rhythm(places, &own[0], of)) {
             let said = format!(
-                "what is left of `{}` goes up and down {} times over the record by {:.2e} {unit}, which noise does not: a rhythm \
+                "what is left of `{}` goes up and down {} times over the record by {:.2e}{unit}, which noise does not: a rhythm \
                  was smoothed away ({finer})",
                 term.name,
                 swing.periods,
