@@ -10,6 +10,7 @@ mod judged;
 mod meshes;
 mod prior;
 mod solver;
+mod starts;
 mod state;
 mod step;
 mod told;
@@ -35,6 +36,8 @@ pub(crate) const METHOD: &str = "splines on a lattice";
 
 /// Steps that regress the data at most.
 const REGRESS: u64 = 6;
+/// Steps that look for sources under the noise of the regressed data at most.
+const EXPLAIN: u64 = 12;
 /// Gain of the logarithm of the evidence that no longer matters.
 const RESTING: f64 = 0.05;
 /// Change of a coefficient, in natural sizes, or gain of a whole step in the logarithm of the probability, that no longer matters.
@@ -79,7 +82,7 @@ pub(crate) fn solve(
     let has_time = |seconds: f64| {
         limits.budget.is_none_or(|budget| start.elapsed().as_secs_f64() + seconds < budget.as_secs_f64())
     };
-    let status = loop {
+    let mut status = loop {
         if factor.is_some() && (!has_time(longest) || state.step >= limits.iterations) {
             break Status::Budget;
         }
@@ -90,8 +93,13 @@ pub(crate) fn solve(
         (state, loss, ahead, factor) = (found.next, found.loss, found.ahead, Some(found.factor));
         let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
         let is_resting = gain < RESTING && state.since > 1;
-        if before == Phase::Regress && (is_resting || state.since >= REGRESS) {
-            (state.phase, state.since) = (Phase::Solve, 0);
+        let is_ready = match before {
+            Phase::Regress => is_resting || state.since >= REGRESS,
+            Phase::Explain => (is_tight && is_resting) || state.since >= EXPLAIN,
+            Phase::Solve => false,
+        };
+        if is_ready {
+            (state.phase, state.since) = (before.next(), 0);
         }
         let elapsed_s = start.elapsed().as_secs_f64();
         let checkpoint = &|| state.save();
@@ -103,10 +111,19 @@ pub(crate) fn solve(
         match (is_settled, state.since >= MOST_STEPS) {
             (false, false) => {}
             _ if state.convex => (state.convex, state.since) = (false, 0),
-            (true, _) => break Status::Converged,
+            (true, _) => match solver.again(noise, &state) {
+                Some(again) => state = again,
+                None => break Status::Converged,
+            },
             (false, true) => break Status::NotConverged,
         }
     };
+    let checkpoint = state.save();
+    if let Some(earlier) = solver.earlier(&mut state, status == Status::Converged) {
+        let found = solver.step(&earlier)?;
+        (state, loss, ahead, factor) = (earlier, found.loss, found.ahead, Some(found.factor));
+        status = if status == Status::NotConverged { Status::Converged } else { status };
+    }
     let mut warnings = Vec::new();
     let wants_bars = status == Status::Converged && noise.is_there(bound.problem.scene().schema);
     let deviations = if !wants_bars {
@@ -127,7 +144,6 @@ pub(crate) fn solve(
         let message = "the data and the equations leave some of the unknowns open: give more conditions or data".into();
         warnings.push(Warning { kind: WarningKind::Undetermined, message });
     }
-    let checkpoint = state.save();
     let State { theta, learned, step: iterations, .. } = state;
     let kept = KeptLattices { heads: solver.heads, theta, learned, draws: deviations };
     answer.told = told::told(bound, &kept);

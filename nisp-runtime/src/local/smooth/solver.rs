@@ -21,8 +21,8 @@ const STRICTEST: f64 = 1e-5;
 const EASIEST: f64 = 1e-3;
 /// The same in the first step: a state that is far off finds its way along loose equations.
 const LOOSE: f64 = 1e-2;
-/// Least roughness.
-const LEAST_ROUGHNESS: f64 = 1e-12;
+/// Least roughness, beside the natural one: below it a head is straight but for rounding.
+const STRAIGHT: f64 = 1e-4;
 
 /// A problem on its lattices.
 pub(super) struct Solver<'a> {
@@ -82,12 +82,12 @@ impl<'a> Solver<'a> {
     /// as neighbouring data say.
     pub(super) fn first(&mut self, noise: &Noise) -> State {
         let mut classes = of_terms(self.bound, noise);
-        let guess = Guess { size: 0.0, count: 0.0, least: LEAST_ROUGHNESS };
-        classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess)));
+        let guess = |natural: f64| Guess { size: 0.0, count: 0.0, least: STRAIGHT * natural };
+        classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess(prior.natural))));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
         let (tolerance, phase) = (LOOSE, Phase::Solve);
-        let mut state = State { theta, learned, classes, tolerance, convex, phase, step: 0, since: 0 };
+        let mut state = State { theta, learned, classes, tolerance, convex, phase, step: 0, since: 0, earlier: None };
         let level = start::level(|level| {
             state.theta.fill(level);
             self.size(&state);

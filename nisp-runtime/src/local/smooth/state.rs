@@ -9,8 +9,25 @@ use crate::weighed::{Class, restore_classes, save_classes};
 pub(super) enum Phase {
     /// Data and conditions on values under a prior of all heads' roughness.
     Regress,
-    /// Everything, while the prior lets fields go.
+    /// Everything, while the prior lets fields go, with the noise that the regression found: what a source does not explain yet
+    /// is no noise.
+    Explain,
+    /// The same, with noise as free as the rest.
     Solve,
+}
+
+impl Phase {
+    const ALL: [Self; 3] = [Self::Regress, Self::Explain, Self::Solve];
+
+    /// Whether equations take part.
+    pub(super) fn has_equations(self) -> bool {
+        self != Self::Regress
+    }
+
+    /// The phase after this one.
+    pub(super) fn next(self) -> Self {
+        if self == Self::Regress { Self::Explain } else { Self::Solve }
+    }
 }
 
 /// An iterate.
@@ -27,30 +44,65 @@ pub(super) struct State {
     /// Steps, and those of the phase.
     pub(super) step: u64,
     pub(super) since: u64,
+    /// What an earlier start ended at.
+    pub(super) earlier: Option<Box<Ended>>,
 }
+
+/// Where a start ended, and the logarithm of its evidence.
+#[derive(Clone, Debug)]
+pub(super) struct Ended {
+    pub(super) state: State,
+    pub(super) evidence: f64,
+}
+
+/// What the names of an earlier start begin with in a saved state.
+const EARLIER: &str = "earlier ";
 
 impl State {
     pub(super) fn save(&self) -> state::State {
-        save_classes(&self.classes, state::State::new(super::METHOD), "")
-            .with("theta", &self.theta)
-            .with("learned", &self.learned)
-            .with("tolerance", &[self.tolerance])
-            .with_counter("convex", u64::from(self.convex))
-            .with_counter("phase", u64::from(self.phase == Phase::Solve))
-            .with_counter("iterations", self.step)
-            .with_counter("since", self.since)
+        let saved = self.save_as("", state::State::new(super::METHOD));
+        let saved = saved.with_counter("starts", 1 + u64::from(self.earlier.is_some()));
+        self.earlier.iter().fold(saved, |saved, earlier| {
+            let saved = saved.with(&format!("{EARLIER}evidence"), &[earlier.evidence]);
+            earlier.state.save_as(EARLIER, saved)
+        })
+    }
+
+    fn save_as(&self, prefix: &str, saved: state::State) -> state::State {
+        let name = |name: &str| format!("{prefix}{name}");
+        save_classes(&self.classes, saved, prefix)
+            .with(&name("theta"), &self.theta)
+            .with(&name("learned"), &self.learned)
+            .with(&name("tolerance"), &[self.tolerance])
+            .with_counter(&name("convex"), u64::from(self.convex))
+            .with_counter(&name("phase"), self.phase as u64)
+            .with_counter(&name("iterations"), self.step)
+            .with_counter(&name("since"), self.since)
     }
 
     /// Takes over what [`State::save`] gave of the same problem.
     pub(super) fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
         saved.check_method(super::METHOD)?;
-        restore_classes(&mut self.classes, saved, "")?;
-        self.theta = saved.sized("theta", self.theta.len())?;
-        self.learned = saved.sized("learned", self.learned.len())?;
-        [self.tolerance] = saved.scalars("tolerance")?;
-        self.convex = saved.counter("convex")? == 1;
-        self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
-        (self.step, self.since) = (saved.counter("iterations")?, saved.counter("since")?);
+        if saved.counter("starts")? > 1 {
+            let mut state = self.clone();
+            state.restore_as(EARLIER, saved)?;
+            let [evidence] = saved.scalars(&format!("{EARLIER}evidence"))?;
+            self.earlier = Some(Box::new(Ended { state, evidence }));
+        }
+        self.restore_as("", saved)
+    }
+
+    fn restore_as(&mut self, prefix: &str, saved: &state::State) -> Result<(), Fault> {
+        let name = |name: &str| format!("{prefix}{name}");
+        restore_classes(&mut self.classes, saved, prefix)?;
+        self.theta = saved.sized(&name("theta"), self.theta.len())?;
+        self.learned = saved.sized(&name("learned"), self.learned.len())?;
+        [self.tolerance] = saved.scalars(&name("tolerance"))?;
+        self.convex = saved.counter(&name("convex"))? == 1;
+        let number = saved.counter(&name("phase"))?;
+        let phase = Phase::ALL.into_iter().find(|&phase| phase as u64 == number);
+        self.phase = phase.ok_or_else(|| Fault::state("phase"))?;
+        (self.step, self.since) = (saved.counter(&name("iterations"))?, saved.counter(&name("since"))?);
         Ok(())
     }
 }

@@ -53,7 +53,7 @@ impl Solver<'_> {
         let group = &self.groups[at];
         let mut counts = vec![vec![false; group.sites.count]; group.schema.rows];
         let is_of_values = |&jet: &usize| group.schema.jets[jet].degree.iter().all(|&degree| degree == 0);
-        let takes_part = |term: &&schema::Term| phase == Phase::Solve || term.jets.iter().all(is_of_values);
+        let takes_part = |term: &&schema::Term| phase.has_equations() || term.jets.iter().all(is_of_values);
         for term in group.schema.terms.iter().filter(takes_part) {
             let measured = self.bound.lacking(at, term).unwrap_or_else(|| vec![true; group.sites.count]);
             counts[term.first..term.first + term.rows].fill(measured);
@@ -92,7 +92,7 @@ impl Solver<'_> {
         let heads = self.schema().heads.iter().enumerate();
         let is_judged = |&(head, declared): &(usize, &schema::Head)| match phase {
             Phase::Regress => !declared.source && observed.contains(&head),
-            Phase::Solve => declared.source,
+            Phase::Explain | Phase::Solve => declared.source,
         };
         heads.filter(is_judged).map(|(head, _)| head).collect()
     }
@@ -121,7 +121,7 @@ impl Solver<'_> {
     fn prior_rows(&self, state: &State, head: usize) -> Vec<Block> {
         // Equations say of fields what the prior says of sources: it lets fields go as equations tighten, and keeps only those
         // directions bounded of which nothing else speaks.
-        let is_free = state.phase == Phase::Solve && !self.schema().heads[head].source;
+        let is_free = state.phase.has_equations() && !self.schema().heads[head].source;
         let times = if is_free { FREE / state.tolerance } else { 1.0 };
         let roughness = times * state.classes[self.roughness[head]].size;
         self.priors[head].blocks(&state.theta, roughness, state.learned.len())
@@ -158,11 +158,14 @@ impl Solver<'_> {
         let change = step.iter().chain(&shared).fold(0.0, |most: f64, x| most.max((share * x).abs()));
         let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         // While equations are loose, they need no source.
-        let is_loose = state.phase == Phase::Solve && state.tolerance > self.tolerance;
+        let is_loose = state.phase.has_equations() && state.tolerance > self.tolerance;
         let judged: Vec<usize> = self.judged(state.phase).into_iter().map(|head| self.roughness[head]).collect();
-        let is_held = |class| self.roughness.contains(&class) && (is_loose || !judged.contains(&class));
+        let is_held = |class| match self.roughness.contains(&class) {
+            true => is_loose || !judged.contains(&class),
+            false => state.phase == Phase::Explain,
+        };
         renew(&mut next.classes, &tallies, is_held);
-        if state.phase == Phase::Solve {
+        if state.phase.has_equations() {
             next.tolerance = (state.tolerance * TIGHTER).max(self.tolerance);
         }
         (next.step, next.since) = (state.step + 1, state.since + 1);
@@ -236,7 +239,9 @@ impl Solver<'_> {
             tally.used = match state.phase {
                 // What data leave of a field is no small difference.
                 Phase::Regress => used(&rows, factor, (step.len(), shared.len()), &mut random)?,
-                Phase::Solve => used_exactly(&blocks, factor, self.heads.first[head]..self.heads.first[head + 1])?,
+                Phase::Explain | Phase::Solve => {
+                    used_exactly(&blocks, factor, self.heads.first[head]..self.heads.first[head + 1])?
+                }
             };
         }
         Some(tallies)

@@ -1,0 +1,89 @@
+//! A second start where measurements are few. A rough source under little noise and a plain one under much noise may both be
+//! most likely among their neighbours; where neighbouring measurements lie far apart, what these say of the noise leads to the
+//! second. The other start begins with less noise, and the evidence chooses.
+
+use nalgebra::DMatrix;
+
+use super::solver::Solver;
+use super::state::{Ended, Phase, State};
+use crate::local::block::Block;
+use crate::local::normal::Factor;
+use crate::noise::{Noise, ObservationNoise};
+use crate::schema::TermKind;
+
+/// Measurements that are enough for one start.
+const ENOUGH: usize = 200;
+/// Noise that may hide a source, as a share of the spread of the data.
+const LOUD: f64 = 0.05;
+/// Noise of the second start beside what neighbouring measurements say.
+const QUIETER: f64 = 0.1;
+/// A direction of which less than this is left is settled by measurements alone.
+const SETTLED: f64 = 1e-8;
+
+impl Solver<'_> {
+    /// Where the solver starts again after a state that has settled; nothing if that leaves little noise, has many measurements
+    /// behind it, or is of the second start itself.
+    pub(super) fn again(&mut self, noise: &Noise, state: &State) -> Option<State> {
+        let count = |found: &ObservationNoise| self.groups[found.group].sites.count;
+        let is_few = noise.observations.iter().map(count).sum::<usize>() <= ENOUGH;
+        let size = |found: &ObservationNoise| state.classes[self.classes[found.group][found.term]].size;
+        let is_loud = noise.observations.iter().any(|found| size(found) > LOUD * found.spread);
+        if state.earlier.is_some() || !is_few || !is_loud || self.judged(Phase::Solve).is_empty() {
+            return None;
+        }
+        let evidence = self.evidence(state)?;
+        let mut quieter = noise.clone();
+        quieter.observations.iter_mut().for_each(|found| found.deviation *= QUIETER);
+        let earlier = Some(Box::new(Ended { state: state.clone(), evidence }));
+        Some(State { step: state.step, earlier, ..self.first(&quieter) })
+    }
+
+    /// The end of the earlier start, unless the later one has settled at a state with more evidence.
+    pub(super) fn earlier(&mut self, state: &mut State, has_settled: bool) -> Option<State> {
+        let earlier = state.earlier.take()?;
+        let is_better = has_settled && self.evidence(state).is_some_and(|evidence| evidence > earlier.evidence);
+        (!is_better).then_some(State { step: state.step, ..earlier.state })
+    }
+
+    /// Logarithm of the evidence of the measurements about a state that has settled, but for what all states share.
+    pub(super) fn evidence(&mut self, state: &State) -> Option<f64> {
+        let slopes = self.set_learned(&state.learned);
+        self.size(state);
+        self.set_sigmas(state);
+        let loss = self.loss(state);
+        let blocks = self.assemble(state, &slopes).ok()?;
+        let factor = self.normal.factor()?;
+        let (mut rows, mut volume) = (Vec::new(), 0.0);
+        for (at, blocks) in &blocks {
+            let (group, counts) = (&self.groups[*at], self.counts(*at, state.phase));
+            let terms = group.schema.terms.iter().filter(|term| term.kind == TermKind::Observation);
+            for row in terms.flat_map(|term| term.first..term.first + term.rows) {
+                let own = blocks.iter().enumerate().filter(|(p, _)| counts[row][*p]).map(|(_, block)| (block, row));
+                let before = rows.len();
+                rows.extend(own);
+                volume += (rows.len() - before) as f64 * group.sigma[row].ln();
+            }
+        }
+        let (left, directions) = left(&rows, &factor, (state.theta.len(), state.learned.len()))?;
+        Some(0.5 * left - loss - volume * directions as f64 / rows.len().max(1) as f64)
+    }
+}
+
+/// Logarithm of the determinant of one less the influence matrix of rows, over so many coefficients and learned scalars; and how
+/// many directions it is of. Those that no prior speaks of are settled by measurements alone, under any noise.
+fn left(rows: &[(&Block, usize)], factor: &Factor, lens: (usize, usize)) -> Option<(f64, usize)> {
+    let solved = |&(block, row): &(&Block, usize)| {
+        let (mut by, mut below) = (vec![0.0; lens.0], vec![0.0; lens.1]);
+        block.add_signed(row, false, &mut by, &mut below);
+        factor.solve(&by, &below)
+    };
+    let solved: Vec<(Vec<f64>, Vec<f64>)> = rows.iter().map(solved).collect::<Option<_>>()?;
+    let influence = |i: usize, j: usize| {
+        let (block, row) = rows[i];
+        block.after(row, &solved[j].0, &solved[j].1) - block.misfits[row]
+    };
+    let influence = DMatrix::from_fn(rows.len(), rows.len(), influence);
+    let values = ((&influence + influence.transpose()) * 0.5).symmetric_eigenvalues();
+    let left: Vec<f64> = values.iter().map(|value| 1.0 - value).filter(|&left| left > SETTLED).collect();
+    Some((left.iter().map(|left| left.ln()).sum(), left.len()))
+}
