@@ -36,8 +36,6 @@ pub(super) struct Normal {
 /// The factorised normal matrix.
 pub(super) struct Factor {
     factor: Llt<usize, f64>,
-    /// Number of coefficients.
-    len: usize,
     /// `H^-1` times the border.
     solved: Vec<Vec<f64>>,
     border: Vec<Vec<f64>>,
@@ -95,19 +93,19 @@ impl Normal {
         self.border_gradient.fill(0.0);
     }
 
-    /// Adds the rows of blocks, in their order.
+    /// Adds the rows of blocks.
     pub(super) fn add_all(&mut self, blocks: &[Block]) {
         let sorted: Vec<Sorted> = blocks.par_iter().map(Sorted::of).collect();
-        self.add_products(&sorted);
         for (block, sorted) in blocks.iter().zip(&sorted) {
             self.add_gradient(block, sorted);
             if let Some(draws) = &mut self.draws {
                 (0..block.misfits.len()).for_each(|row| draws.add_row(block, row));
             }
         }
+        self.add_products(&Sorted::together(sorted));
     }
 
-    /// Adds the products of the rows' slopes, piece by piece of the matrix: every entry is summed up in the blocks' order.
+    /// Adds the products of the rows' slopes, piece by piece of the matrix: every entry is summed up in the order of the blocks.
     fn add_products(&mut self, blocks: &[Sorted]) {
         let (starts, indices) = (self.pattern.col_ptr(), self.pattern.row_idx());
         let columns = self.gradient.len();
@@ -228,14 +226,7 @@ impl Normal {
         let schur = DMatrix::from_fn(self.border.len(), self.border.len(), |i, j| {
             self.corner[(i, j)] - dot(&self.border[i], &solved[j])
         });
-        Some(Factor {
-            factor,
-            len: self.gradient.len(),
-            solved,
-            border: self.border.clone(),
-            schur,
-            learned: self.learned,
-        })
+        Some(Factor { factor, solved, border: self.border.clone(), schur, learned: self.learned })
     }
 
     /// Of the matrix, or where rounding spoils its definiteness, with some more on the diagonal.
@@ -310,19 +301,16 @@ impl Factor {
         solve(&self.factor, vector).iter().zip(vector).map(|(a, b)| a * b).sum()
     }
 
-    /// Covariance of neighbouring coefficients, a column for each.
-    pub(super) fn covariance(&self, range: Range<usize>) -> Option<DMatrix<f64>> {
-        let (first, count) = (range.start, range.len());
-        let units = Mat::from_fn(self.len, count, |row, column| f64::from(u8::from(row == first + column)));
-        let solutions = self.factor.solve(units);
-        let none = vec![0.0; self.border.len()];
-        let mut covariance = DMatrix::zeros(count, count);
-        for column in 0..count {
+    /// Solutions of the bordered system for the columns of a matrix, without anything on the right of the border.
+    pub(super) fn solve_all(&self, right: &Mat<f64>) -> Option<Mat<f64>> {
+        let mut solutions = self.factor.solve(right);
+        let below = vec![0.0; self.border.len()];
+        for column in 0..if below.is_empty() { 0 } else { solutions.ncols() } {
             let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
-            self.share(&mut own, &none)?;
-            covariance.column_mut(column).copy_from_slice(&own[range.clone()]);
+            self.share(&mut own, &below)?;
+            own.iter().enumerate().for_each(|(row, x)| solutions[(row, column)] = *x);
         }
-        Some(covariance)
+        Some(solutions)
     }
 
     /// Variance of a sum of coefficients, each times its weight.

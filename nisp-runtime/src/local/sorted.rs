@@ -1,5 +1,7 @@
 //! A block as the normal matrix wants it: products of its rows' slopes, column by column, and where they go.
 
+use std::collections::HashMap;
+
 use super::block::Block;
 use crate::simd::{Isa, Kernel, Simd, dispatch};
 
@@ -24,6 +26,21 @@ impl Sorted {
             runs[at - 1] = if dofs[at - 1] + 1 == dofs[at] { runs[at] } else { at as u32 };
         }
         Self { dofs, runs, slopes }
+    }
+
+    /// The same rows, where those of blocks over the same coefficients stand in one block: their sums go to the matrix at once.
+    pub(super) fn together(blocks: Vec<Self>) -> Vec<Self> {
+        let mut places: HashMap<(u32, u32, usize), usize> = HashMap::new();
+        let mut together: Vec<Self> = Vec::new();
+        for block in blocks {
+            let (Some(&first), Some(&last)) = (block.dofs.first(), block.dofs.last()) else { continue };
+            let place = *places.entry((first, last, block.dofs.len())).or_insert(together.len());
+            match together.get_mut(place) {
+                Some(own) if own.dofs == block.dofs => own.slopes.extend(block.slopes),
+                _ => together.push(block),
+            }
+        }
+        together
     }
 
     /// Products of a coefficient's slopes with its own and those of all after it, summed over the rows.

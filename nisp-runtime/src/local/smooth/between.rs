@@ -11,26 +11,40 @@ use crate::schema::{self, TermKind};
 /// Points that are enough.
 const ENOUGH: usize = 2000;
 
-/// The problem with equations asked between their points as well; nothing where these are enough. Where an equation reads what is
-/// known at its points alone it is left as it is, and where a source of all coordinates may be anything between them.
-pub(super) fn filled(bound: &Bound) -> Option<Bound> {
+/// How many points an equation is asked at before it is known whether these are enough. A source of all coordinates may be
+/// anything between the given ones.
+pub(super) fn first(bound: &Bound) -> usize {
     let schema = bound.problem.scene().schema;
-    let inputs = schema.coordinates.len();
-    let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
-    let is_free = |group: &schema::Group| group.columns.is_empty() && group.order > 0 && is_equation(group);
-    let count = |at: usize| bound.coordinates[at].len() / inputs;
-    let is_of_all = |head: usize| schema.heads[head].source && axes(schema, head).len() == inputs;
-    if (0..schema.heads.len()).any(is_of_all) {
-        return None;
-    }
-    let at = (0..schema.groups.len()).filter(|&at| is_free(&schema.groups[at])).max_by_key(|&at| count(at))?;
-    if count(at) >= ENOUGH || count(at) < 2 {
+    let is_of_all = |head: usize| schema.heads[head].source && axes(schema, head).len() == schema.coordinates.len();
+    let given = largest(bound).map_or(0, |at| count(bound, at));
+    if (0..schema.heads.len()).any(is_of_all) { given } else { given.max(ENOUGH) }
+}
+
+/// The problem with an equation asked at so many points, between those that it has; nothing where it has as many, or reads what is
+/// known at its points alone.
+pub(super) fn filled(bound: &Bound, points: usize) -> Option<Bound> {
+    let at = largest(bound)?;
+    let inputs = bound.problem.scene().schema.coordinates.len();
+    if count(bound, at) >= points {
         return None;
     }
     let mut filled = bound.clone();
-    let more = between(&bound.coordinates[at], inputs, ENOUGH - count(at));
+    let more = between(&bound.coordinates[at], inputs, points - count(bound, at));
     filled.coordinates[at].extend(more);
     Some(filled)
+}
+
+/// The group of equations with most points that may have more.
+fn largest(bound: &Bound) -> Option<usize> {
+    let schema = bound.problem.scene().schema;
+    let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
+    let is_free = |group: &schema::Group| group.columns.is_empty() && group.order > 0 && is_equation(group);
+    let free = (0..schema.groups.len()).filter(|&at| is_free(&schema.groups[at]) && count(bound, at) > 1);
+    free.max_by_key(|&at| count(bound, at))
+}
+
+fn count(bound: &Bound, group: usize) -> usize {
+    bound.coordinates[group].len() / bound.problem.scene().schema.coordinates.len()
 }
 
 /// So many places at random between points and their neighbours: places in rows would leave patterns of coefficients that vanish at

@@ -7,7 +7,10 @@ use crate::local::draws::{Deviations, Draws};
 use crate::local::group::Group;
 use crate::local::misfits::Misfits;
 use crate::schema::{self, TermKind};
+use crate::solve::vector::root_mean_square;
 
+/// Equations that are left over by this much beside their tolerance are held back by the cells of the lattice.
+const TENSE: f64 = 0.2;
 /// Steps to an answer under another belief.
 pub(super) const DOUBTS: u64 = 4;
 
@@ -17,7 +20,7 @@ impl Solver<'_> {
     pub(super) fn doubted(&mut self, state: &State) -> Option<Deviations> {
         let mut other = state.clone();
         if !self.judged(Phase::Solve).is_empty() {
-            self.doubt(&mut other);
+            self.doubt(&mut other).ok()?;
             for _ in 0..DOUBTS {
                 other = self.step(&other).ok()?.next;
             }
@@ -44,6 +47,30 @@ impl Solver<'_> {
         let draws = self.normal.draws.take()?;
         assembled.ok()?;
         self.normal.factor()?.deviations(&draws)
+    }
+
+    /// Whether equations or conditions are left over beside their tolerance: cells are too large to hold them.
+    pub(super) fn is_tense(&mut self, state: &State) -> bool {
+        self.set_learned(&state.learned);
+        self.size(state);
+        self.set_sigmas(state);
+        let is_left = |(at, group): (usize, &Group)| {
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            let counts = self.counts(at, Phase::Solve);
+            let left = |row: usize| {
+                let there = (0..group.sites.count).filter(|&p| counts[row][p]);
+                root_mean_square(there.map(|p| found.row(row, p) / group.sigma[row])) > TENSE
+            };
+            let equations =
+                group.schema.terms.iter().filter(|term| term.kind != TermKind::Observation && term.within.is_none());
+            equations.flat_map(|term| term.first..term.first + term.rows).any(left)
+        };
+        self.groups.iter().enumerate().any(is_left)
+    }
+
+    /// Cells of the lattice along the coordinate that has most.
+    pub(super) fn cells(&self) -> usize {
+        self.heads.lattices.iter().flat_map(|lattice| &lattice.cells).copied().max().unwrap_or(0)
     }
 
     /// What a state says, for the verdict.

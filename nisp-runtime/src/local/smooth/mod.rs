@@ -6,9 +6,11 @@
 
 mod between;
 mod bounded;
+mod freedom;
 mod judged;
 mod meshes;
 mod prior;
+mod run;
 mod solver;
 mod starts;
 mod state;
@@ -26,26 +28,23 @@ use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
+use crate::solve::fault::Fault;
 use crate::solve::state::State as Saved;
 
+use run::{Clock, Run};
 use solver::{Solver, groups};
-use state::{Phase, State};
+use state::State;
 
 /// Name of the method in saved states.
 pub(crate) const METHOD: &str = "splines on a lattice";
 
-/// Steps that regress the data at most.
-const REGRESS: u64 = 6;
-/// Steps that look for sources under the noise of the regressed data at most.
-const EXPLAIN: u64 = 12;
-/// Gain of the logarithm of the evidence that no longer matters.
-const RESTING: f64 = 0.05;
-/// Change of a coefficient, in natural sizes, or gain of a whole step in the logarithm of the probability, that no longer matters.
-const SETTLED: f64 = 1e-3;
-/// Steps with all equations at most.
-const MOST_STEPS: u64 = 60;
 /// What error bars take, in steps.
 const BARS: f64 = 1.0 + judged::DOUBTS as f64;
+
+/// Points of the largest equation on a finer lattice, beside those on the one before.
+const MORE: usize = 2;
+/// How much longer a finer lattice takes.
+const SLOWER: f64 = 3.0;
 
 /// What splines on a lattice cannot do, of a scene; nothing if they can do all of it.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
@@ -70,74 +69,71 @@ pub(crate) fn solve(
     from: Option<&Saved>,
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
 ) -> Result<LocalSolution, LocalError> {
-    let start = Instant::now();
-    let filled = between::filled(bound);
-    let mut solver = Solver::new(filled.as_ref().unwrap_or(bound), noise)?;
+    let clock = Clock { start: Instant::now(), limits };
+    let mut points = from.map_or(Ok(between::first(bound)), saved_points).map_err(LocalError::Fault)?;
+    let mut solver = Solver::new(bound, points, noise)?;
     let mut state = solver.first(noise);
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
     }
-    let mut longest = 0.0_f64;
-    let (mut loss, mut ahead, mut factor) = (f64::INFINITY, f64::INFINITY, None);
-    let has_time = |seconds: f64| {
-        limits.budget.is_none_or(|budget| start.elapsed().as_secs_f64() + seconds < budget.as_secs_f64())
-    };
-    let mut status = loop {
-        if factor.is_some() && (!has_time(longest) || state.step >= limits.iterations) {
-            break Status::Budget;
+    let mut run = Run::new(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
+    while run.status == Status::Converged && solver.is_tense(&run.state) {
+        let (more, bars) = (MORE * points, BARS * run.longest);
+        if !clock.has_time(SLOWER * run.seconds + bars) {
+            run.status = Status::Budget;
+            break;
         }
-        let began = start.elapsed().as_secs_f64();
-        let found = solver.step(&state)?;
-        longest = longest.max(start.elapsed().as_secs_f64() - began);
-        let (before, is_tight) = (state.phase, state.tolerance <= solver.tolerance);
-        (state, loss, ahead, factor) = (found.next, found.loss, found.ahead, Some(found.factor));
-        let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
-        let is_resting = gain < RESTING && state.since > 1;
-        let is_ready = match before {
-            Phase::Regress => is_resting || state.since >= REGRESS,
-            Phase::Explain => (is_tight && is_resting) || state.since >= EXPLAIN,
-            Phase::Solve => false,
-        };
-        if is_ready {
-            (state.phase, state.since) = (before.next(), 0);
+        // What is too large for a finer lattice stays with the one at hand.
+        let Ok(mut finer) = Solver::new(bound, more, noise) else { break };
+        if finer.cells() <= solver.cells() {
+            break;
         }
-        let elapsed_s = start.elapsed().as_secs_f64();
-        let checkpoint = &|| state.save();
-        if monitor(Progress { iteration: state.step, elapsed_s, loss, checkpoint }) == Flow::Stop {
-            break Status::Interrupted;
+        // What was found of noise and roughness holds there too.
+        let first = State { step: run.state.step, classes: run.state.known(), ..finer.first(noise) };
+        let found = Run::new(&mut finer, first, noise, more, &clock, bars, monitor)?;
+        match found.status {
+            Status::Converged => (solver, run, points) = (finer, found, more),
+            Status::NotConverged => break,
+            status => {
+                run.status = status;
+                (run.checkpoint, run.state.step) = (found.checkpoint, found.state.step);
+                break;
+            }
         }
-        let is_settled =
-            before == Phase::Solve && is_tight && is_resting && (found.change < SETTLED || found.gain < SETTLED);
-        match (is_settled, state.since >= MOST_STEPS) {
-            (false, false) => {}
-            _ if state.convex => (state.convex, state.since) = (false, 0),
-            (true, _) => match solver.again(noise, &state) {
-                Some(again) => state = again,
-                None => break Status::Converged,
-            },
-            (false, true) => break Status::NotConverged,
-        }
-    };
-    let checkpoint = state.save();
-    if let Some(earlier) = solver.earlier(&mut state, status == Status::Converged) {
-        let found = solver.step(&earlier)?;
-        (state, loss, ahead, factor) = (earlier, found.loss, found.ahead, Some(found.factor));
-        status = if status == Status::NotConverged { Status::Converged } else { status };
     }
+    finish(bound, solver, run, noise, &clock)
+}
+
+/// Points of the largest equation in a saved state.
+fn saved_points(saved: &Saved) -> Result<usize, Fault> {
+    saved.counter("points").map(|points| points as usize)
+}
+
+/// Error bars, and what the verdict is made from.
+fn finish(
+    bound: &Bound,
+    mut solver: Solver<'_>,
+    run: Run,
+    noise: &Noise,
+    clock: &Clock,
+) -> Result<LocalSolution, LocalError> {
+    let Run { state, loss, ahead, factor, status, longest, checkpoint, .. } = run;
     let mut warnings = Vec::new();
     let wants_bars = status == Status::Converged && noise.is_there(bound.problem.scene().schema);
     let deviations = if !wants_bars {
         Deviations::default()
-    } else if has_time(BARS * longest) {
+    } else if clock.has_time(BARS * longest) {
         solver.doubted(&state).unwrap_or_default()
     } else {
         let message = "no time was left for error bars; give a larger budget".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
         Deviations::default()
     };
-    if filled.is_some() {
-        solver.groups = groups(bound, &solver.heads);
+    if status == Status::Budget && solver.is_tense(&state) {
+        let message = "the lattice is too coarse for these equations; a larger --budget makes it finer".into();
+        warnings.push(Warning { kind: WarningKind::OutOfTime, message });
     }
+    solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
     answer.ahead = (status != Status::Converged).then_some(ahead);
     if status == Status::NotConverged {
@@ -147,6 +143,6 @@ pub(crate) fn solve(
     let State { theta, learned, step: iterations, .. } = state;
     let kept = KeptLattices { heads: solver.heads, theta, learned, draws: deviations };
     answer.told = told::told(bound, &kept);
-    let factor = factor.filter(|_| wants_bars);
+    let factor = Some(factor).filter(|_| wants_bars);
     Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits })
 }

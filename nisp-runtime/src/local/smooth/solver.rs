@@ -1,5 +1,9 @@
 //! A problem on its lattices: what is set up once, and what rows are divided by.
 
+use std::borrow::Cow;
+
+use super::between::filled;
+use super::freedom::Freedom;
 use super::meshes::{lattices, together};
 use super::prior::Prior;
 use super::state::{Phase, State};
@@ -26,7 +30,7 @@ const STRAIGHT: f64 = 1e-4;
 
 /// A problem on its lattices.
 pub(super) struct Solver<'a> {
-    pub(super) bound: &'a Bound,
+    pub(super) bound: Cow<'a, Bound>,
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
     /// By group and term, the number of its class.
@@ -34,6 +38,8 @@ pub(super) struct Solver<'a> {
     /// By head, the number of the class of its roughness.
     pub(super) roughness: Vec<usize>,
     pub(super) priors: Vec<Prior>,
+    /// By head, what says how many of its numbers are settled; of sources alone.
+    pub(super) freedoms: Vec<Option<Freedom>>,
     /// Sizes of equations, by group and row.
     sizes: Vec<Vec<f64>>,
     pub(super) normal: Normal,
@@ -53,25 +59,33 @@ pub(super) fn groups(bound: &Bound, heads: &Heads) -> Vec<Group> {
     bound.problem.scene().double().into_iter().take(schema.groups.len()).enumerate().map(group).collect()
 }
 
+fn freedom(heads: &Heads, head: usize, prior: &Prior) -> Result<Freedom, LocalError> {
+    let (first, end) = (heads.first[head], heads.first[head + 1]);
+    Freedom::new(prior, first, end - first).ok_or(LocalError::Factorisation)
+}
+
 impl<'a> Solver<'a> {
-    /// The scene must not be refused.
-    pub(super) fn new(bound: &'a Bound, noise: &Noise) -> Result<Self, LocalError> {
+    /// With equations asked at so many points at least. The scene must not be refused.
+    pub(super) fn new(problem: &'a Bound, points: usize, noise: &Noise) -> Result<Self, LocalError> {
+        let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
         let schema = bound.problem.scene().schema;
-        let (lattices, cells) = lattices(bound);
-        let heads = Heads::new(bound, lattices);
-        let groups = groups(bound, &heads);
+        let (lattices, cells) = lattices(&bound);
+        let heads = Heads::new(&bound, lattices);
+        let groups = groups(&bound, &heads);
         let mut numbers = 0..;
         let mut next = || numbers.next().unwrap_or(0);
         let classes = schema.groups.iter().map(|g| g.terms.iter().map(|_| next()).collect()).collect();
         let roughness = schema.heads.iter().map(|_| next()).collect();
-        let priors = (0..schema.heads.len()).map(|head| Prior::straight(&heads, head)).collect();
+        let priors: Vec<Prior> = (0..schema.heads.len()).map(|head| Prior::straight(&heads, head)).collect();
+        let freedom = |(head, prior): (usize, &Prior)| schema.heads[head].source.then(|| freedom(&heads, head, prior));
+        let freedoms = priors.iter().enumerate().map(|of| freedom(of).transpose()).collect::<Result<_, _>>()?;
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let together = together(&heads, &cells);
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         let shares = noise.observations.iter().map(|found| found.deviation / found.spread.max(found.deviation));
         let tolerance = (SHARE * shares.fold(0.0, f64::max)).clamp(STRICTEST, EASIEST);
         let scalars = bound.scalars.clone();
-        Ok(Self { bound, heads, groups, classes, roughness, priors, sizes, normal, scalars, tolerance })
+        Ok(Self { bound, heads, groups, classes, roughness, priors, freedoms, sizes, normal, scalars, tolerance })
     }
 
     pub(super) fn schema(&self) -> &'static schema::Scene {
@@ -81,7 +95,7 @@ impl<'a> Solver<'a> {
     /// Where the solver starts: heads at their offsets, or at another level where equations and data have no value there, and noise
     /// as neighbouring data say.
     pub(super) fn first(&mut self, noise: &Noise) -> State {
-        let mut classes = of_terms(self.bound, noise);
+        let mut classes = of_terms(&self.bound, noise);
         let guess = |natural: f64| Guess { size: 0.0, count: 0.0, least: STRAIGHT * natural };
         classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess(prior.natural))));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
@@ -99,11 +113,13 @@ impl<'a> Solver<'a> {
     }
 
     /// Believes from now on that sources change little, instead of bending little, and begins the search for how little anew.
-    pub(super) fn doubt(&mut self, state: &mut State) {
+    pub(super) fn doubt(&mut self, state: &mut State) -> Result<(), LocalError> {
         for head in self.judged(Phase::Solve) {
             self.priors[head] = Prior::flat(&self.heads, head);
+            self.freedoms[head] = Some(freedom(&self.heads, head, &self.priors[head])?);
             state.classes[self.roughness[head]].restart(self.priors[head].natural);
         }
+        Ok(())
     }
 
     /// How the misfits of a group's terms count at a state.

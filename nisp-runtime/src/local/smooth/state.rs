@@ -59,6 +59,13 @@ pub(super) struct Ended {
 const EARLIER: &str = "earlier ";
 
 impl State {
+    /// What is known of noise and roughness, without how it was found.
+    pub(super) fn known(&self) -> Vec<Class> {
+        let mut classes = self.classes.clone();
+        classes.iter_mut().for_each(|class| class.restart(class.size));
+        classes
+    }
+
     pub(super) fn save(&self) -> state::State {
         let saved = self.save_as("", state::State::new(super::METHOD));
         let saved = saved.with_counter("starts", 1 + u64::from(self.earlier.is_some()));

@@ -1,7 +1,5 @@
 //! Gauss-Newton steps: the normal equations about a state, where they lead, and what their rows say of noise and roughness.
 
-use std::ops::Range;
-
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -240,7 +238,9 @@ impl Solver<'_> {
                 // What data leave of a field is no small difference.
                 Phase::Regress => used(&rows, factor, (step.len(), shared.len()), &mut random)?,
                 Phase::Explain | Phase::Solve => {
-                    used_exactly(&blocks, factor, self.heads.first[head]..self.heads.first[head + 1])?
+                    let roughness = state.classes[self.roughness[head]].size;
+                    let settled = self.freedoms[head].as_ref()?.settled(factor, step.len(), roughness)?;
+                    tally.count - settled
                 }
             };
         }
@@ -263,14 +263,4 @@ fn used(rows: &[(&Block, usize)], factor: &Factor, lens: (usize, usize), random:
         used += (vector::dot(&by, &x) + vector::dot(&below, &y)) / PROBES as f64;
     }
     Some(used)
-}
-
-/// The same of blocks of a row over some neighbouring coefficients, from the covariance of these.
-fn used_exactly(blocks: &[Block], factor: &Factor, range: Range<usize>) -> Option<f64> {
-    let covariance = factor.covariance(range.clone())?;
-    let of = |block: &Block| {
-        let terms = || block.dofs.iter().map(|&at| at as usize - range.start).zip(&block.slopes);
-        terms().map(|(i, a)| terms().map(|(j, b)| a * b * covariance[(i, j)]).sum::<f64>()).sum::<f64>()
-    };
-    Some(blocks.iter().map(of).sum())
 }

@@ -1,0 +1,60 @@
+//! How many numbers of a head its data settle: those that its prior alone does not.
+
+use faer::Mat;
+use rand::rngs::StdRng;
+use rand::{RngExt, SeedableRng};
+
+use super::prior::Prior;
+use crate::local::block::Block;
+use crate::local::normal::{Factor, Normal};
+
+/// Random combinations of the prior's rows: a count of ten is known to a twentieth.
+const PROBES: usize = 64;
+/// What keeps the prior's matrix definite along what it does not speak of, beside its diagonal.
+const RIDGE: f64 = 1e-10;
+
+/// Random combinations of the rows of a head's prior, and how many numbers the prior alone settles of each.
+pub(super) struct Freedom {
+    first: usize,
+    probes: Mat<f64>,
+    alone: Vec<f64>,
+}
+
+impl Freedom {
+    /// Nothing if the prior's matrix cannot be factorised.
+    pub(super) fn new(prior: &Prior, first: usize, len: usize) -> Option<Self> {
+        let mut blocks = prior.blocks(&vec![0.0; first + len], 1.0, 0);
+        blocks.iter_mut().flat_map(|block| &mut block.dofs).for_each(|dof| *dof -= first as u32);
+        let together: Vec<Vec<u32>> = blocks.iter().map(|block| block.dofs.clone()).collect();
+        let mut normal = Normal::new(len, 0, &together)?;
+        normal.add_all(&blocks);
+        let ridge = RIDGE * normal.typical(0..len);
+        (0..len).for_each(|at| normal.add_stiffness(at, ridge));
+        let factor = normal.factor()?;
+        let mut random = StdRng::seed_from_u64(0);
+        let mut probe = || {
+            let mut sum = vec![0.0; len];
+            blocks.iter().for_each(|block: &Block| block.add_signed(0, random.random(), &mut sum, &mut []));
+            sum
+        };
+        let probes: Vec<Vec<f64>> = (0..PROBES).map(|_| probe()).collect();
+        let probes = Mat::from_fn(len, PROBES, |row, column| probes[column][row]);
+        let alone = along(&probes, &factor.solve_all(&probes)?);
+        Some(Self { first, probes, alone })
+    }
+
+    /// How many numbers the data settle under a roughness, where there are `len` coefficients of all heads.
+    pub(super) fn settled(&self, factor: &Factor, len: usize, roughness: f64) -> Option<f64> {
+        let own = self.first..self.first + self.probes.nrows();
+        let right = Mat::from_fn(len, PROBES, |row, column| {
+            if own.contains(&row) { self.probes[(row - own.start, column)] / roughness } else { 0.0 }
+        });
+        let together = along(&right, &factor.solve_all(&right)?);
+        Some(self.alone.iter().zip(together).map(|(alone, together)| alone - together).sum::<f64>() / PROBES as f64)
+    }
+}
+
+/// Products of columns.
+fn along(a: &Mat<f64>, b: &Mat<f64>) -> Vec<f64> {
+    (0..a.ncols()).map(|column| (0..a.nrows()).map(|row| a[(row, column)] * b[(row, column)]).sum()).collect()
+}

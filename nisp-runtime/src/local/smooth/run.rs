@@ -1,0 +1,119 @@
+//! Steps on one lattice, from a state until nothing changes any more.
+
+use std::time::Instant;
+
+use super::solver::Solver;
+use super::state::{Phase, State};
+use crate::carrier::Progress;
+use crate::local::LocalError;
+use crate::local::normal::Factor;
+use crate::noise::Noise;
+use crate::solve::driver::{Flow, Limits, Status};
+use crate::solve::state::State as Saved;
+
+/// Steps that regress the data at most.
+const REGRESS: u64 = 6;
+/// Steps that look for sources under the noise of the regressed data at most.
+const EXPLAIN: u64 = 12;
+/// Gain of the logarithm of the evidence that no longer matters.
+const RESTING: f64 = 0.05;
+/// Change of a coefficient, in natural sizes, that no longer matters.
+const SETTLED: f64 = 1e-3;
+/// Gain of a whole step in the logarithm of the probability that no longer matters.
+const GAINED: f64 = 1e-2;
+/// Steps with all equations at most.
+const MOST_STEPS: u64 = 60;
+
+/// When a solver began, and what it may take.
+pub(super) struct Clock {
+    pub(super) start: Instant,
+    pub(super) limits: Limits,
+}
+
+impl Clock {
+    fn elapsed_s(&self) -> f64 {
+        self.start.elapsed().as_secs_f64()
+    }
+
+    pub(super) fn has_time(&self, seconds: f64) -> bool {
+        self.limits.budget.is_none_or(|budget| self.elapsed_s() + seconds < budget.as_secs_f64())
+    }
+}
+
+/// Where the steps on a lattice ended.
+pub(super) struct Run {
+    pub(super) state: State,
+    pub(super) loss: f64,
+    /// What a whole step would change of a learned scalar's parameter.
+    pub(super) ahead: f64,
+    pub(super) factor: Factor,
+    pub(super) status: Status,
+    /// Seconds of the longest step, and of all.
+    pub(super) longest: f64,
+    pub(super) seconds: f64,
+    pub(super) checkpoint: Saved,
+}
+
+impl Run {
+    /// Steps from a state, with equations asked at so many points; `kept` seconds of the budget are left for what comes after.
+    pub(super) fn new(
+        solver: &mut Solver<'_>,
+        mut state: State,
+        noise: &Noise,
+        points: usize,
+        clock: &Clock,
+        kept: f64,
+        monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
+    ) -> Result<Self, LocalError> {
+        let began = clock.elapsed_s();
+        let save = |state: &State| state.save().with_counter("points", points as u64);
+        let mut longest = 0.0_f64;
+        let mut found = None;
+        let mut status = loop {
+            if found.is_some() && (!clock.has_time(longest + kept) || state.step >= clock.limits.iterations) {
+                break Status::Budget;
+            }
+            let before_s = clock.elapsed_s();
+            let step = solver.step(&state)?;
+            let elapsed_s = clock.elapsed_s();
+            longest = longest.max(elapsed_s - before_s);
+            let (before, is_tight) = (state.phase, state.tolerance <= solver.tolerance);
+            state = step.next;
+            let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
+            let is_resting = gain < RESTING && state.since > 1;
+            let is_ready = match before {
+                Phase::Regress => is_resting || state.since >= REGRESS,
+                Phase::Explain => (is_tight && is_resting) || state.since >= EXPLAIN,
+                Phase::Solve => false,
+            };
+            if is_ready {
+                (state.phase, state.since) = (before.next(), 0);
+            }
+            found = Some((step.loss, step.ahead, step.factor));
+            let checkpoint = &|| save(&state);
+            if monitor(Progress { iteration: state.step, elapsed_s, loss: step.loss, checkpoint }) == Flow::Stop {
+                break Status::Interrupted;
+            }
+            let is_settled =
+                before == Phase::Solve && is_tight && is_resting && (step.change < SETTLED || step.gain < GAINED);
+            match (is_settled, state.since >= MOST_STEPS) {
+                (false, false) => {}
+                _ if state.convex => (state.convex, state.since) = (false, 0),
+                (true, _) => match solver.again(noise, &state) {
+                    Some(again) => state = again,
+                    None => break Status::Converged,
+                },
+                (false, true) => break Status::NotConverged,
+            }
+        };
+        let checkpoint = save(&state);
+        if let Some(earlier) = solver.earlier(&mut state, status == Status::Converged) {
+            let step = solver.step(&earlier)?;
+            (state, found) = (earlier, Some((step.loss, step.ahead, step.factor)));
+            status = if status == Status::NotConverged { Status::Converged } else { status };
+        }
+        let (loss, ahead, factor) = found.ok_or(LocalError::Factorisation)?;
+        let seconds = clock.elapsed_s() - began;
+        Ok(Self { state, loss, ahead, factor, status, longest, seconds, checkpoint })
+    }
+}
