@@ -32,6 +32,7 @@ pub mod simd;
 pub mod solve;
 mod splines;
 mod start;
+mod tolerance;
 pub mod values;
 pub mod verdict;
 mod weighed;

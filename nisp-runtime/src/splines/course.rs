@@ -64,7 +64,7 @@ impl Run<'_> {
             }
             let Some(found) = solver.step(&place.state, place.phase)? else { return Ok(Status::NotConverged) };
             self.longest = self.longest.max(self.start.elapsed().as_secs_f64() - elapsed);
-            let is_tight = place.state.tolerance <= TOLERANCE;
+            let is_tight = place.state.tolerance.size <= TOLERANCE;
             place.state = found.next;
             (place.since, taken) = (place.since + 1, taken + 1);
             (self.loss, self.ahead) = (found.loss, found.ahead);

@@ -2,10 +2,8 @@
 
 use crate::solve::fault::Fault;
 use crate::solve::state;
+use crate::tolerance::Tolerance;
 use crate::weighed::{Class, restore_classes, save_classes};
-
-/// Tolerance of the equations in the first step: a state that is far off finds its way along loose equations.
-pub(super) const LOOSE: f64 = 1e-2;
 
 /// An iterate.
 #[derive(Clone, Debug)]
@@ -14,7 +12,7 @@ pub(super) struct State {
     pub(super) learned: Vec<f64>,
     pub(super) classes: Vec<Class>,
     /// Tolerance of the equations.
-    pub(super) tolerance: f64,
+    pub(super) tolerance: Tolerance,
     /// Whether losses that leave out what is far off are still convex ones in their place.
     pub(super) convex: bool,
     pub(super) step: u64,
@@ -34,7 +32,7 @@ impl State {
         save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)
             .with(&format!("{prefix}learned"), &self.learned)
-            .with(&format!("{prefix}tolerance"), &[self.tolerance])
+            .with(&format!("{prefix}tolerance"), &self.tolerance.numbers())
             .with_counter(&format!("{prefix}convex"), u64::from(self.convex))
             .with_counter(&format!("{prefix}step"), self.step)
     }
@@ -44,7 +42,7 @@ impl State {
         restore_classes(&mut self.classes, saved, prefix)?;
         self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
         self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
-        [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
+        self.tolerance = saved.scalars(&format!("{prefix}tolerance"))?.into();
         self.convex = saved.counter(&format!("{prefix}convex"))? == 1;
         self.step = saved.counter(&format!("{prefix}step"))?;
         Ok(())

@@ -3,7 +3,7 @@
 use super::cells;
 use super::group::Group;
 use super::heads::Heads;
-use super::iterate::{LOOSE, Phase, State};
+use super::iterate::{Phase, State};
 use super::prior::{Course, Prior, Smoothness};
 use super::triangle::Triangle;
 use crate::facts::Facts;
@@ -13,6 +13,7 @@ use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
 use crate::start;
+use crate::tolerance::Tolerance;
 use crate::weighed::{Class, Guess, of_terms};
 
 /// How fields are smooth while only data are regressed.
@@ -156,7 +157,7 @@ impl<'a> Solver<'a> {
         classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
-        let mut state = State { theta, learned, classes, tolerance: LOOSE, convex, step: 0 };
+        let mut state = State { theta, learned, classes, tolerance: Tolerance::FIRST, convex, step: 0 };
         let level = start::level(|level| {
             state.theta.fill(level);
             self.size(&state);

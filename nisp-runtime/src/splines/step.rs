@@ -1,6 +1,6 @@
 //! Gauss-Newton steps, while the evidence finds how noisy the data and how rough the sources are.
 
-use super::iterate::{LOOSE, Phase, State};
+use super::iterate::{Phase, State};
 use super::rows::Counted;
 use super::solver::Solver;
 use super::told::Along;
@@ -13,11 +13,6 @@ use crate::weighed::{Tally, renew};
 pub(super) const TOLERANCE: f64 = 1e-6;
 /// How far they may be off for the sizes of noise and sources to be looked for.
 const STRAYED: f64 = 1e-3;
-/// The fall of their tolerance from step to step, and its rise after one that led nearly nowhere.
-const TIGHTER: f64 = 0.1;
-/// Shares of a step that were taken: below the first it led nearly nowhere, below the second it had to be short.
-const STUCK: f64 = 0.1;
-const SHORT: f64 = 0.5;
 /// Logarithm of the evidence that a larger source may cost and still be possible, and how many numbers must be told of a source
 /// for the evidence to know its size.
 const DOUBT: f64 = 2.0;
@@ -92,20 +87,14 @@ impl Solver<'_> {
         let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
         // Equations that are loose need no source, and what is left of the data is no noise before they nearly hold.
-        let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
-        let has_strayed = phase == Phase::Solve && strayed * state.tolerance.powi(2) > STRAYED.powi(2) * asked;
+        let is_loose = phase == Phase::Solve && state.tolerance.size > TOLERANCE;
+        let has_strayed = phase == Phase::Solve && strayed * state.tolerance.size.powi(2) > STRAYED.powi(2) * asked;
         let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
         let judged: Vec<usize> = self.judged(phase).into_iter().map(|head| self.roughness[head]).collect();
         let is_other = |class| self.roughness.contains(&class) && !judged.contains(&class);
         renew(&mut next.classes, &tallies, |class| has_strayed || is_loose && is_prior(class) || is_other(class));
         if phase == Phase::Solve {
-            // Strict equations that are not linear leave steps no room: where they lead nowhere, looser ones do.
-            let tighter = match share {
-                ..STUCK => TIGHTER.recip(),
-                ..SHORT => 1.0,
-                _ => TIGHTER,
-            };
-            next.tolerance = (state.tolerance * tighter).clamp(TOLERANCE, LOOSE);
+            next.tolerance = state.tolerance.after(share, TOLERANCE);
         }
         next.step += 1;
         let left = |class: usize| tallies[class].count - tallies[class].used;

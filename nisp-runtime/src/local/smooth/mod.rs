@@ -16,6 +16,7 @@ mod starts;
 mod state;
 mod step;
 mod told;
+mod unmeasured;
 
 use std::time::Instant;
 

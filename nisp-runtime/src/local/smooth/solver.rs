@@ -7,6 +7,7 @@ use super::freedom::Freedom;
 use super::meshes::{lattices, together};
 use super::prior::Prior;
 use super::state::{Phase, State};
+use super::unmeasured::Unmeasured;
 use crate::local::LocalError;
 use crate::local::group::Group;
 use crate::local::heads::Heads;
@@ -16,6 +17,7 @@ use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::start;
+use crate::tolerance::Tolerance;
 use crate::weighed::{Class, Guess, of_terms};
 
 /// How far equations may be off in the end, beside the sum of the magnitudes of their terms: a hundredth of what noise is of the
@@ -23,8 +25,6 @@ use crate::weighed::{Class, Guess, of_terms};
 const SHARE: f64 = 1e-2;
 const STRICTEST: f64 = 1e-5;
 const EASIEST: f64 = 1e-3;
-/// The same in the first step: a state that is far off finds its way along loose equations.
-const LOOSE: f64 = 1e-2;
 /// Least roughness, beside the natural one: below it a head is straight but for rounding.
 const STRAIGHT: f64 = 1e-4;
 
@@ -40,6 +40,7 @@ pub(super) struct Solver<'a> {
     pub(super) priors: Vec<Prior>,
     /// By head, what says how many of its numbers are settled; of sources alone.
     pub(super) freedoms: Vec<Option<Freedom>>,
+    pub(super) unmeasured: Unmeasured,
     /// Sizes of equations, by group and row.
     sizes: Vec<Vec<f64>>,
     pub(super) normal: Normal,
@@ -79,13 +80,27 @@ impl<'a> Solver<'a> {
         let priors: Vec<Prior> = (0..schema.heads.len()).map(|head| Prior::straight(&heads, head)).collect();
         let freedom = |(head, prior): (usize, &Prior)| schema.heads[head].source.then(|| freedom(&heads, head, prior));
         let freedoms = priors.iter().enumerate().map(|of| freedom(of).transpose()).collect::<Result<_, _>>()?;
+        let unmeasured = Unmeasured::default();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let together = together(&heads, &cells);
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         let shares = noise.observations.iter().map(|found| found.deviation / found.spread.max(found.deviation));
         let tolerance = (SHARE * shares.fold(0.0, f64::max)).clamp(STRICTEST, EASIEST);
         let scalars = bound.scalars.clone();
-        Ok(Self { bound, heads, groups, classes, roughness, priors, freedoms, sizes, normal, scalars, tolerance })
+        Ok(Self {
+            bound,
+            heads,
+            groups,
+            classes,
+            roughness,
+            priors,
+            freedoms,
+            unmeasured,
+            sizes,
+            normal,
+            scalars,
+            tolerance,
+        })
     }
 
     pub(super) fn schema(&self) -> &'static schema::Scene {
@@ -100,7 +115,7 @@ impl<'a> Solver<'a> {
         classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess(prior.natural))));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
-        let (tolerance, phase) = (LOOSE, Phase::Solve);
+        let (tolerance, phase) = (Tolerance::FIRST, Phase::Solve);
         let mut state = State { theta, learned, classes, tolerance, convex, phase, step: 0, since: 0, earlier: None };
         let level = start::level(|level| {
             state.theta.fill(level);
@@ -119,6 +134,7 @@ impl<'a> Solver<'a> {
             self.freedoms[head] = Some(freedom(&self.heads, head, &self.priors[head])?);
             state.classes[self.roughness[head]].restart(self.priors[head].natural);
         }
+        self.unmeasured = Unmeasured::default();
         Ok(())
     }
 
@@ -160,7 +176,7 @@ impl<'a> Solver<'a> {
                     group.sigma[row] = match term.kind {
                         TermKind::Observation => state.classes[self.classes[at][number]].size,
                         _ if term.within.is_some() => self.sizes[at][row],
-                        _ => state.tolerance * self.sizes[at][row],
+                        _ => state.tolerance.size * self.sizes[at][row],
                     };
                 }
             }

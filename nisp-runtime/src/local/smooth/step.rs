@@ -14,8 +14,6 @@ use crate::solve::fault::Fault;
 use crate::solve::vector;
 use crate::weighed::{Tally, renew};
 
-/// How fast the tolerance of equations falls from step to step.
-const TIGHTER: f64 = 0.1;
 /// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
 const RIDGE: f64 = 1e-6;
 /// How much rougher fields may be than the data alone say, times the tolerance of their equations. Where a source sets in, fields
@@ -116,11 +114,11 @@ impl Solver<'_> {
         sum + priors.map(|block| 0.5 * block.misfits[0].powi(2)).sum::<f64>()
     }
 
-    fn prior_rows(&self, state: &State, head: usize) -> Vec<Block> {
+    pub(super) fn prior_rows(&self, state: &State, head: usize) -> Vec<Block> {
         // Equations say of fields what the prior says of sources: it lets fields go as equations tighten, and keeps only those
         // directions bounded of which nothing else speaks.
         let is_free = state.phase.has_equations() && !self.schema().heads[head].source;
-        let times = if is_free { FREE / state.tolerance } else { 1.0 };
+        let times = if is_free { FREE / state.tolerance.size } else { 1.0 };
         let roughness = times * state.classes[self.roughness[head]].size;
         self.priors[head].blocks(&state.theta, roughness, state.learned.len())
     }
@@ -135,7 +133,13 @@ impl Solver<'_> {
             self.groups[at].set_losses(losses.into_iter());
         }
         let loss = self.loss(state);
-        let blocks = self.assemble(state, &slopes)?;
+        let blocks = self.rows(state, &slopes)?;
+        // While equations are loose, they need no source.
+        let is_loose = state.phase.has_equations() && state.tolerance.size > self.tolerance;
+        if state.phase.has_equations() && !is_loose {
+            self.count_unmeasured(state, &blocks);
+        }
+        self.add_all(state, &blocks);
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
         let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
         let tallies = self.tallies(state, &blocks, (&step, &shared), &factor).ok_or(LocalError::Factorisation)?;
@@ -155,8 +159,6 @@ impl Solver<'_> {
         }
         let change = step.iter().chain(&shared).fold(0.0, |most: f64, x| most.max((share * x).abs()));
         let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        // While equations are loose, they need no source.
-        let is_loose = state.phase.has_equations() && state.tolerance > self.tolerance;
         let judged: Vec<usize> = self.judged(state.phase).into_iter().map(|head| self.roughness[head]).collect();
         let is_held = |class| match self.roughness.contains(&class) {
             true => is_loose || !judged.contains(&class),
@@ -164,7 +166,7 @@ impl Solver<'_> {
         };
         renew(&mut next.classes, &tallies, is_held);
         if state.phase.has_equations() {
-            next.tolerance = (state.tolerance * TIGHTER).max(self.tolerance);
+            next.tolerance = state.tolerance.after(share, self.tolerance);
         }
         (next.step, next.since) = (state.step + 1, state.since + 1);
         Ok(Found { next, loss, change, ahead, gain, factor })
@@ -172,6 +174,13 @@ impl Solver<'_> {
 
     /// The normal equations about a state; returns the rows of all groups that take part, with the group's number.
     pub(super) fn assemble(&mut self, state: &State, slopes: &[f64]) -> Result<Vec<(usize, Vec<Block>)>, LocalError> {
+        let all = self.rows(state, slopes)?;
+        self.add_all(state, &all);
+        Ok(all)
+    }
+
+    /// The rows of all groups that take part about a state, with the group's number.
+    fn rows(&self, state: &State, slopes: &[f64]) -> Result<Vec<(usize, Vec<Block>)>, LocalError> {
         let mut all = Vec::new();
         for (at, group) in self.groups.iter().enumerate() {
             let counts = self.counts(at, state.phase);
@@ -182,7 +191,6 @@ impl Solver<'_> {
             let blocks = self.blocks(at, &counts, &evaluated, slopes)?;
             all.push((at, blocks));
         }
-        self.add_all(state, &all);
         Ok(all)
     }
 
@@ -240,7 +248,9 @@ impl Solver<'_> {
                 Phase::Explain | Phase::Solve => {
                     let roughness = state.classes[self.roughness[head]].size;
                     let settled = self.freedoms[head].as_ref()?.settled(factor, step.len(), roughness)?;
-                    tally.count - settled
+                    let before = self.unmeasured.of(head);
+                    tally.squares = (tally.squares - before.squares).max(0.0);
+                    tally.count - (settled - before.settled)
                 }
             };
         }

@@ -1,0 +1,81 @@
+//! What equations settle of a source by themselves. Splines of a field cannot follow every pattern of a source, and equations rule
+//! out those that they cannot follow: this says nothing of how much the source bends. The evidence is that of the measurements,
+//! given the equations (MacKay 1992), so that it counts what is settled beyond that.
+
+use super::solver::Solver;
+use super::state::{Phase, State};
+use crate::local::block::Block;
+use crate::schema::{self, TermKind};
+
+/// Change of the logarithm of a roughness after which what is settled is counted anew.
+const STALE: f64 = 0.02;
+
+/// Of a head: how many of its numbers equations settle, and the sum of squares that they ask of the rows of its prior.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Before {
+    pub(super) settled: f64,
+    pub(super) squares: f64,
+}
+
+/// By head what equations settle, and by head the roughness for which it was counted.
+#[derive(Default)]
+pub(super) struct Unmeasured {
+    of: Vec<Before>,
+    sizes: Vec<f64>,
+}
+
+impl Unmeasured {
+    pub(super) fn of(&self, head: usize) -> Before {
+        self.of.get(head).copied().unwrap_or_default()
+    }
+}
+
+impl Solver<'_> {
+    /// Counts what the rows of all groups settle without measurements, where roughness has changed since it was counted. The
+    /// normal equations are those without measurements afterwards.
+    pub(super) fn count_unmeasured(&mut self, state: &State, blocks: &[(usize, Vec<Block>)]) {
+        let sizes: Vec<f64> = self.roughness.iter().map(|&class| state.classes[class].size).collect();
+        let past = &self.unmeasured.sizes;
+        let is_near = |(now, past): (&f64, &f64)| (now / past).ln().abs() < STALE;
+        if past.len() == sizes.len() && sizes.iter().zip(past).all(is_near) {
+            return;
+        }
+        let unmeasured: Vec<(usize, Vec<Block>)> =
+            blocks.iter().map(|(at, own)| (*at, self.without(*at, own))).collect();
+        self.add_all(state, &unmeasured);
+        let found = self.normal.factor().and_then(|factor| {
+            let (step, shared) = self.normal.step(&factor)?;
+            let of = |head: usize| {
+                let rows = self.prior_rows(state, head);
+                let squares = rows.iter().map(|row| row.after(0, &step, &shared).powi(2)).sum();
+                let settled = self.freedoms[head].as_ref()?.settled(&factor, step.len(), sizes[head])?;
+                Some(Before { settled, squares })
+            };
+            let judged = self.judged(Phase::Solve);
+            let all =
+                (0..sizes.len()).map(|head| if judged.contains(&head) { of(head) } else { Some(Before::default()) });
+            all.collect::<Option<Vec<Before>>>()
+        });
+        self.unmeasured = Unmeasured { of: found.unwrap_or_default(), sizes };
+    }
+
+    /// Rows of a group with nothing in those that measure something. A condition on a source alone does.
+    fn without(&self, group: usize, blocks: &[Block]) -> Vec<Block> {
+        let (group, schema) = (&self.groups[group], self.schema());
+        let is_of_source = |&jet: &usize| schema.heads[group.schema.jets[jet].head].source;
+        let measures = |term: &&schema::Term| term.kind == TermKind::Observation || term.jets.iter().all(is_of_source);
+        let measured: Vec<usize> =
+            group.schema.terms.iter().filter(measures).flat_map(|term| term.first..term.first + term.rows).collect();
+        let mut blocks = blocks.to_vec();
+        for block in &mut blocks {
+            let rows = block.misfits.len();
+            let (width, learned) = (block.dofs.len(), block.by_learned.len() / rows.max(1));
+            for &row in &measured {
+                block.misfits[row] = 0.0;
+                block.slopes[row * width..][..width].fill(0.0);
+                block.by_learned[row * learned..][..learned].fill(0.0);
+            }
+        }
+        blocks
+    }
+}
