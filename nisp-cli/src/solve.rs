@@ -52,11 +52,16 @@ pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, St
     let failure = keeper.failure.take();
     interrupt::keep(out.file(checkpoint::NAME), solution.checkpoint.clone());
     let interrupted = solution.status == Status::Interrupted;
-    let mut answer = results::answer(&prepared, &mut solution).map_err(|error| error.to_string())?;
+    let mut answer =
+        results::answer(&prepared, &mut solution, options.at.as_deref()).map_err(|error| error.to_string())?;
     if options.checkpoint || interrupted {
         answer.files.push((checkpoint::NAME, solution.checkpoint.to_bytes()));
     }
     let written = interrupt::placing(|| out.write_somewhere(&answer.files));
+    if written.fault.is_none() {
+        let is_stale = |name: &&'static str| !answer.files.iter().any(|(own, _)| own == name);
+        out.forget(results::names(&prepared).into_iter().filter(is_stale));
+    }
     if let Some(folder) = &written.folder {
         interrupt::kept(folder.clone());
     }

@@ -130,7 +130,7 @@ fn explain_write(source: &io::Error) -> String {
         io::ErrorKind::IsADirectory => {
             "a folder stands where the file is to be; move it, or choose another with --out".into()
         }
-        io::ErrorKind::NotFound => "the folder is gone".into(),
+        io::ErrorKind::NotFound => "the folder is gone or cannot be made; choose another folder with --out".into(),
         io::ErrorKind::NotADirectory | io::ErrorKind::AlreadyExists => {
             "a file stands where a folder is needed; choose another folder with --out".into()
         }

@@ -87,6 +87,12 @@ impl OutDir {
         Ok(())
     }
 
+    /// Removes files that an earlier run has left and this one does not write, so that all of the folder is of one run.
+    pub fn forget(&self, names: impl Iterator<Item = &'static str>) {
+        // What cannot be removed stays.
+        names.for_each(|name| drop(fs::remove_file(self.file(name))));
+    }
+
     /// What must go before the process ends without dropping this.
     pub fn traces(&self) -> Traces {
         let lock = self.lock.as_ref().map(|lock| lock.path().to_path_buf());

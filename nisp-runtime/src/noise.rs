@@ -39,10 +39,11 @@ impl Noise {
         self.observations.iter().all(|o| is_exact(o.deviation, o.spread))
     }
 
-    /// True if data are off by some noise, found or declared: only then error bars say something.
+    /// True if data are off by some noise, found or declared, or are too few to be judged: only then error bars say something.
     pub(crate) fn is_there(&self, schema: &schema::Scene) -> bool {
-        let mut terms = schema.groups.iter().flat_map(|group| group.terms);
-        !self.is_exact() || terms.any(|term| term.within.is_some() && !term.columns.is_empty())
+        let measured = || schema.groups.iter().flat_map(|group| group.terms).filter(|term| !term.columns.is_empty());
+        let is_judged = measured().count() <= self.observations.len();
+        !self.is_exact() || !is_judged || measured().any(|term| term.within.is_some())
     }
 
     /// Share of the data's variance that is noise, the mean over observations: 0 for exact data. One, the worst, where
@@ -110,7 +111,17 @@ fn of_columns(bound: &Bound, group: usize, term: usize, columns: &[Vec<f64>]) ->
         (1, true) => by_few_differences(&in_order(places, values)),
         _ => by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF }),
     };
+    let noise_of = |values: &Vec<f64>| Some(noise_of(values)?.max(steps(values)));
     columns.iter().map(noise_of).collect::<Option<Vec<f64>>>().map(root_mean_square)
+}
+
+/// The noise of rounding to steps: a step over the root of twelve. Values that seldom repeat have none to speak of.
+fn steps(values: &[f64]) -> f64 {
+    let mut sorted = values.to_vec();
+    sorted.sort_by(f64::total_cmp);
+    sorted.dedup();
+    let least = sorted.windows(2).map(|pair| pair[1] - pair[0]).fold(f64::INFINITY, f64::min);
+    if 2 * sorted.len() <= values.len() && least.is_finite() { least / 12f64.sqrt() } else { 0.0 }
 }
 
 /// Values in the order of their only coordinate.
@@ -257,6 +268,14 @@ mod tests {
             let found = by_few_differences(&dirty).unwrap();
             assert!((0.7..2.2).contains(&(found / 0.03)), "{share}: {found}");
         }
+    }
+
+    /// Values to the nearest tenth are off by a twentieth at most, evenly.
+    #[test]
+    fn steps_are_noise() {
+        let values: Vec<f64> = (0..500).map(|at| (10.0 * (0.02 * f64::from(at)).sin()).round() / 10.0).collect();
+        assert!((steps(&values) - 0.1 / 12f64.sqrt()).abs() < 1e-9);
+        assert_eq!(steps(&[1.0, 2.0, 3.0, 4.0]), 0.0);
     }
 
     #[test]

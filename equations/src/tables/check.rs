@@ -28,7 +28,9 @@ pub(super) fn points(schema: &Scene, tables: &Tables<'_>, request: &Request) -> 
     let known: Vec<&str> = drawn.map(|group| group.name).collect();
     match request.points.iter().find(|(name, _)| !known.contains(&name.as_str())) {
         Some((name, _)) => {
-            Err(PrepareError::Points { group: name.clone(), hint: hint(name, &known), have: known.join(", ") })
+            let none = "none, since all points come with data".to_string();
+            let have = if known.is_empty() { none } else { known.join(", ") };
+            Err(PrepareError::Points { group: name.clone(), hint: hint(name, &known), have })
         }
         None => Ok(()),
     }

@@ -55,8 +55,11 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
         line(format!("  skipped    {skipped}"));
     }
     if !prepared.assumed.is_empty() {
-        let assumed: Vec<String> =
-            prepared.assumed.iter().map(|given| format!("{} = {} {}", given.name, given.value, given.unit)).collect();
+        let assumed: Vec<String> = prepared
+            .assumed
+            .iter()
+            .map(|given| format!("{} = {} {}", given.name, given.value, given.unit).trim_end().into())
+            .collect();
         line(format!("  assumed    {} (others with --set)", assumed.join(", ")));
     }
     if found.scores.is_empty() {

@@ -5,6 +5,8 @@ mod misfits;
 
 pub(crate) use contact::map as contact_map;
 
+use std::path::Path;
+
 use crate::interrupt;
 use nisp::solve::driver::Status;
 use nisp::{Estimate, Solution};
@@ -75,9 +77,10 @@ impl Answer {
 }
 
 /// The answer at the points of [`Prepared`], and the answer itself. Where the user has asked to stop it has no error bars: they
-/// take time, and do not hold for a state that the method left halfway.
-pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataError> {
-    let mut answer = shown(prepared, solution)?;
+/// take time, and do not hold for a state that the method left halfway. Points that the user has `asked` for in a file have no value where
+/// the answer does not hold.
+pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution, asked: Option<&Path>) -> Result<Answer, DataError> {
+    let mut answer = shown(prepared, solution, asked)?;
     // What a run that was cut short leaves says little of the data.
     if prepared.contact.is_none() && solution.status == Status::Inconsistent {
         misfits::show(&mut answer, solution);
@@ -87,13 +90,15 @@ pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution) -> Result<Ans
 }
 
 /// The answer in tables and pictures.
-fn shown(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataError> {
+fn shown(prepared: &Prepared, solution: &mut Solution, asked: Option<&Path>) -> Result<Answer, DataError> {
     if let Some(contact) = &prepared.contact {
         return contact::answer(prepared, contact, solution);
     }
     let times = &prepared.points;
+    let outside = asked.map(|path| Outside::of(path, solution, times));
     if solution.scene().coordinates.len() > 1 {
-        let estimates = evaluate(solution, times);
+        let mut estimates = evaluate(solution, times);
+        outside.iter().for_each(|outside| outside.mask(&mut estimates));
         let draw = if prepared.planes.is_empty() { maps } else { planes };
         let plot = draw(prepared, solution, &estimates).map(|plot| plot.svg().into());
         let volume = (solution.scene().coordinates.len() == 3).then(|| volume(prepared, &estimates));
@@ -102,6 +107,7 @@ fn shown(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataErr
         if let Some(volume) = volume {
             answer.show(VOLUME, volume);
         }
+        answer.warnings.extend(outside.and_then(|outside| outside.said()));
         return Ok(answer);
     }
     let (first, last) = (times[0], times[times.len() - 1]);
@@ -109,10 +115,42 @@ fn shown(prepared: &Prepared, solution: &mut Solution) -> Result<Answer, DataErr
     // Together, because the factorisation behind the error bars is the dear part.
     let mut estimates = evaluate(solution, &[times.as_slice(), &fine].concat());
     let curves: Vec<_> = estimates.iter_mut().map(|estimate| split(estimate, times.len())).collect();
+    outside.iter().for_each(|outside| outside.mask(&mut estimates));
     let plot = plot(prepared, solution, &fine, &curves).map(|plot| plot.svg().into());
     let mut answer = Answer::new(prepared, estimates)?;
     answer.show(PLOT, plot);
+    answer.warnings.extend(outside.and_then(|outside| outside.said()));
     Ok(answer)
+}
+
+/// Points of a file at which the answer does not hold.
+struct Outside<'a> {
+    path: &'a Path,
+    holds: Vec<bool>,
+}
+
+impl<'a> Outside<'a> {
+    fn of(path: &'a Path, solution: &Solution, points: &[f64]) -> Self {
+        Self { path, holds: solution.holds_at(points) }
+    }
+
+    /// Takes the values away there.
+    fn mask(&self, estimates: &mut [Estimate]) {
+        for estimate in estimates {
+            let columns = [Some(&mut estimate.values), estimate.deviations.as_mut()];
+            for column in columns.into_iter().flatten() {
+                let outside = column.iter_mut().zip(&self.holds).filter(|(_, holds)| !**holds);
+                outside.for_each(|(value, _)| *value = f64::NAN);
+            }
+        }
+    }
+
+    /// What the user should know of it.
+    fn said(&self) -> Option<String> {
+        let (outside, all) = (self.holds.iter().filter(|holds| !**holds).count(), self.holds.len());
+        let said = "lie outside of those that the answer was found from, and have no value";
+        (outside > 0).then(|| format!("{outside} of {all} points of {} {said}", self.path.display()))
+    }
 }
 
 /// Every head at points, with error bars unless the user has asked to stop.

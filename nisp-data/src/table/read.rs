@@ -40,9 +40,10 @@ impl Table {
         let headers = reader.headers().map_err(|error| syntax(path, &error))?.clone();
         let mut columns = check_headers(path, &headers)?;
         let mut lines = Vec::new();
+        let mut place = Place { at: 0, line: 1 };
         for record in reader.records() {
             let record = record.map_err(|error| syntax(path, &error))?;
-            let line = record.position().map_or(0, |at| at.line() as usize);
+            let line = place.of_record(text, record.position().map_or(0, |at| at.byte() as usize));
             if record.len() != columns.len() {
                 let what =
                     format!("{} cells where the header has {}; fill or remove this row", record.len(), columns.len());
@@ -63,6 +64,28 @@ impl Table {
             return Err(DataError::file(path, what));
         }
         Ok(Table { path: path.to_path_buf(), columns, lines })
+    }
+}
+
+/// A place in a text and its line. Readers count the line of a record from the end of the one before, which may come before the
+/// end of its line.
+struct Place {
+    at: usize,
+    line: usize,
+}
+
+impl Place {
+    /// The line of the record that begins at a byte or after line ends and remarks there. Records are asked for in their order.
+    fn of_record(&mut self, text: &str, begin: usize) -> usize {
+        let bytes = text.as_bytes();
+        let mut first = begin;
+        while let Some(byte @ (b'\r' | b'\n' | b'#')) = bytes.get(first) {
+            let rest = &bytes[first..];
+            first += if *byte == b'#' { rest.iter().position(|byte| *byte == b'\n').unwrap_or(rest.len()) } else { 1 };
+        }
+        self.line += bytes[self.at..first].iter().filter(|byte| **byte == b'\n').count();
+        self.at = first;
+        self.line
     }
 }
 

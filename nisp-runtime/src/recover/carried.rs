@@ -12,6 +12,10 @@ use crate::solve::state::State;
 pub(super) trait Carrier: Send {
     /// Its name for users.
     fn name(&self) -> &'static str;
+    /// Whether data that its answer misses, while it holds the equations, contradict these. Training may be stuck instead.
+    fn is_witness(&self) -> bool {
+        false
+    }
     /// Solves a problem within the limits of a course, from the start or from the state that the course goes on from.
     fn solve(&self, bound: &Bound, settings: &Settings, course: Course<'_, '_>) -> Result<Solved, RecoverError>;
 }

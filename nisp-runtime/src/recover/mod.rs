@@ -178,11 +178,13 @@ fn solve(
         loop {
             let settings = &Settings { seed: attempt.seed, ..settings.clone() };
             let course = Course::new(fingerprint, limits, start, from, &mut *monitor);
+            let is_witness = attempt.carrier.is_witness();
             let solved = attempt.carrier.solve(bound, settings, course)?;
             let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
-            let bends = first.as_ref().is_some_and(|first| first.verdict.speaks_against(&solution.verdict));
-            let is_over = solution.is_clear() && !bends || solution.status == Status::Interrupted;
-            let solution = if is_over { solution } else { first.take().unwrap_or(solution) };
+            let contradicts = is_witness && solution.verdict.contradicts();
+            let is_over = solution.is_clear() || contradicts || solution.status == Status::Interrupted;
+            let mut solution = if is_over { solution } else { first.take().unwrap_or(solution) };
+            solution.wall_s = start.elapsed().as_secs_f64();
             match attempts.next().filter(|_| !is_over && has_time_again(settings, start)) {
                 Some(next) => (attempt, first) = (next, Some(solution)),
                 None => return Ok(solution),

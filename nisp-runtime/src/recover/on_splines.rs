@@ -18,6 +18,10 @@ impl Carrier for OnSplines {
         splines::CARRIER
     }
 
+    fn is_witness(&self) -> bool {
+        true
+    }
+
     fn solve(&self, bound: &Bound, _: &Settings, mut course: Course<'_, '_>) -> Result<Solved, RecoverError> {
         if let Some(what) = splines::refused(bound.problem.scene().schema) {
             return Err(RecoverError::Splines(what));

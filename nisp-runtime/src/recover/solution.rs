@@ -208,9 +208,17 @@ impl Solution {
         self.verdict.passed()
     }
 
-    /// True where another carrier would say no more: all that is wrong is that the data do not tell a source from none.
+    /// True where another carrier would say no more: all that is wrong is in the data themselves, or that they do not tell a
+    /// source from none.
     pub(super) fn is_clear(&self) -> bool {
-        self.verdict.failed().all(|check| check.check == "told")
+        let is_of_data = |check: &Check| matches!(check.check, "told" | "held" | "outliers" | "outside");
+        self.verdict.failed().all(is_of_data)
+    }
+
+    /// By point, flat and in declared units, whether the answer holds there: at points that it was found from and between them.
+    pub fn holds_at(&self, points: &[f64]) -> Vec<bool> {
+        let extent = Extent::of(&self.bound.frame(), &self.bound.coordinates);
+        points.chunks_exact(self.scene().coordinates.len()).map(|point| extent.contains(point)).collect()
     }
 
     /// The scene that was solved.

@@ -45,7 +45,8 @@ impl Words<'_> {
             _ => None,
         };
         let names: Vec<String> = all.iter().filter_map(name).collect();
-        if names.is_empty() { String::new() } else { format!(" if {} moves along", names.join(" and ")) }
+        let verb = if names.len() == 1 { "moves" } else { "move" };
+        if names.is_empty() { String::new() } else { format!(" if {} {verb} along", names.join(" and ")) }
     }
 
     /// That a direction would be open without a condition.

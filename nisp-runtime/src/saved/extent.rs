@@ -7,14 +7,16 @@ use crate::solve::state::State;
 
 /// Rounding of a coordinate, as a share of its range.
 const ROUNDING: f64 = 1e-9;
+/// How far the points of a domain may end before it does along one coordinate, as a share of their range.
+const SHORT: f64 = 2e-3;
 
 /// A range along every coordinate, and over every two coordinates the convex hull, all in declared units.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Extent {
     /// Lower and upper end of each coordinate.
     pub(crate) ranges: Vec<[f64; 2]>,
-    /// How far outside a point may be along each coordinate: a hull of points lies within the domain that they are drawn from,
-    /// by up to the distance of neighbours.
+    /// How far outside of a hull a point may be along each coordinate: a hull of points lies within the domain that they are
+    /// drawn from, by up to the distance of neighbours.
     slack: Vec<f64>,
     hulls: Vec<Hull>,
 }
@@ -55,8 +57,12 @@ impl Extent {
 
     /// True for a point, in declared units, at which the answer holds.
     pub(crate) fn contains(&self, point: &[f64]) -> bool {
-        let along = self.ranges.iter().zip(&self.slack).zip(point);
-        let is_in_range = along.clone().all(|(([low, high], slack), x)| (low - slack..=high + slack).contains(x));
+        // Along one coordinate the points of a domain reach its ends.
+        let is_along = |([low, high], x): (&[f64; 2], &f64)| {
+            let slack = SHORT * (high - low);
+            (low - slack..=high + slack).contains(x)
+        };
+        let is_in_range = self.ranges.iter().zip(point).all(is_along);
         is_in_range
             && self
                 .hulls

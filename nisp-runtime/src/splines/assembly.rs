@@ -75,7 +75,8 @@ impl Solver<'_> {
         cost += self.add_priors(state, phase, &mut |row, class| rows.push(row, class));
         for head in 0..self.heads.bases.len() {
             for &number in self.heads.numbers(head, 0) {
-                let value = RIDGE * state.theta[number];
+                // What no data speak of stays where equations have a value.
+                let value = if phase == Phase::Regress { 0.0 } else { RIDGE * state.theta[number] };
                 rows.push(Row { first: number, slopes: &[RIDGE], shared: &none, value }, known);
             }
         }

@@ -19,8 +19,9 @@ const DOUBT: f64 = 2.0;
 const TELLING: f64 = 2.0;
 /// Largest change of a learned parameter in a step.
 const FARTHEST: f64 = 1.0;
-/// A step is halved so often before it is given up.
+/// A step is halved so often until it leads downhill, and so often until equations have a value where it leads.
 const HALVINGS: u32 = 8;
+const MOST_HALVINGS: u32 = 40;
 
 /// What a step found.
 pub(super) struct Found {
@@ -74,11 +75,12 @@ impl Solver<'_> {
         let (step, shared) = self.within_bounds(state, &rows, (step, shared));
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
         let mut next = state.clone();
-        for _ in 0..HALVINGS {
+        for halvings in 0..MOST_HALVINGS {
             next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
             next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
             let after = self.loss(&next, phase);
-            if after.is_finite() && after <= before * (1.0 + 1e-9) + 1e-12 {
+            let is_less = after <= before * (1.0 + 1e-9) + 1e-12;
+            if after.is_finite() && (is_less || halvings + 1 >= HALVINGS) {
                 break;
             }
             share *= 0.5;

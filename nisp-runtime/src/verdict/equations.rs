@@ -133,7 +133,8 @@ impl Judged<'_> {
         }
         let slopes = self.facts.slopes(self.programs, self.schema, row, self.scalars);
         let natural = self.bound.scaling.offset[read.head].abs() + self.bound.head_scale(read.head);
-        let natural = root_mean_square(slopes[jet].iter().copied()) * natural;
+        // A quantity may be large where it is stated and small later on; what it is in the mean is not far beyond either.
+        let natural = root_mean_square(slopes[jet].iter().copied()) * natural.max(self.sizes.mean[read.head].abs());
         let mut jets = self.facts.jets.clone();
         jets[jet * self.facts.stride..][..self.facts.stride].fill(0.0);
         let stated = root_mean_square(self.row(row, &jets, &self.facts.columns));

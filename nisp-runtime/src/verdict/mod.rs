@@ -6,6 +6,7 @@
 
 mod clouds;
 mod equations;
+mod held;
 mod known;
 mod learned;
 mod observations;
@@ -28,7 +29,7 @@ const FIRM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`,
-    /// `outliers`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined` or `range`.
+    /// `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,
@@ -57,16 +58,12 @@ impl Verdict {
         self.checks.iter().all(|check| check.passed)
     }
 
-    /// True where an answer that held its equations firmly missed the data, and another one fits the data by holding them less
-    /// firmly: these equations do not describe the data.
-    pub(crate) fn speaks_against(&self, other: &Self) -> bool {
+    /// True where an answer holds its equations firmly and misses the data: these equations do not describe the data, and another
+    /// answer could only fit them by bending the equations.
+    pub(crate) fn contradicts(&self) -> bool {
         let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "rhythm");
-        self.failed().any(misses) && self.is_firm() && !other.is_firm()
-    }
-
-    /// True where what is left of every equation is a small part of what may be.
-    fn is_firm(&self) -> bool {
-        self.checks.iter().filter(|check| check.check == "equation").all(|check| check.value <= FIRM * check.limit)
+        let mut equations = self.checks.iter().filter(|check| check.check == "equation");
+        self.failed().any(misses) && equations.all(|check| check.value <= FIRM * check.limit)
     }
 
     /// The checks that do not pass.
@@ -136,10 +133,9 @@ mod tests {
     }
 
     #[test]
-    fn an_answer_that_bends_equations_until_data_fit_does_not_replace_one_that_held_them() {
-        let (held, bent, right) = (verdict(1e-6, 0.9), verdict(0.15, 0.1), verdict(1e-3, 0.1));
-        assert!(held.speaks_against(&bent) && !held.speaks_against(&right));
-        // One that did not hold its equations either is no witness, and neither is one that fits.
-        assert!(!verdict(0.15, 0.9).speaks_against(&bent) && !right.speaks_against(&bent));
+    fn equations_that_are_held_and_data_that_are_missed_contradict_each_other() {
+        assert!(verdict(1e-6, 0.9).contradicts());
+        // An answer that did not hold its equations is no witness, and neither is one that fits.
+        assert!(!verdict(0.1, 0.9).contradicts() && !verdict(1e-6, 0.1).contradicts());
     }
 }

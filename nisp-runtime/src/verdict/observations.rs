@@ -1,6 +1,6 @@
 //! What an answer leaves of observations: it should be noise, no larger than the data's own, without a pattern.
 
-use super::{Check, outliers, root_mean_square, slow, smooth};
+use super::{Check, held, outliers, root_mean_square, slow, smooth};
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
 use crate::rhythm::rhythm;
@@ -26,6 +26,16 @@ const FAINT: f64 = 0.1;
 const FEW: usize = 16;
 /// Squares of outliers over those of noise.
 const OUTLIERS: f64 = 1.0;
+/// Share of a column in which its sensor may stand still.
+const HELD: f64 = 0.02;
+/// Misfit over its size by the median beyond which few values make most of it.
+const HEAVY: f64 = 2.0;
+/// Misfits beyond so many of their size by the median are left out by robust losses.
+const TAIL: f64 = 3.0;
+/// Share of the values that may be outliers.
+const LEFT: f64 = 0.25;
+/// Mean of a misfit over its size above which it is a constant.
+const CONSTANT: f64 = 0.9;
 /// Digits that numbers in files may be rounded to, as a share of their spread: nothing smaller is an outlier's measure.
 const ROUNDING: f64 = 1e-5;
 
@@ -62,11 +72,17 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
             let (scale, limit) =
                 if exact { (of.spread, EXACT) } else { (of.deviation, MISFIT.max(by_chance(own)) * doubt(own)) };
             let said = format!(
-                "`{}` is not resolved: it is missed by {:.2e}{unit} (rms), while the data's noise is {:.2e}{unit}: the equations or a parameter \
-                 do not fit these data, or the carrier is too coarse ({finer})",
+                "`{}` is not resolved: it is missed by {:.2e}{unit} (rms), while the data's noise is {:.2e}{unit}: {}",
                 term.name,
                 rms * outward,
-                of.deviation * outward
+                of.deviation * outward,
+                if rms > HEAVY * middle(own) {
+                    "most of that lies in few values, which --robust leaves out".into()
+                } else {
+                    format!(
+                        "the equations or a parameter do not fit these data, or the carrier is too coarse ({finer})"
+                    )
+                }
             );
             // Data that do not vary are met exactly or not at all.
             let value = if scale > 0.0 {
@@ -82,14 +98,31 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
             checks.push(Check::new("misfit", place, (value, limit), said));
         }
         let record = bound.problem.scene().schema.coordinates.len() == 1;
+        if record && !exact {
+            checks.extend(term.columns.iter().map(|&column| stuck(bound, (group, column), place, outward)));
+        }
         if let Some(of) = of.filter(|_| record && !robust) {
             checks.extend(term.columns.iter().map(|&column| lonely(bound, (group, column), of, place, outward)));
         }
         // A misfit far below the noise is what a fit that follows the data leaves, not a part that it leaves out.
+        if robust {
+            let out = own.iter().flatten().filter(|x| x.abs() > TAIL * rms).count();
+            let all = own.iter().map(Vec::len).sum::<usize>();
+            let said = format!(
+                "{out} of {all} values of `{}` are left out as outliers: so many are none, and the equations, a parameter or the \
+                 carrier do not fit them",
+                term.name
+            );
+            checks.push(Check::new("left", place, (out as f64 / all.max(1) as f64, LEFT), said));
+        }
         let is_below = of.is_some_and(|of| rms < BELOW * of.deviation);
-        if robust || exact || is_below {
+        if exact || is_below {
             continue;
         }
+        // What a robust loss leaves out makes no pattern.
+        let own: Vec<Vec<f64>> =
+            if robust { own.iter().map(|row| without_tails(row, rms)).collect() } else { own.to_vec() };
+        let own = &own[..];
         if !record {
             let axes = bound.problem.scene().schema.coordinates.len();
             for row in own.iter().filter(|row| row.len() >= FEW) {
@@ -107,20 +140,29 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
         for row in own.iter().filter(|row| row.len() >= FEW) {
             let (excess, share) = slow::excess(&in_order(places, row));
             let value = if share > SLIGHT { excess } else { excess.min(PATTERN) };
-            let said = format!(
-                "what is left of `{}` is no noise: {:.0} % of its square is a slow course, so a part of the data is smoothed away or \
-                 not described by the equations",
-                term.name,
-                100.0 * share
-            );
+            let mean = row.iter().sum::<f64>() / row.len() as f64;
+            let said = if mean.abs() > CONSTANT * root_mean_square(row.iter().copied()) {
+                format!(
+                    "`{}` is off by {:.2e}{unit} all along: its sensor has an offset, or the equations do not describe it",
+                    term.name,
+                    -mean * outward
+                )
+            } else {
+                format!(
+                    "what is left of `{}` is no noise: {:.0} % of its square is a slow course, so a part of the data is smoothed \
+                     away or not described by the equations",
+                    term.name,
+                    100.0 * share
+                )
+            };
             checks.push(Check::new("pattern", place, (value, PATTERN), said));
         }
         if let Some(swing) = of.and_then(|of| rhythm(places, &own[0], of)) {
             let said = format!(
-                "what is left of `{}` goes up and down {} times over the record by {:.2e}{unit}, which noise does not: a rhythm \
-                 was smoothed away ({finer})",
+                "what is left of `{}` goes up and down {} over the record by {:.2e}{unit}, which noise does not: the equations or a \
+                 parameter do not describe it, or a rhythm was smoothed away ({finer})",
                 term.name,
-                swing.periods,
+                if swing.periods == 1 { "once".into() } else { format!("{} times", swing.periods) },
                 swing.amplitude * outward
             );
             checks.push(Check::new(
@@ -142,6 +184,30 @@ fn share(bound: &Bound, group: usize, term: usize, rows: &[Vec<f64>]) -> Option<
     (rows.len() == columns.len() && noise > 0.0).then(|| root_mean_square(shares) / noise)
 }
 
+/// Values of a measured column where its sensor stood still.
+fn stuck(bound: &Bound, (group, column): (usize, usize), place: (&'static str, &'static str), outward: f64) -> Check {
+    let (_, values) = there(bound, group, column);
+    let (count, value) = held::held(&values);
+    let share = count as f64 / values.len().max(1) as f64;
+    let said = format!(
+        "`{}` stands still in {count} of {} rows, at {:.3e} in the longest run, and varies elsewhere: a sensor at the end of its \
+         range, or one that failed, says nothing there; leave these cells empty",
+        bound.problem.scene().schema.groups[group].columns[column].name,
+        values.len(),
+        value * outward,
+    );
+    Check::new("held", place, (share, HELD), said)
+}
+
+/// The places and the values of a measured column, in the order of the only coordinate.
+fn there(bound: &Bound, group: usize, column: usize) -> (Vec<f64>, Vec<f64>) {
+    let (places, values) = (&bound.coordinates[group], &bound.columns[group][column]);
+    let rows = || (0..places.len()).filter(|&at| !values[at].is_nan());
+    let places: Vec<f64> = rows().map(|at| places[at]).collect();
+    let values: Vec<f64> = rows().map(|at| values[at]).collect();
+    (in_order(&places, &places), in_order(&places, &values))
+}
+
 /// Values of a measured column that stand alone.
 fn lonely(
     bound: &Bound,
@@ -150,17 +216,13 @@ fn lonely(
     place: (&'static str, &'static str),
     outward: f64,
 ) -> Check {
-    let places: Vec<f64> = bound.coordinates[group].clone();
-    let there = |at: &usize| !bound.columns[group][column][*at].is_nan();
-    let rows: Vec<usize> = (0..places.len()).filter(there).collect();
-    let places = &rows.iter().map(|&at| places[at]).collect::<Vec<_>>()[..];
-    let values = rows.iter().map(|&at| bound.columns[group][column][at]).collect::<Vec<_>>();
-    let values = in_order(places, &values);
+    let (places, values) = there(bound, group, column);
     let deviation = of.deviation.max(ROUNDING * of.spread);
-    let (found, weight) = outliers::weight(&in_order(places, places), &values, deviation);
+    let (found, weight) = outliers::weight(&places, &values, deviation);
+    let (stand, them) = if found.len() == 1 { ("value stands", "it") } else { ("values stand", "them") };
     let said = format!(
-        "{} values of `{}` stand alone, more than ten times the noise of {:.2e} off their neighbours: the answer follows them; remove \
-         them, or give --robust",
+        "{} {stand} alone in `{}`, more than ten times the noise of {:.2e} off the neighbours: the answer follows {them}; remove \
+         {them}, or give --robust",
         found.len(),
         bound.problem.scene().schema.groups[group].columns[column].name,
         deviation * outward,
@@ -188,6 +250,11 @@ fn middle(rows: &[Vec<f64>]) -> f64 {
     let mut magnitudes: Vec<f64> = rows.iter().flatten().map(|x| x.abs()).collect();
     magnitudes.sort_by(f64::total_cmp);
     magnitudes.get(magnitudes.len() / 2).copied().unwrap_or(0.0) * 1.4826
+}
+
+/// Values with nothing in place of those that are far off, beside this size of the others.
+fn without_tails(row: &[f64], size: f64) -> Vec<f64> {
+    row.iter().map(|x| if x.abs() > TAIL * size { 0.0 } else { *x }).collect()
 }
 
 #[cfg(test)]

@@ -83,7 +83,7 @@ pub(crate) fn expected_operator(text: &str, after: &str, found: &str) -> String 
 }
 
 pub(crate) fn not_a_doc_comment() -> String {
-    help("attributes are not understood here", "only doc comments (`/// ...`) are")
+    help("`#` begins nothing here", "comments begin with `//`, and docs with `///`")
 }
 
 pub(crate) fn not_a_number(written: &str) -> String {

@@ -25,8 +25,9 @@ const LEARNED: f64 = 10.0;
 const FARTHEST: f64 = 1.0;
 /// Random vectors for the trace of the influence matrix (Hutchinson).
 const PROBES: usize = 16;
-/// A step is halved so often before it is given up.
+/// A step is halved so often until it leads downhill, and so often until equations have a value where it leads.
 const HALVINGS: u32 = 8;
+const MOST_HALVINGS: u32 = 40;
 
 /// What a step found.
 pub(super) struct Found {
@@ -147,11 +148,12 @@ impl Solver<'_> {
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
         let mut next = state.clone();
         let mut gain = f64::INFINITY;
-        for halvings in 0..HALVINGS {
+        for halvings in 0..MOST_HALVINGS {
             next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
             next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
             let after = self.loss(&next);
-            if after.is_finite() && after <= loss * (1.0 + 1e-9) + 1e-12 {
+            let is_less = after <= loss * (1.0 + 1e-9) + 1e-12;
+            if after.is_finite() && (is_less || halvings + 1 >= HALVINGS) {
                 gain = if halvings == 0 { (loss - after).abs() } else { f64::INFINITY };
                 break;
             }
@@ -203,7 +205,8 @@ impl Solver<'_> {
         }
         for (at, theta) in state.theta.iter().enumerate() {
             self.normal.add_stiffness(at, RIDGE.powi(2));
-            self.normal.gradient[at] += RIDGE.powi(2) * theta;
+            // What no data speak of stays where equations have a value.
+            self.normal.gradient[at] += if state.phase.has_equations() { RIDGE.powi(2) * theta } else { 0.0 };
         }
         let precision = LEARNED.powi(-2);
         for (at, parameter) in state.learned.iter().enumerate() {

@@ -28,7 +28,7 @@ pub(crate) fn defined_later(name: &str) -> String {
 }
 
 pub(crate) fn reserved_name(name: &str) -> String {
-    format!("`{name}` has a meaning of its own and cannot be declared")
+    format!("`{name}` is a word of the language, like `sin` and `grad`, and cannot be declared")
 }
 
 pub(crate) fn declared_twice(name: &str, noun: &str, parent: Option<&str>) -> String {

@@ -1,0 +1,42 @@
+//! Sensors that stand still: at the end of their range, or because they failed.
+
+/// Equal values side by side, at least.
+const LONG: usize = 8;
+/// How many such runs chance makes of values that repeat as often as the others do.
+const CHANCE: f64 = 1e-3;
+
+/// Of values in the order of their coordinate, how many stand in long runs of equal ones that are not zero, where the other values
+/// seldom repeat; and the value of the longest run. A quantity that is nothing may be exactly that.
+pub(super) fn held(values: &[f64]) -> (usize, f64) {
+    let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
+    let (long, short): (Vec<&[f64]>, Vec<&[f64]>) = runs.into_iter().partition(|run| run.len() >= LONG);
+    let repeats: usize = short.iter().map(|run| run.len() - 1).sum();
+    let others = short.iter().map(|run| run.len()).sum::<usize>().max(1) as f64;
+    // No repeat among few values does not mean that there is none.
+    let often = (repeats as f64 + 1.0) / (others + 1.0);
+    let is_chance = |run: &&[f64]| values.len() as f64 * often.powi(run.len() as i32 - 1) > CHANCE;
+    let held: Vec<&[f64]> = long.into_iter().filter(|run| run[0] != 0.0 && !is_chance(run)).collect();
+    let longest = held.iter().max_by_key(|run| run.len()).map_or(0.0, |run| run[0]);
+    (held.iter().map(|run| run.len()).sum(), longest)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sensor_at_its_limit_stands_still() {
+        let wave = |at: usize| (0.1 * at as f64).sin() + 1e-3 * ((at * at) as f64).sin();
+        let sound: Vec<f64> = (0..200).map(wave).collect();
+        assert_eq!(held(&sound), (0, 0.0));
+        let clipped: Vec<f64> = sound.iter().map(|x| x.min(0.8)).collect();
+        let (count, value) = held(&clipped);
+        assert_eq!((count, value), (clipped.iter().filter(|x| **x == 0.8).count(), 0.8));
+        // A sensor of few steps repeats everywhere.
+        let steps: Vec<f64> = sound.iter().map(|x| (2.0 * x).round() / 2.0).collect();
+        assert_eq!(held(&steps).0, 0);
+        // Nothing is exactly nothing.
+        let late: Vec<f64> = sound.iter().enumerate().map(|(at, x)| if at < 50 { 0.0 } else { *x }).collect();
+        assert_eq!(held(&late).0, 0);
+    }
+}
