@@ -64,7 +64,7 @@ impl Run<'_> {
             }
             let Some(found) = solver.step(&place.state, place.phase)? else { return Ok(Status::NotConverged) };
             self.longest = self.longest.max(self.start.elapsed().as_secs_f64() - elapsed);
-            let is_tight = place.state.tolerance.size <= TOLERANCE;
+            let is_tight = place.state.tolerance <= TOLERANCE;
             place.state = found.next;
             (place.since, taken) = (place.since + 1, taken + 1);
             (self.loss, self.ahead) = (found.loss, found.ahead);
@@ -73,6 +73,7 @@ impl Run<'_> {
             match place.phase {
                 Phase::Regress if resting || place.since >= REGRESS => {
                     (place.phase, place.since) = (Phase::Solve, 0);
+                    solver.come_back(&mut place.state);
                 }
                 Phase::Solve
                     if is_tight && (resting && found.change < SETTLED || place.since >= MOST_STEPS)

@@ -35,7 +35,7 @@ impl Solver<'_> {
         let mut other = self.scaled(&state, mean / all);
         for _ in 0..STEPS {
             let Some(found) = self.step(&other, Phase::Solve)? else { return Ok(state) };
-            if found.change < SETTLED && other.tolerance.size <= TOLERANCE {
+            if found.change < SETTLED && other.tolerance <= TOLERANCE {
                 return Ok(other);
             }
             other = State { classes: other.classes, ..found.next };

@@ -2,7 +2,6 @@
 
 use crate::solve::fault::Fault;
 use crate::solve::state;
-use crate::tolerance::Tolerance;
 use crate::weighed::{Class, restore_classes, save_classes};
 
 /// An iterate.
@@ -12,7 +11,7 @@ pub(super) struct State {
     pub(super) learned: Vec<f64>,
     pub(super) classes: Vec<Class>,
     /// Tolerance of the equations.
-    pub(super) tolerance: Tolerance,
+    pub(super) tolerance: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
     pub(super) convex: bool,
     pub(super) step: u64,
@@ -32,7 +31,7 @@ impl State {
         save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)
             .with(&format!("{prefix}learned"), &self.learned)
-            .with(&format!("{prefix}tolerance"), &self.tolerance.numbers())
+            .with(&format!("{prefix}tolerance"), &[self.tolerance])
             .with_counter(&format!("{prefix}convex"), u64::from(self.convex))
             .with_counter(&format!("{prefix}step"), self.step)
     }
@@ -42,7 +41,7 @@ impl State {
         restore_classes(&mut self.classes, saved, prefix)?;
         self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
         self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
-        self.tolerance = saved.scalars(&format!("{prefix}tolerance"))?.into();
+        [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
         self.convex = saved.counter(&format!("{prefix}convex"))? == 1;
         self.step = saved.counter(&format!("{prefix}step"))?;
         Ok(())

@@ -13,7 +13,7 @@ use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
 use crate::start;
-use crate::tolerance::Tolerance;
+use crate::tolerance::LOOSE;
 use crate::weighed::{Class, Guess, of_terms};
 
 /// How fields are smooth while only data are regressed.
@@ -157,14 +157,27 @@ impl<'a> Solver<'a> {
         classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
-        let mut state = State { theta, learned, classes, tolerance: Tolerance::FIRST, convex, step: 0 };
+        let mut state = State { theta, learned, classes, tolerance: LOOSE, convex, step: 0 };
+        self.level(&mut state);
+        state
+    }
+
+    /// Begins where equations and data have a value, unless they have one at the state.
+    pub(super) fn come_back(&mut self, state: &mut State) {
+        self.size(state);
+        if !self.loss(state, Phase::Solve).is_finite() {
+            self.level(state);
+        }
+    }
+
+    /// Heads at their offsets, or at another level where equations and data have no value there.
+    fn level(&mut self, state: &mut State) {
         let level = start::level(|level| {
             state.theta.fill(level);
-            self.size(&state);
-            self.loss(&state, Phase::Solve).is_finite()
+            self.size(state);
+            self.loss(state, Phase::Solve).is_finite()
         });
         state.theta.fill(level);
-        state
     }
 
     /// Takes over learned scalars; returns their derivatives by their parameters.

@@ -7,6 +7,7 @@ use super::told::Along;
 use super::triangle::Covariance;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
+use crate::tolerance;
 use crate::weighed::{Tally, renew};
 
 /// How far equations may be off in the end, beside the sum of the magnitudes of their terms.
@@ -84,19 +85,21 @@ impl Solver<'_> {
                 break;
             }
             share *= 0.5;
+            // Where no step has a value, none is taken.
+            (next.theta, next.learned) = (state.theta.clone(), state.learned.clone());
         }
         let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         let change = change(&state.theta, &next.theta).max(change(&state.learned, &next.learned));
         // Equations that are loose need no source, and what is left of the data is no noise before they nearly hold.
-        let is_loose = phase == Phase::Solve && state.tolerance.size > TOLERANCE;
-        let has_strayed = phase == Phase::Solve && strayed * state.tolerance.size.powi(2) > STRAYED.powi(2) * asked;
+        let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
+        let has_strayed = phase == Phase::Solve && strayed * state.tolerance.powi(2) > STRAYED.powi(2) * asked;
         let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
         let judged: Vec<usize> = self.judged(phase).into_iter().map(|head| self.roughness[head]).collect();
         let is_other = |class| self.roughness.contains(&class) && !judged.contains(&class);
         renew(&mut next.classes, &tallies, |class| has_strayed || is_loose && is_prior(class) || is_other(class));
         if phase == Phase::Solve {
-            next.tolerance = state.tolerance.after(share, TOLERANCE);
+            next.tolerance = tolerance::after(state.tolerance, share, TOLERANCE);
         }
         next.step += 1;
         let left = |class: usize| tallies[class].count - tallies[class].used;

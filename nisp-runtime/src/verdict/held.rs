@@ -2,16 +2,24 @@
 
 /// Equal values side by side, at least.
 const LONG: usize = 8;
+/// Share of other values that are equal to each other where a sensor has steps, of which many values may be the same.
+const STEPS: f64 = 0.2;
 /// How many such runs chance makes of values that repeat as often as the others do.
 const CHANCE: f64 = 1e-3;
 
 /// Of values in the order of their coordinate, how many stand in long runs of equal ones that are not zero, where the other values
-/// seldom repeat; and the value of the longest run. A quantity that is nothing may be exactly that.
+/// seldom repeat anywhere; and the value of the longest run. A quantity that is nothing may be exactly that.
 pub(super) fn held(values: &[f64]) -> (usize, f64) {
     let runs: Vec<&[f64]> = values.chunk_by(|a, b| a == b).collect();
     let (long, short): (Vec<&[f64]>, Vec<&[f64]>) = runs.into_iter().partition(|run| run.len() >= LONG);
     let repeats: usize = short.iter().map(|run| run.len() - 1).sum();
     let others = short.iter().map(|run| run.len()).sum::<usize>().max(1) as f64;
+    let mut distinct: Vec<f64> = short.iter().map(|run| run[0]).collect();
+    distinct.sort_by(f64::total_cmp);
+    distinct.dedup();
+    if (distinct.len() as f64) < (1.0 - STEPS) * others {
+        return (0, 0.0);
+    }
     // No repeat among few values does not mean that there is none.
     let often = (repeats as f64 + 1.0) / (others + 1.0);
     let is_chance = |run: &&[f64]| values.len() as f64 * often.powi(run.len() as i32 - 1) > CHANCE;
@@ -33,8 +41,10 @@ mod tests {
         let (count, value) = held(&clipped);
         assert_eq!((count, value), (clipped.iter().filter(|x| **x == 0.8).count(), 0.8));
         // A sensor of few steps repeats everywhere.
-        let steps: Vec<f64> = sound.iter().map(|x| (2.0 * x).round() / 2.0).collect();
-        assert_eq!(held(&steps).0, 0);
+        for fine in [2.0, 20.0] {
+            let steps: Vec<f64> = sound.iter().map(|x| (fine * x).round() / fine).collect();
+            assert_eq!(held(&steps).0, 0);
+        }
         // Nothing is exactly nothing.
         let late: Vec<f64> = sound.iter().enumerate().map(|(at, x)| if at < 50 { 0.0 } else { *x }).collect();
         assert_eq!(held(&late).0, 0);

@@ -77,7 +77,7 @@ impl Run {
             let step = solver.step(&state)?;
             let elapsed_s = clock.elapsed_s();
             longest = longest.max(elapsed_s - before_s);
-            let (before, is_tight) = (state.phase, state.tolerance.size <= solver.tolerance);
+            let (before, is_tight) = (state.phase, state.tolerance <= solver.tolerance);
             state = step.next;
             let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
             let is_resting = gain < RESTING && state.since > 1;
@@ -88,6 +88,7 @@ impl Run {
             };
             if is_ready {
                 (state.phase, state.since) = (before.next(), 0);
+                solver.come_back(&mut state);
             }
             found = Some((step.loss, step.ahead, step.factor));
             let checkpoint = &|| save(&state);

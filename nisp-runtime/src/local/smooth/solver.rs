@@ -17,7 +17,7 @@ use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::start;
-use crate::tolerance::Tolerance;
+use crate::tolerance::LOOSE;
 use crate::weighed::{Class, Guess, of_terms};
 
 /// How far equations may be off in the end, beside the sum of the magnitudes of their terms: a hundredth of what noise is of the
@@ -115,16 +115,31 @@ impl<'a> Solver<'a> {
         classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess(prior.natural))));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
-        let (tolerance, phase) = (Tolerance::FIRST, Phase::Solve);
+        let (tolerance, phase) = (LOOSE, Phase::Solve);
         let mut state = State { theta, learned, classes, tolerance, convex, phase, step: 0, since: 0, earlier: None };
+        self.level(&mut state);
+        State { phase: Phase::Regress, ..state }
+    }
+
+    /// Begins where equations and data have a value, unless they have one at the state.
+    pub(super) fn come_back(&mut self, state: &mut State) {
+        if !self.has_value(state) {
+            self.level(state);
+        }
+    }
+
+    fn level(&mut self, state: &mut State) {
         let level = start::level(|level| {
             state.theta.fill(level);
-            self.size(&state);
-            self.set_sigmas(&state);
-            self.loss(&state).is_finite()
+            self.has_value(state)
         });
         state.theta.fill(level);
-        State { phase: Phase::Regress, ..state }
+    }
+
+    fn has_value(&mut self, state: &State) -> bool {
+        self.size(state);
+        self.set_sigmas(state);
+        self.loss(state).is_finite()
     }
 
     /// Believes from now on that sources change little, instead of bending little, and begins the search for how little anew.
@@ -176,7 +191,7 @@ impl<'a> Solver<'a> {
                     group.sigma[row] = match term.kind {
                         TermKind::Observation => state.classes[self.classes[at][number]].size,
                         _ if term.within.is_some() => self.sizes[at][row],
-                        _ => state.tolerance.size * self.sizes[at][row],
+                        _ => state.tolerance * self.sizes[at][row],
                     };
                 }
             }

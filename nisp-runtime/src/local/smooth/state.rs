@@ -2,7 +2,6 @@
 
 use crate::solve::fault::Fault;
 use crate::solve::state;
-use crate::tolerance::Tolerance;
 use crate::weighed::{Class, restore_classes, save_classes};
 
 /// What the rows of a step are.
@@ -38,7 +37,7 @@ pub(super) struct State {
     pub(super) learned: Vec<f64>,
     pub(super) classes: Vec<Class>,
     /// Tolerance of the equations.
-    pub(super) tolerance: Tolerance,
+    pub(super) tolerance: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
     pub(super) convex: bool,
     pub(super) phase: Phase,
@@ -81,7 +80,7 @@ impl State {
         save_classes(&self.classes, saved, prefix)
             .with(&name("theta"), &self.theta)
             .with(&name("learned"), &self.learned)
-            .with(&name("tolerance"), &self.tolerance.numbers())
+            .with(&name("tolerance"), &[self.tolerance])
             .with_counter(&name("convex"), u64::from(self.convex))
             .with_counter(&name("phase"), self.phase as u64)
             .with_counter(&name("iterations"), self.step)
@@ -105,7 +104,7 @@ impl State {
         restore_classes(&mut self.classes, saved, prefix)?;
         self.theta = saved.sized(&name("theta"), self.theta.len())?;
         self.learned = saved.sized(&name("learned"), self.learned.len())?;
-        self.tolerance = saved.scalars(&name("tolerance"))?.into();
+        [self.tolerance] = saved.scalars(&name("tolerance"))?;
         self.convex = saved.counter(&name("convex"))? == 1;
         let number = saved.counter(&name("phase"))?;
         let phase = Phase::ALL.into_iter().find(|&phase| phase as u64 == number);

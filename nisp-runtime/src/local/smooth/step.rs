@@ -12,6 +12,7 @@ use crate::local::rows::Evaluated;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 use crate::solve::vector;
+use crate::tolerance;
 use crate::weighed::{Tally, renew};
 
 /// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
@@ -119,7 +120,7 @@ impl Solver<'_> {
         // Equations say of fields what the prior says of sources: it lets fields go as equations tighten, and keeps only those
         // directions bounded of which nothing else speaks.
         let is_free = state.phase.has_equations() && !self.schema().heads[head].source;
-        let times = if is_free { FREE / state.tolerance.size } else { 1.0 };
+        let times = if is_free { FREE / state.tolerance } else { 1.0 };
         let roughness = times * state.classes[self.roughness[head]].size;
         self.priors[head].blocks(&state.theta, roughness, state.learned.len())
     }
@@ -136,7 +137,7 @@ impl Solver<'_> {
         let loss = self.loss(state);
         let blocks = self.rows(state, &slopes)?;
         // While equations are loose, they need no source.
-        let is_loose = state.phase.has_equations() && state.tolerance.size > self.tolerance;
+        let is_loose = state.phase.has_equations() && state.tolerance > self.tolerance;
         if state.phase.has_equations() && !is_loose {
             self.count_unmeasured(state, &blocks);
         }
@@ -158,6 +159,8 @@ impl Solver<'_> {
                 break;
             }
             share *= 0.5;
+            // Where no step has a value, none is taken.
+            (next.theta, next.learned) = (state.theta.clone(), state.learned.clone());
         }
         let change = step.iter().chain(&shared).fold(0.0, |most: f64, x| most.max((share * x).abs()));
         let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
@@ -168,7 +171,7 @@ impl Solver<'_> {
         };
         renew(&mut next.classes, &tallies, is_held);
         if state.phase.has_equations() {
-            next.tolerance = state.tolerance.after(share, self.tolerance);
+            next.tolerance = tolerance::after(state.tolerance, share, self.tolerance);
         }
         (next.step, next.since) = (state.step + 1, state.since + 1);
         Ok(Found { next, loss, change, ahead, gain, factor })
