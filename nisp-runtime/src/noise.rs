@@ -1,5 +1,7 @@
 //! How noisy the data are, before anything is fitted to them.
 
+use std::collections::BTreeMap;
+
 use nalgebra::{DMatrix, DVector};
 
 use crate::problem::Bound;
@@ -109,7 +111,11 @@ fn of_columns(bound: &Bound, group: usize, term: usize, columns: &[Vec<f64>]) ->
     let noise_of = |values: &Vec<f64>| match (inputs, outliers) {
         (1, false) => by_differences(&in_order(places, values)),
         (1, true) => by_few_differences(&in_order(places, values)),
-        _ => by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF }),
+        _ => {
+            let around = by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF });
+            let along = (0..inputs).filter_map(|axis| by_stations(places, (inputs, axis), values));
+            around.into_iter().chain(along).reduce(f64::min)
+        }
     };
     let noise_of = |values: &Vec<f64>| Some(noise_of(values)?.max(steps(values)));
     columns.iter().map(noise_of).collect::<Option<Vec<f64>>>().map(root_mean_square)
@@ -152,18 +158,44 @@ fn by_differences(values: &[f64]) -> Option<f64> {
 /// The same where outliers are expected: with one value of ten off, most eighth differences are. Low differences have fewer
 /// values in them and more of the signal; the order that leaves least is taken.
 fn by_few_differences(values: &[f64]) -> Option<f64> {
-    let mut differences = values.to_vec();
+    by_records(vec![values.to_vec()])
+}
+
+/// The same from several records together.
+fn by_records(mut records: Vec<Vec<f64>>) -> Option<f64> {
     // Sum of the squares of binomial coefficients: C(2 order, order).
     let mut squares = 1.0;
     let mut least: Option<f64> = None;
     for order in 1..=8 {
-        differences = differences.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        for record in &mut records {
+            *record = record.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        }
         let count = f64::from(order);
         squares *= 2.0 * (2.0 * count - 1.0) / count;
-        let found = median(differences.iter().map(|x| x.abs()).collect())? / (MEDIAN * f64::sqrt(squares));
+        let found = median(records.iter().flatten().map(|x| x.abs()).collect())? / (MEDIAN * f64::sqrt(squares));
         least = Some(least.map_or(found, |least| least.min(found)));
     }
     least
+}
+
+/// Values of a record that says something of its noise, at least.
+const RECORD: usize = 12;
+
+/// From records along a coordinate: measurements at places that share all the others.
+fn by_stations(coordinates: &[f64], (inputs, axis): (usize, usize), values: &[f64]) -> Option<f64> {
+    let mut stations: BTreeMap<Vec<u64>, Vec<(f64, f64)>> = BTreeMap::new();
+    for (point, &value) in coordinates.chunks_exact(inputs).zip(values) {
+        let others = (0..inputs).filter(|&other| other != axis).map(|other| point[other].to_bits()).collect();
+        stations.entry(others).or_default().push((point[axis], value));
+    }
+    let long = stations.into_values().filter(|record| record.len() >= RECORD);
+    let records: Vec<Vec<f64>> = long
+        .map(|mut record| {
+            record.sort_by(|a, b| a.0.total_cmp(&b.0));
+            record.into_iter().map(|(_, value)| value).collect()
+        })
+        .collect();
+    by_records(records)
 }
 
 /// Places that are looked at where there are several coordinates.
@@ -268,6 +300,21 @@ mod tests {
             let found = by_few_differences(&dirty).unwrap();
             assert!((0.7..2.2).contains(&(found / 0.03)), "{share}: {found}");
         }
+    }
+
+    /// Three stations far apart, and what passes them.
+    #[test]
+    fn records_of_stations_see_the_noise_and_not_what_lies_between_them() {
+        let mut random = StdRng::seed_from_u64(5);
+        let rows: Vec<[f64; 3]> = (0..3)
+            .flat_map(|station| (0..60).map(move |at| [f64::from(station), 0.05 * f64::from(at)]))
+            .map(|[x, t]| [x, t, (-(t - x).powi(2) / 0.08).exp() + 0.01 * normal(&mut random)])
+            .collect();
+        let places: Vec<f64> = rows.iter().flat_map(|row| [row[0], row[1]]).collect();
+        let values: Vec<f64> = rows.iter().map(|row| row[2]).collect();
+        let found = by_stations(&places, (2, 1), &values).unwrap();
+        assert!((found / 0.01).ln().abs() < 0.3, "{found}");
+        assert_eq!(by_stations(&places, (2, 0), &values), None);
     }
 
     /// Values to the nearest tenth are off by a twentieth at most, evenly.

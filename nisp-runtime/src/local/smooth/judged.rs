@@ -6,11 +6,14 @@ use crate::facts::{Answer, OTHER_THAN_SPLINES};
 use crate::local::draws::{Deviations, Draws};
 use crate::local::group::Group;
 use crate::local::misfits::Misfits;
+use crate::noise::{Noise, ObservationNoise};
 use crate::schema::{self, TermKind};
 use crate::solve::vector::root_mean_square;
 
 /// Equations that are left over by this much beside their tolerance are held back by the cells of the lattice.
 const TENSE: f64 = 0.2;
+/// Noise that is found, beside what neighbouring measurements say, from which on these are missed.
+const MISSED: f64 = 1.3;
 /// Steps to an answer under another belief.
 pub(super) const DOUBTS: u64 = 4;
 
@@ -49,23 +52,29 @@ impl Solver<'_> {
         self.normal.factor()?.deviations(&draws)
     }
 
-    /// Whether equations or conditions are left over beside their tolerance: cells are too large to hold them.
-    pub(super) fn is_tense(&mut self, state: &State) -> bool {
+    /// How far the cells of the lattice hold an answer back, over what may be: equations and conditions that are left over beside
+    /// their tolerance, and measurements that are missed by more than their noise.
+    pub(super) fn strain(&mut self, state: &State, noise: &Noise) -> f64 {
         self.set_learned(&state.learned);
         self.size(state);
         self.set_sigmas(state);
-        let is_left = |(at, group): (usize, &Group)| {
+        let of_group = |(at, group): (usize, &Group)| {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
             let counts = self.counts(at, Phase::Solve);
             let left = |row: usize| {
                 let there = (0..group.sites.count).filter(|&p| counts[row][p]);
-                root_mean_square(there.map(|p| found.row(row, p) / group.sigma[row])) > TENSE
+                root_mean_square(there.map(|p| found.row(row, p) / group.sigma[row])) / TENSE
             };
-            let equations =
-                group.schema.terms.iter().filter(|term| term.kind != TermKind::Observation && term.within.is_none());
-            equations.flat_map(|term| term.first..term.first + term.rows).any(left)
+            let is_equation = |term: &&schema::Term| term.kind != TermKind::Observation && term.within.is_none();
+            let equations = group.schema.terms.iter().filter(is_equation);
+            equations.flat_map(|term| term.first..term.first + term.rows).map(left).fold(0.0, f64::max)
         };
-        self.groups.iter().enumerate().any(is_left)
+        let missed = |found: &ObservationNoise| {
+            let size = state.classes[self.classes[found.group][found.term]].size;
+            if found.is_exact() { 0.0 } else { size / found.deviation / MISSED }
+        };
+        let groups = self.groups.iter().enumerate().map(of_group);
+        groups.chain(noise.observations.iter().map(missed)).fold(0.0, f64::max)
     }
 
     /// Cells of the lattice along the coordinate that has most.

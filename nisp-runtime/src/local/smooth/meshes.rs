@@ -16,7 +16,7 @@ const POINTS: f64 = 2.0;
 /// Functions that hardly any point sees, as a share of what the others see, are left out.
 const UNSEEN: f64 = 1e-9;
 /// Cells along a coordinate at most.
-pub(super) const MOST_CELLS: usize = 40;
+const MOST_CELLS: usize = 80;
 
 /// Degree of a head's splines, or nothing if it would be too high.
 pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {

@@ -44,6 +44,8 @@ const BARS: f64 = 1.0 + judged::DOUBTS as f64;
 
 /// Points of the largest equation on a finer lattice, beside those on the one before.
 const MORE: usize = 2;
+/// A finer lattice that leaves more of the strain than this does not help.
+const EASED: f64 = 0.9;
 /// How much longer a finer lattice takes.
 const SLOWER: f64 = 3.0;
 
@@ -78,7 +80,12 @@ pub(crate) fn solve(
         state.restore(saved).map_err(LocalError::Fault)?;
     }
     let mut run = Run::new(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
-    while run.status == Status::Converged && solver.is_tense(&run.state) {
+    let mut strain = f64::INFINITY;
+    while run.status == Status::Converged {
+        let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
+        if strain < 1.0 || strain > EASED * before {
+            break;
+        }
         let (more, bars) = (MORE * points, BARS * run.longest);
         if !clock.has_time(SLOWER * run.seconds + bars) {
             run.status = Status::Budget;
@@ -130,7 +137,7 @@ fn finish(
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
         Deviations::default()
     };
-    if status == Status::Budget && solver.is_tense(&state) {
+    if status == Status::Budget && solver.strain(&state, noise) > 1.0 {
         let message = "the lattice is too coarse for these equations; a larger --budget makes it finer".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
     }

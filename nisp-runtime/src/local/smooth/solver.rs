@@ -40,7 +40,6 @@ pub(super) struct Solver<'a> {
     pub(super) priors: Vec<Prior>,
     /// By head, what says how many of its numbers are settled; of sources alone.
     pub(super) freedoms: Vec<Option<Freedom>>,
-    pub(super) unmeasured: Unmeasured,
     /// Sizes of equations, by group and row.
     sizes: Vec<Vec<f64>>,
     pub(super) normal: Normal,
@@ -80,27 +79,13 @@ impl<'a> Solver<'a> {
         let priors: Vec<Prior> = (0..schema.heads.len()).map(|head| Prior::straight(&heads, head)).collect();
         let freedom = |(head, prior): (usize, &Prior)| schema.heads[head].source.then(|| freedom(&heads, head, prior));
         let freedoms = priors.iter().enumerate().map(|of| freedom(of).transpose()).collect::<Result<_, _>>()?;
-        let unmeasured = Unmeasured::default();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let together = together(&heads, &cells);
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         let shares = noise.observations.iter().map(|found| found.deviation / found.spread.max(found.deviation));
         let tolerance = (SHARE * shares.fold(0.0, f64::max)).clamp(STRICTEST, EASIEST);
         let scalars = bound.scalars.clone();
-        Ok(Self {
-            bound,
-            heads,
-            groups,
-            classes,
-            roughness,
-            priors,
-            freedoms,
-            unmeasured,
-            sizes,
-            normal,
-            scalars,
-            tolerance,
-        })
+        Ok(Self { bound, heads, groups, classes, roughness, priors, freedoms, sizes, normal, scalars, tolerance })
     }
 
     pub(super) fn schema(&self) -> &'static schema::Scene {
@@ -116,7 +101,18 @@ impl<'a> Solver<'a> {
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
         let (tolerance, phase) = (LOOSE, Phase::Solve);
-        let mut state = State { theta, learned, classes, tolerance, convex, phase, step: 0, since: 0, earlier: None };
+        let mut state = State {
+            theta,
+            learned,
+            classes,
+            tolerance,
+            convex,
+            phase,
+            step: 0,
+            since: 0,
+            unmeasured: Unmeasured::default(),
+            earlier: None,
+        };
         self.level(&mut state);
         State { phase: Phase::Regress, ..state }
     }
@@ -149,7 +145,7 @@ impl<'a> Solver<'a> {
             self.freedoms[head] = Some(freedom(&self.heads, head, &self.priors[head])?);
             state.classes[self.roughness[head]].restart(self.priors[head].natural);
         }
-        self.unmeasured = Unmeasured::default();
+        state.unmeasured = Unmeasured::default();
         Ok(())
     }
 

@@ -17,6 +17,8 @@ const ENOUGH: usize = 200;
 const LOUD: f64 = 0.05;
 /// Noise of the second start beside what neighbouring measurements say.
 const QUIETER: f64 = 0.1;
+/// Roughness of the second start beside the natural one.
+const ROUGHER: f64 = 30.0;
 /// A direction of which less than this is left is settled by measurements alone.
 const SETTLED: f64 = 1e-8;
 
@@ -35,7 +37,11 @@ impl Solver<'_> {
         let mut quieter = noise.clone();
         quieter.observations.iter_mut().for_each(|found| found.deviation *= QUIETER);
         let earlier = Some(Box::new(Ended { state: state.clone(), evidence }));
-        Some(State { step: state.step, earlier, ..self.first(&quieter) })
+        let mut first = self.first(&quieter);
+        for (&class, prior) in self.roughness.iter().zip(&self.priors) {
+            first.classes[class].restart(ROUGHER * prior.natural);
+        }
+        Some(State { step: state.step, earlier, ..first })
     }
 
     /// The end of the earlier start, unless the later one has settled at a state with more evidence.

@@ -1,5 +1,6 @@
 //! An iterate, and that as plain numbers.
 
+use super::unmeasured::Unmeasured;
 use crate::solve::fault::Fault;
 use crate::solve::state;
 use crate::weighed::{Class, restore_classes, save_classes};
@@ -44,6 +45,8 @@ pub(super) struct State {
     /// Steps, and those of the phase.
     pub(super) step: u64,
     pub(super) since: u64,
+    /// What equations settle by themselves, as it was counted last.
+    pub(super) unmeasured: Unmeasured,
     /// What an earlier start ended at.
     pub(super) earlier: Option<Box<Ended>>,
 }
@@ -80,6 +83,7 @@ impl State {
         save_classes(&self.classes, saved, prefix)
             .with(&name("theta"), &self.theta)
             .with(&name("learned"), &self.learned)
+            .with(&name("unmeasured"), &self.unmeasured.numbers())
             .with(&name("tolerance"), &[self.tolerance])
             .with_counter(&name("convex"), u64::from(self.convex))
             .with_counter(&name("phase"), self.phase as u64)
@@ -104,6 +108,7 @@ impl State {
         restore_classes(&mut self.classes, saved, prefix)?;
         self.theta = saved.sized(&name("theta"), self.theta.len())?;
         self.learned = saved.sized(&name("learned"), self.learned.len())?;
+        self.unmeasured = Unmeasured::from_numbers(saved.vector(&name("unmeasured"))?);
         [self.tolerance] = saved.scalars(&name("tolerance"))?;
         self.convex = saved.counter(&name("convex"))? == 1;
         let number = saved.counter(&name("phase"))?;

@@ -5,6 +5,7 @@ use rand::{RngExt, SeedableRng};
 
 use super::solver::Solver;
 use super::state::{Phase, State};
+use super::unmeasured::Unmeasured;
 use crate::local::LocalError;
 use crate::local::block::Block;
 use crate::local::normal::Factor;
@@ -138,16 +139,17 @@ impl Solver<'_> {
         let blocks = self.rows(state, &slopes)?;
         // While equations are loose, they need no source.
         let is_loose = state.phase.has_equations() && state.tolerance > self.tolerance;
-        if state.phase.has_equations() && !is_loose {
-            self.count_unmeasured(state, &blocks);
-        }
+        let counts = state.phase.has_equations() && !is_loose;
+        let unmeasured = if counts { self.count_unmeasured(state, &blocks) } else { Unmeasured::default() };
         self.add_all(state, &blocks);
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
         let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
-        let tallies = self.tallies(state, &blocks, (&step, &shared), &factor).ok_or(LocalError::Factorisation)?;
+        let tallies =
+            self.tallies(state, &blocks, (&step, &shared), (&factor, &unmeasured)).ok_or(LocalError::Factorisation)?;
         let (step, shared) = self.within_bounds(state, &blocks, (step, shared));
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
         let mut next = state.clone();
+        next.unmeasured = unmeasured;
         let mut gain = f64::INFINITY;
         for halvings in 0..MOST_HALVINGS {
             next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
@@ -167,7 +169,8 @@ impl Solver<'_> {
         let judged: Vec<usize> = self.judged(state.phase).into_iter().map(|head| self.roughness[head]).collect();
         let is_held = |class| match self.roughness.contains(&class) {
             true => is_loose || !judged.contains(&class),
-            false => state.phase == Phase::Explain,
+            // A second start keeps to its noise until sources had a chance.
+            false => state.phase == Phase::Explain || state.phase == Phase::Regress && state.earlier.is_some(),
         };
         renew(&mut next.classes, &tallies, is_held);
         if state.phase.has_equations() {
@@ -223,7 +226,7 @@ impl Solver<'_> {
         state: &State,
         blocks: &[(usize, Vec<Block>)],
         (step, shared): (&[f64], &[f64]),
-        factor: &Factor,
+        (factor, unmeasured): (&Factor, &Unmeasured),
     ) -> Option<Vec<Tally>> {
         let mut tallies = vec![Tally::default(); state.classes.len()];
         let mut random = StdRng::seed_from_u64(0);
@@ -254,7 +257,7 @@ impl Solver<'_> {
                 Phase::Explain | Phase::Solve => {
                     let roughness = state.classes[self.roughness[head]].size;
                     let settled = self.freedoms[head].as_ref()?.settled(factor, step.len(), roughness)?;
-                    let before = self.unmeasured.of(head);
+                    let before = unmeasured.of(head);
                     tally.squares = (tally.squares - before.squares).max(0.0);
                     tally.count - (settled - before.settled)
                 }

@@ -1,6 +1,8 @@
 //! Splines on a lattice against closed forms: a conductivity from a noisy field, a source that does not change, and the same
 //! answers from a compiled scene and from its text.
 
+mod sources;
+
 use std::f64::consts::PI;
 use std::time::Duration;
 
@@ -67,8 +69,49 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// A square skin under a load that is sought.
+    pub mod skin {
+        units: off;
+        coordinates: x, y;
+        fields: u;
+        sources: f;
+        on inside { balance: laplacian(u) + f == 0; }
+        on edge { held: u == 0; }
+        on samples { observe u; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A square plate, free to turn at its edge.
+    pub mod plate {
+        units: off;
+        coordinates: x, y;
+        fields: w;
+        sources: p;
+        on inside { bending: laplacian(laplacian(w)) == p; }
+        on edge { held: w == 0; free: laplacian(w) == 0; }
+        on samples { observe w; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// Heat that a rod takes up and passes on.
+    pub mod lit {
+        units: off;
+        coordinates: x, t;
+        fields: T;
+        sources: q;
+        on rod { balance: d(T, t) == 0.05 * d(T, x, 2) + q; }
+        on samples { observe T; }
+        scene recover { }
+    }
+}
+
 /// This file, whose equations are read here once more.
-const TEXT: &str = include_str!("lattice.rs");
+const TEXT: &str = include_str!("main.rs");
 
 /// A scene, interpreted: from the braces of the `pde!` that declares its module.
 fn interpreted(scene: SceneRef) -> SceneRef {
