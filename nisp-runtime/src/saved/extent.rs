@@ -57,9 +57,10 @@ impl Extent {
 
     /// True for a point, in declared units, at which the answer holds.
     pub(crate) fn contains(&self, point: &[f64]) -> bool {
-        // Along one coordinate the points of a domain reach its ends.
+        // Over one coordinate both ends are among the points, and nearly so along each of several.
+        let share = if self.ranges.len() == 1 { ROUNDING } else { SHORT };
         let is_along = |([low, high], x): (&[f64; 2], &f64)| {
-            let slack = SHORT * (high - low);
+            let slack = share * (high - low);
             (low - slack..=high + slack).contains(x)
         };
         let is_in_range = self.ranges.iter().zip(point).all(is_along);

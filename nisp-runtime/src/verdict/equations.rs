@@ -128,13 +128,13 @@ impl Judged<'_> {
         let [jet] = *term.jets else { return None };
         let read = &self.schema.jets[jet];
         let head = &self.bound.problem.scene().schema.heads[read.head];
-        if !is_value(read) || head.transformed {
+        // Equations hold a field to what it is stated to be, and data to what it becomes; a source may be anything next to it.
+        if !is_value(read) || head.transformed || !head.source {
             return None;
         }
         let slopes = self.facts.slopes(self.programs, self.schema, row, self.scalars);
         let natural = self.bound.scaling.offset[read.head].abs() + self.bound.head_scale(read.head);
-        // A quantity may be large where it is stated and small later on; what it is in the mean is not far beyond either.
-        let natural = root_mean_square(slopes[jet].iter().copied()) * natural.max(self.sizes.mean[read.head].abs());
+        let natural = root_mean_square(slopes[jet].iter().copied()) * natural;
         let mut jets = self.facts.jets.clone();
         jets[jet * self.facts.stride..][..self.facts.stride].fill(0.0);
         let stated = root_mean_square(self.row(row, &jets, &self.facts.columns));

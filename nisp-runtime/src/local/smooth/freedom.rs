@@ -1,4 +1,4 @@
-//! How many numbers of a head its data settle: those that its prior alone does not.
+//! How many numbers of a head its data settle: those that its prior alone does not, and equations do not by themselves.
 
 use faer::Mat;
 use rand::rngs::StdRng;
@@ -51,6 +51,47 @@ impl Freedom {
         });
         let together = along(&right, &factor.solve_all(&right)?);
         Some(self.alone.iter().zip(together).map(|(alone, together)| alone - together).sum::<f64>() / PROBES as f64)
+    }
+}
+
+/// Of a head: how many of its numbers equations settle, and the sum of squares that they ask of the rows of its prior.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Before {
+    pub(super) settled: f64,
+    pub(super) squares: f64,
+}
+
+/// By head what equations settle, and by head the roughness for which it was counted.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Unmeasured {
+    of: Vec<Before>,
+    sizes: Vec<f64>,
+}
+
+impl Unmeasured {
+    pub(super) fn new(of: Vec<Before>, sizes: Vec<f64>) -> Self {
+        Self { of, sizes }
+    }
+
+    /// By head, the roughness for which it was counted.
+    pub(super) fn sizes(&self) -> &[f64] {
+        &self.sizes
+    }
+
+    pub(super) fn of(&self, head: usize) -> Before {
+        self.of.get(head).copied().unwrap_or_default()
+    }
+
+    /// As plain numbers, three to a head.
+    pub(super) fn numbers(&self) -> Vec<f64> {
+        let all = self.sizes.iter().enumerate().map(|(head, size)| (self.of(head), *size));
+        all.flat_map(|(before, size)| [before.settled, before.squares, size]).collect()
+    }
+
+    pub(super) fn from_numbers(numbers: &[f64]) -> Self {
+        let all = || numbers.as_chunks::<3>().0.iter();
+        let of = all().map(|&[settled, squares, _]| Before { settled, squares }).collect();
+        Self { of, sizes: all().map(|&[_, _, size]| size).collect() }
     }
 }
 

@@ -91,14 +91,14 @@ pub(crate) fn solve(
             run.status = Status::Budget;
             break;
         }
-        // What is too large for a finer lattice stays with the one at hand.
+        // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
         let Ok(mut finer) = Solver::new(bound, more, noise) else { break };
         if finer.cells() <= solver.cells() {
             break;
         }
         // What was found of noise and roughness holds there too.
         let first = State { step: run.state.step, classes: run.state.known(), ..finer.first(noise) };
-        let found = Run::new(&mut finer, first, noise, more, &clock, bars, monitor)?;
+        let Ok(found) = Run::new(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
         match found.status {
             Status::Converged => (solver, run, points) = (finer, found, more),
             Status::NotConverged => break,

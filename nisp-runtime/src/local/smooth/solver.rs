@@ -3,11 +3,10 @@
 use std::borrow::Cow;
 
 use super::between::filled;
-use super::freedom::Freedom;
+use super::freedom::{Freedom, Unmeasured};
 use super::meshes::{lattices, together};
 use super::prior::Prior;
 use super::state::{Phase, State};
-use super::unmeasured::Unmeasured;
 use crate::local::LocalError;
 use crate::local::group::Group;
 use crate::local::heads::Heads;

@@ -3,9 +3,9 @@
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
+use super::freedom::Unmeasured;
 use super::solver::Solver;
 use super::state::{Phase, State};
-use super::unmeasured::Unmeasured;
 use crate::local::LocalError;
 use crate::local::block::Block;
 use crate::local::normal::Factor;

@@ -2,6 +2,7 @@
 //! out those that they cannot follow: this says nothing of how much the source bends. The evidence is that of the measurements,
 //! given the equations (MacKay 1992), so that it counts what is settled beyond that.
 
+use super::freedom::{Before, Unmeasured};
 use super::solver::Solver;
 use super::state::{Phase, State};
 use crate::local::block::Block;
@@ -10,44 +11,12 @@ use crate::schema::{self, TermKind};
 /// Change of the logarithm of a roughness after which what is settled is counted anew.
 const STALE: f64 = 0.02;
 
-/// Of a head: how many of its numbers equations settle, and the sum of squares that they ask of the rows of its prior.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Before {
-    pub(super) settled: f64,
-    pub(super) squares: f64,
-}
-
-/// By head what equations settle, and by head the roughness for which it was counted.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Unmeasured {
-    of: Vec<Before>,
-    sizes: Vec<f64>,
-}
-
-impl Unmeasured {
-    pub(super) fn of(&self, head: usize) -> Before {
-        self.of.get(head).copied().unwrap_or_default()
-    }
-
-    /// As plain numbers, three to a head.
-    pub(super) fn numbers(&self) -> Vec<f64> {
-        let all = self.sizes.iter().enumerate().map(|(head, size)| (self.of(head), *size));
-        all.flat_map(|(before, size)| [before.settled, before.squares, size]).collect()
-    }
-
-    pub(super) fn from_numbers(numbers: &[f64]) -> Self {
-        let all = || numbers.as_chunks::<3>().0.iter();
-        let of = all().map(|&[settled, squares, _]| Before { settled, squares }).collect();
-        Self { of, sizes: all().map(|&[_, _, size]| size).collect() }
-    }
-}
-
 impl Solver<'_> {
     /// Counts what the rows of all groups settle without measurements, where roughness has changed since it was counted. The
     /// normal equations are those without measurements afterwards.
     pub(super) fn count_unmeasured(&mut self, state: &State, blocks: &[(usize, Vec<Block>)]) -> Unmeasured {
         let sizes: Vec<f64> = self.roughness.iter().map(|&class| state.classes[class].size).collect();
-        let past = &state.unmeasured.sizes;
+        let past = state.unmeasured.sizes();
         let is_near = |(now, past): (&f64, &f64)| (now / past).ln().abs() < STALE;
         if past.len() == sizes.len() && sizes.iter().zip(past).all(is_near) {
             return state.unmeasured.clone();
@@ -68,7 +37,7 @@ impl Solver<'_> {
                 (0..sizes.len()).map(|head| if judged.contains(&head) { of(head) } else { Some(Before::default()) });
             all.collect::<Option<Vec<Before>>>()
         });
-        Unmeasured { of: found.unwrap_or_default(), sizes }
+        Unmeasured::new(found.unwrap_or_default(), sizes)
     }
 
     /// Rows of a group with nothing in those that measure something. A condition on a source alone does.
