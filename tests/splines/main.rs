@@ -4,6 +4,7 @@ use nisp::solve::driver::Flow;
 use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 
 mod equations;
+mod measured;
 mod oscillator;
 
 /// Normal numbers, about: sums of twelve uniform ones.
