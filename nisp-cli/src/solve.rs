@@ -57,8 +57,10 @@ pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, St
     if options.checkpoint || interrupted {
         answer.files.push((checkpoint::NAME, solution.checkpoint.to_bytes()));
     }
+    // Files of these names are an earlier run's where its answer lies beside them, and the user's own elsewhere.
+    let has_earlier = out.file(results::SAVED).exists();
     let written = interrupt::placing(|| out.write_somewhere(&answer.files));
-    if written.fault.is_none() {
+    if written.fault.is_none() && has_earlier {
         let is_stale = |name: &&'static str| !answer.files.iter().any(|(own, _)| own == name);
         out.forget(results::names(&prepared).into_iter().filter(is_stale));
     }

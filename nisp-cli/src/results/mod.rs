@@ -40,7 +40,7 @@ const PLOT: &str = "plot.svg";
 /// Over three coordinates, for other programs.
 const VOLUME: &str = "volume.vtu";
 /// What `nisp eval` reads.
-const SAVED: &str = "answer.nisp";
+pub(crate) const SAVED: &str = "answer.nisp";
 
 /// What is said of a solved problem, and the files that say it.
 pub(crate) struct Answer {
@@ -77,8 +77,8 @@ impl Answer {
 }
 
 /// The answer at the points of [`Prepared`], and the answer itself. Where the user has asked to stop it has no error bars: they
-/// take time, and do not hold for a state that the method left halfway. Points that the user has `asked` for in a file have no value where
-/// the answer does not hold.
+/// take time, and do not hold for a state that the method left halfway. Points that the user has `asked` for in a file have no
+/// value where the answer does not hold.
 pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution, asked: Option<&Path>) -> Result<Answer, DataError> {
     let mut answer = shown(prepared, solution, asked)?;
     // What a run that was cut short leaves says little of the data.

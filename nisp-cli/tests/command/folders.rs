@@ -36,6 +36,37 @@ fn stop(child: Child) -> (Option<i32>, String, String) {
 const LONG: &str = "solve pendulum --carrier network --budget 120 --out a/out";
 
 #[test]
+fn a_folder_holds_the_files_of_one_run_and_what_is_the_users_own() {
+    let place = Place::new();
+    assert_eq!(place.run("solve pendulum --set g=1.62 --out a").code, Some(3));
+    assert!(place.path("a/misfits.csv").exists());
+    assert_eq!(place.run("solve pendulum --out a").code, Some(0));
+    assert_eq!(names(&place.path("a")), FILES);
+    fs::create_dir(place.path("own")).unwrap();
+    fs::write(place.path("own/misfits.csv"), "mine").unwrap();
+    assert_eq!(place.run("solve pendulum --out own").code, Some(0));
+    assert_eq!(fs::read_to_string(place.path("own/misfits.csv")).unwrap(), "mine");
+}
+
+#[test]
+fn points_where_the_answer_does_not_hold_have_no_value() {
+    let place = Place::new();
+    let text = "coordinates: t [s];\nfields: v [m/s];\nsources: a [m/s^2];\n\
+                on ride { motion: d(v, t) == a; }\non samples { observe v; }\n";
+    fs::write(place.path("ride.pde"), text).unwrap();
+    let speed = |at: u32| {
+        let t = 0.1 * f64::from(at);
+        format!("{t:.1},{:.6}\n", t.sin() + 0.01 * (f64::from(at * at)).sin())
+    };
+    fs::write(place.path("ride.csv"), format!("t [s],v [m/s]\n{}", (0..100).map(speed).collect::<String>())).unwrap();
+    fs::write(place.path("at.csv"), "t [s]\n1\n900\n").unwrap();
+    let ran = place.run("solve ride.pde --data ride.csv --at at.csv --out a");
+    assert!(ran.stdout.contains("1 of 2 points of at.csv lie outside"), "{}{}", ran.stdout, ran.stderr);
+    let source = fs::read_to_string(place.path("a/source.csv")).unwrap();
+    assert!(source.lines().last().unwrap().starts_with("900,NaN,NaN"), "{source}");
+}
+
+#[test]
 fn two_runs_into_one_folder_do_not_mix() {
     let place = Place::new();
     let first = start(&place, &format!("{LONG} --json"));
