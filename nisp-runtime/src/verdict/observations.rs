@@ -77,7 +77,7 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
                 rms * outward,
                 of.deviation * outward,
                 if rms > HEAVY * middle(own) {
-                    "most of that lies in few values, which --robust leaves out".into()
+                    "most of that lies in few values; if these are outliers, --robust leaves them out".into()
                 } else {
                     format!(
                         "the equations or a parameter do not fit these data, or the carrier is too coarse ({finer})"
@@ -104,7 +104,6 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
         if let Some(of) = of.filter(|_| record && !robust) {
             checks.extend(term.columns.iter().map(|&column| lonely(bound, (group, column), of, place, outward)));
         }
-        // A misfit far below the noise is what a fit that follows the data leaves, not a part that it leaves out.
         if robust {
             let out = own.iter().flatten().filter(|x| x.abs() > TAIL * rms).count();
             let all = own.iter().map(Vec::len).sum::<usize>();
@@ -115,6 +114,7 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
             );
             checks.push(Check::new("left", place, (out as f64 / all.max(1) as f64, LEFT), said));
         }
+        // A misfit far below the noise is what a fit that follows the data leaves, not a part that it leaves out.
         let is_below = of.is_some_and(|of| rms < BELOW * of.deviation);
         if exact || is_below {
             continue;
@@ -159,8 +159,8 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
         }
         if let Some(swing) = of.and_then(|of| rhythm(places, &own[0], of)) {
             let said = format!(
-                "what is left of `{}` goes up and down {} over the record by {:.2e}{unit}, which noise does not: the equations or a \
-                 parameter do not describe it, or a rhythm was smoothed away ({finer})",
+                "what is left of `{}` goes up and down {} over the record by {:.2e}{unit}, which noise does not: the equations \
+                 or a parameter do not describe it, or a rhythm was smoothed away ({finer})",
                 term.name,
                 if swing.periods == 1 { "once".into() } else { format!("{} times", swing.periods) },
                 swing.amplitude * outward
