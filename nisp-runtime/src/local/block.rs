@@ -114,6 +114,14 @@ impl Block {
         self.misfits[row] + along + beside
     }
 
+    /// Leaves nothing of a row.
+    pub(super) fn clear(&mut self, row: usize) {
+        let (width, learned) = (self.dofs.len(), self.by_learned.len() / self.misfits.len());
+        self.misfits[row] = 0.0;
+        self.slopes[row * width..][..width].fill(0.0);
+        self.by_learned[row * learned..][..learned].fill(0.0);
+    }
+
     /// Adds a row's derivatives, with the other sign if it is `negative`, to a vector of all coefficients and one of the learned
     /// scalars.
     pub(super) fn add_signed(&self, row: usize, negative: bool, by: &mut [f64], below: &mut [f64]) {

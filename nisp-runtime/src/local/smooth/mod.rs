@@ -79,7 +79,7 @@ pub(crate) fn solve(
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
     }
-    let mut run = Run::new(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
+    let mut run = Run::go(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
     let mut strain = f64::INFINITY;
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
@@ -98,7 +98,7 @@ pub(crate) fn solve(
         }
         // What was found of noise and roughness holds there too.
         let first = State { step: run.state.step, classes: run.state.known(), ..finer.first(noise) };
-        let Ok(found) = Run::new(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
+        let Ok(found) = Run::go(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
         match found.status {
             Status::Converged => (solver, run, points) = (finer, found, more),
             Status::NotConverged => break,

@@ -56,7 +56,7 @@ pub(super) struct Run {
 
 impl Run {
     /// Steps from a state, with equations asked at so many points; `kept` seconds of the budget are left for what comes after.
-    pub(super) fn new(
+    pub(super) fn go(
         solver: &mut Solver<'_>,
         mut state: State,
         noise: &Noise,

@@ -71,12 +71,9 @@ impl Solver<'_> {
         let group = &self.groups[at];
         let mut blocks = group.blocks(&self.heads, evaluated, slopes);
         for (p, block) in blocks.iter_mut().enumerate() {
-            let (width, learned) = (block.dofs.len(), slopes.len());
             for (row, counts) in counts.iter().enumerate() {
                 if !counts[p] {
-                    block.misfits[row] = 0.0;
-                    block.slopes[row * width..][..width].fill(0.0);
-                    block.by_learned[row * learned..][..learned].fill(0.0);
+                    block.clear(row);
                 } else if !block.misfits[row].is_finite() {
                     return Err(LocalError::Fault(Fault::residual(group.name(row), Some(p))));
                 }

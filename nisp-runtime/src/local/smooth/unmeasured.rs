@@ -48,15 +48,7 @@ impl Solver<'_> {
         let measured: Vec<usize> =
             group.schema.terms.iter().filter(measures).flat_map(|term| term.first..term.first + term.rows).collect();
         let mut blocks = blocks.to_vec();
-        for block in &mut blocks {
-            let rows = block.misfits.len();
-            let (width, learned) = (block.dofs.len(), block.by_learned.len() / rows.max(1));
-            for &row in &measured {
-                block.misfits[row] = 0.0;
-                block.slopes[row * width..][..width].fill(0.0);
-                block.by_learned[row * learned..][..learned].fill(0.0);
-            }
-        }
+        blocks.iter_mut().for_each(|block| measured.iter().for_each(|&row| block.clear(row)));
         blocks
     }
 }
