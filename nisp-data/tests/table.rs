@@ -145,15 +145,36 @@ fn the_repository_data_reads() {
 
 #[test]
 fn headers_that_speak_of_no_known_unit_are_not_taken_for_another() {
-    let table = parse("t (Min),T_degC,u [rpm],v (measured)\n0,20,1,2\n1,21,2,3\n");
+    let table = parse("t (Min),T [kelvins],u [furlong],v (measured)\n0,20,1,2\n1,21,2,3\n");
     let fault = |name: &str, header: &str, unit: &str| table.chosen(name, header, unit).unwrap_err().to_string();
     assert!(fault("t", "t (Min)", "s").contains("is `min` meant?"), "{}", fault("t", "t (Min)", "s"));
-    assert!(fault("T", "T_degC", "K").contains("add 273.15 to every value"));
-    assert!(fault("u", "u [rpm]", "1/s").contains("no such unit is known"));
+    assert!(fault("u", "u [furlong]", "m").contains("no such unit is known"));
     assert_eq!(table.chosen("v", "v (measured)", "m").unwrap(), [2.0, 3.0]);
     // Nothing is suggested that would be refused.
     let missing = table.quantity("T", "K").unwrap_err().to_string();
-    assert!(missing.contains("add 273.15"), "{missing}");
+    assert!(missing.contains("no such unit is known"), "{missing}");
+}
+
+#[test]
+fn degrees_celsius_and_fahrenheit_become_kelvins() {
+    let table = parse("t,T_degC,wall [°F],n [rpm]\n0,20,68,60\n1,-40,-40,120\n");
+    let close = |values: Vec<f64>, expected: [f64; 2]| values.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9);
+    assert!(close(table.quantity("T", "K").unwrap(), [293.15, 233.15]));
+    assert!(close(table.quantity("wall", "K").unwrap(), [293.15, 233.15]));
+    assert!(close(table.quantity("n", "rad/s").unwrap(), [std::f64::consts::TAU, 2.0 * std::f64::consts::TAU]));
+}
+
+#[test]
+fn spreadsheets_write_decimal_commas_and_cells_that_were_not_measured() {
+    let table = parse("t_s;q_m\n0;1,5\n0,5;n/a\n1;-2,25e-1\n1,5;NA\n");
+    assert_eq!(table.quantity("t", "s").unwrap(), [0.0, 0.5, 1.0, 1.5]);
+    let found = table.measured("q", "m").unwrap();
+    assert_eq!((found[0], found[2]), (1.5, -0.225));
+    assert!(found[1].is_nan() && found[3].is_nan());
+    let fault = |cell: &str| parse(&format!("t,q\n0,{cell}\n1,2\n")).measured("q", "m").unwrap_err().to_string();
+    assert!(fault("\"1,5\"").contains("write the decimal comma as a point"));
+    assert!(fault("2026-03-01 12:00:07").contains("is a date or a time of day"));
+    assert!(fault("broken").contains("is not a number; correct it"));
 }
 
 proptest! {

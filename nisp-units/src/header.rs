@@ -16,11 +16,56 @@ struct Written {
     is_loose: bool,
 }
 
-/// How many units `to` one unit `from` is, both as headers have them; nothing where one of them is no unit, or where they are of
-/// different dimensions. A plain number is written `` or `1`.
+/// Scales of temperature that begin elsewhere than the kelvin's: a degree in kelvins, and the scale's zero in kelvins.
+const SCALES: [(&str, f64, f64); 8] = [
+    ("degC", 1.0, 273.15),
+    ("°C", 1.0, 273.15),
+    ("℃", 1.0, 273.15),
+    ("celsius", 1.0, 273.15),
+    ("Celsius", 1.0, 273.15),
+    ("degF", 5.0 / 9.0, 459.67 * 5.0 / 9.0),
+    ("°F", 5.0 / 9.0, 459.67 * 5.0 / 9.0),
+    ("℉", 5.0 / 9.0, 459.67 * 5.0 / 9.0),
+];
+
+/// How a number in one unit becomes one in another.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conversion {
+    /// What it is multiplied by.
+    pub factor: f64,
+    /// What is added then: 273.15 from degrees Celsius to kelvins, zero but for temperatures.
+    pub shift: f64,
+}
+
+impl Conversion {
+    /// The number in the other unit; to the bit, sign of zero included, where that is the same unit.
+    pub fn of(&self, number: f64) -> f64 {
+        let product = number * self.factor;
+        if self.shift == 0.0 { product } else { product + self.shift }
+    }
+}
+
+/// How numbers in a unit `from` become numbers in a unit `to`, both as headers have them; nothing where one of them is no unit, or
+/// where they are of different dimensions. A plain number is written `` or `1`. Degrees Celsius and Fahrenheit can stand alone, in
+/// `from`.
 ///
 /// Where underscores part symbols, all but the first have the signs with which the dimensions agree.
-pub fn factor(from: &str, to: &str) -> Option<f64> {
+pub fn conversion(from: &str, to: &str) -> Option<Conversion> {
+    if let Some((degree, zero)) = scale(from) {
+        let kelvin = factor("K", to)?;
+        return Some(Conversion { factor: degree * kelvin, shift: zero * kelvin });
+    }
+    Some(Conversion { factor: factor(from, to)?, shift: 0.0 })
+}
+
+/// A scale of temperature: a degree and the zero, in kelvins.
+fn scale(text: &str) -> Option<(f64, f64)> {
+    let found = SCALES.iter().find(|(name, ..)| *name == text.trim())?;
+    Some((found.1, found.2))
+}
+
+/// How many units `to` one unit `from` is.
+fn factor(from: &str, to: &str) -> Option<f64> {
     let (from, to) = (Written::read(from)?, Written::read(to)?);
     to.all().find_map(|to| {
         let from = from.all().find(|from| from.dimension == to.dimension)?;
@@ -31,7 +76,7 @@ pub fn factor(from: &str, to: &str) -> Option<f64> {
 
 /// True if a text is a unit, as headers have them.
 pub fn is_unit(text: &str) -> bool {
-    Written::read(text).is_some_and(|written| !written.parts.is_empty())
+    scale(text).is_some() || Written::read(text).is_some_and(|written| !written.parts.is_empty())
 }
 
 impl Written {
@@ -129,6 +174,16 @@ mod tests {
         assert_eq!(factor("mN_per_m", "N/m"), Some(1e-3));
         assert_eq!(factor("W_m_K", "W/(m K)"), Some(1.0));
         assert_eq!(factor("m_s", "m^2"), None);
+    }
+
+    #[test]
+    fn temperatures_begin_elsewhere() {
+        let kelvins = |from, number| Some((conversion(from, "K")?.of(number) * 1e9).round() / 1e9);
+        assert_eq!(kelvins("degC", -40.0), Some(233.15));
+        assert_eq!(kelvins("°F", -40.0), Some(233.15));
+        assert_eq!(kelvins("mK", 1.0), Some(1e-3));
+        assert_eq!(conversion("degC", "mK").map(|found| found.of(1.0)), Some(274_150.0));
+        assert!(conversion("degC", "s").is_none() && conversion("degC/s", "K/s").is_none());
     }
 
     #[test]

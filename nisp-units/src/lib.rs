@@ -10,7 +10,7 @@ pub mod rational;
 mod show;
 mod table;
 
-pub use header::{factor, is_unit};
+pub use header::{Conversion, conversion, is_unit};
 pub use table::{Symbol, known_symbols, look_up};
 
 /// Number of SI base units: metre, kilogram, second, ampere, kelvin, mole, candela.

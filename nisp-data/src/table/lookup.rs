@@ -1,7 +1,7 @@
 //! Which header answers to a name. For `q` in metres: `q`, `q [m]`, `q (m)` or `q_m`; anything longer must be asked for by its
 //! exact header, because guessing between `q_m_sigma0` and `q_m_sigma0.01` would be a quiet wrong answer.
 
-use nisp_units::{factor, is_unit};
+use nisp_units::{Conversion, conversion, is_unit};
 
 use super::{Column, Kind, Table};
 use crate::DataError;
@@ -9,9 +9,6 @@ use crate::names::likeness;
 
 /// Headers less like a name are not meant by it, unless they begin with it.
 const ALIKE: f64 = 0.85;
-
-/// Degrees that begin elsewhere than the kelvin's: no factor turns one into the other.
-const CELSIUS: [&str; 5] = ["degC", "°C", "℃", "celsius", "Celsius"];
 
 impl Table {
     /// The column that answers to `name`: an exact header, or the only one of the forms `name [unit]`, `name (unit)` and
@@ -61,16 +58,18 @@ impl Table {
         read: fn(&'a Table, &'a Column) -> Result<&'a [f64], DataError>,
     ) -> Result<Vec<f64>, DataError> {
         let values = read(self, column)?;
-        let size = self.size_of(column, (name, unit))?.unwrap_or(1.0);
-        Ok(values.iter().map(|value| value * size).collect())
+        Ok(match self.conversion_of(column, (name, unit))? {
+            Some(conversion) => values.iter().map(|&value| conversion.of(value)).collect(),
+            None => values.to_vec(),
+        })
     }
 
-    /// How many of a unit one of that is which the header of a column says; nothing where it says none.
-    fn size_of(&self, column: &Column, (name, unit): (&str, &str)) -> Result<Option<f64>, DataError> {
+    /// How numbers in the unit that the header of a column says become numbers in another; nothing where it says none.
+    fn conversion_of(&self, column: &Column, (name, unit): (&str, &str)) -> Result<Option<Conversion>, DataError> {
         if column.header == name {
             return Ok(None);
         }
-        self.other_unit(&column.header, name, unit).map_or_else(|| Ok(size(&column.header, unit)), Err)
+        self.other_unit(&column.header, name, unit).map_or_else(|| Ok(found(&column.header, unit)), Err)
     }
 
     /// What is wrong with a header that says that it is in another unit.
@@ -78,9 +77,6 @@ impl Table {
         let own = claimed(header).or_else(|| misspelt(header)).filter(|own| !fits(own, unit))?;
         let wanted = if is_plain(unit) { "a number without unit".into() } else { format!("in {unit}") };
         let instead = match own.trim() {
-            celsius if CELSIUS.contains(&celsius) && factor("K", unit).is_some() => {
-                format!("add 273.15 to every value, and call the column `{name} [K]`")
-            }
             unit if is_unit(unit) => "choose another column, or correct the header".into(),
             unit if is_unit(&unit.to_lowercase()) => format!("is `{}` meant? correct the header", unit.to_lowercase()),
             unit => {
@@ -102,7 +98,7 @@ impl Table {
         let columns = [self.find("x", None)?, self.find("y", None)?, self.find("z", None)?];
         let mut sizes = [None; 3];
         for ((column, name), size) in columns.iter().zip(["x", "y", "z"]).zip(&mut sizes) {
-            *size = self.size_of(column, (name, "m"))?;
+            *size = self.conversion_of(column, (name, "m"))?;
         }
         if sizes.iter().any(Option::is_some) && sizes.iter().any(Option::is_none) {
             let headers = list(columns.iter().map(|column| column.header.as_str()));
@@ -110,7 +106,7 @@ impl Table {
             return Err(DataError::Column { path: self.path.clone(), what });
         }
         let [x, y, z] = [self.raw(columns[0])?, self.raw(columns[1])?, self.raw(columns[2])?];
-        let [a, b, c] = sizes.map(|size| size.unwrap_or(1.0));
+        let [a, b, c] = sizes.map(|size| size.map_or(1.0, |size| size.factor));
         let points = (0..self.rows()).map(|row| [a * x[row], b * y[row], c * z[row]]).collect();
         Ok((points, sizes[0].is_some()))
     }
@@ -269,14 +265,14 @@ fn answers(header: &str, name: &str, unit: Option<&str>) -> bool {
 }
 
 fn fits(own: &str, unit: &str) -> bool {
-    is_plain(own) && is_plain(unit) || own.trim() == unit.trim() || factor(own, unit).is_some()
+    is_plain(own) && is_plain(unit) || own.trim() == unit.trim() || conversion(own, unit).is_some()
 }
 
-/// How many of a unit one of that is which a header ends with: `t [ms]`, `t (ms)`, `t_ms`.
-fn size(header: &str, unit: &str) -> Option<f64> {
+/// How numbers in the unit that a header ends with become numbers in another: `t [ms]`, `t (ms)`, `t_ms`.
+fn found(header: &str, unit: &str) -> Option<Conversion> {
     match in_brackets(header) {
-        Some(own) => factor(own, unit),
-        None => header.match_indices('_').find_map(|(at, _)| factor(&header[at + 1..], unit)),
+        Some(own) => conversion(own, unit),
+        None => header.match_indices('_').find_map(|(at, _)| conversion(&header[at + 1..], unit)),
     }
 }
 
@@ -287,10 +283,7 @@ fn claimed(header: &str) -> Option<&str> {
 
 /// What stands for a unit at the end of a header, and is none: numbers would be taken for those of another unit.
 fn misspelt(header: &str) -> Option<&str> {
-    let is_celsius = |own: &&str| CELSIUS.contains(own);
-    let within = in_brackets(header).map(str::trim);
-    let behind = header.rsplit_once('_').map(|(_, own)| own).filter(is_celsius);
-    within.filter(|own| is_celsius(own) || !is_unit(own) && is_unit(&own.to_lowercase())).or(behind)
+    in_brackets(header).map(str::trim).filter(|own| !is_unit(own) && is_unit(&own.to_lowercase()))
 }
 
 fn in_brackets(header: &str) -> Option<&str> {

@@ -1,4 +1,4 @@
-//! CSV to table. Accepts comment lines (`#`), a byte order mark, CRLF, and `;` or tabs as separators.
+//! CSV to table. Accepts comment lines (`#`), a byte order mark, CRLF, and `;` or tabs as separators, decimal commas with them.
 
 use std::path::Path;
 
@@ -8,6 +8,9 @@ use crate::input::{MOST_BYTES, decode, read_bytes};
 
 /// Fewer rows than this carry no equation of motion.
 const MIN_ROWS: usize = 2;
+
+/// What loggers and spreadsheets write where nothing was measured.
+const NOT_MEASURED: [&str; 9] = ["na", "n/a", "n.a.", "#n/a", "null", "none", "missing", "-", "--"];
 
 impl Table {
     /// Reads a CSV file with one header line.
@@ -36,7 +39,8 @@ impl Table {
         if text.trim().is_empty() {
             return Err(DataError::file(path, "the file is empty; a header line and rows of numbers are needed"));
         }
-        let mut reader = reader(separator(text)).from_reader(text.as_bytes());
+        let mark = separator(text);
+        let mut reader = reader(mark).from_reader(text.as_bytes());
         let headers = reader.headers().map_err(|error| syntax(path, &error))?.clone();
         let mut columns = check_headers(path, &headers)?;
         let mut lines = Vec::new();
@@ -54,7 +58,7 @@ impl Table {
                 return Err(DataError::line(path, line, "a cell goes on in the next line; close its quotation mark"));
             }
             for (column, cell) in columns.iter_mut().zip(&record) {
-                column.push(line, cell);
+                column.push(line, cell, mark);
             }
             lines.push(line);
         }
@@ -97,8 +101,9 @@ pub(super) fn reader(separator: u8) -> csv::ReaderBuilder {
 }
 
 impl Column {
-    pub(super) fn push(&mut self, line: usize, cell: &str) {
-        let parsed = cell.parse::<f64>();
+    /// Adds a cell of a table with a separator.
+    pub(super) fn push(&mut self, line: usize, cell: &str, mark: u8) {
+        let parsed = number(cell, mark);
         let kind = match parsed {
             _ if cell.is_empty() => Kind::Empty,
             Ok(value) if value.is_nan() => Kind::NotANumber,
@@ -115,6 +120,25 @@ impl Column {
     }
 }
 
+/// The number in a cell, NaN where it says that nothing was measured. Where cells are not parted by commas, one may stand for the
+/// decimal point.
+fn number(cell: &str, mark: u8) -> Result<f64, std::num::ParseFloatError> {
+    if NOT_MEASURED.contains(&cell.to_lowercase().as_str()) {
+        return Ok(f64::NAN);
+    }
+    match mark {
+        b',' => cell.parse(),
+        _ => cell.replacen(',', ".", 1).parse(),
+    }
+}
+
+/// True of a date or a time of day: digits with dashes, slashes or colons between them.
+fn is_date(cell: &str) -> bool {
+    let mut parts = cell.split(['-', '/', ':', '.', ' ', 'T', 'Z', '+']).filter(|part| !part.is_empty());
+    let are_digits = parts.clone().all(|part| part.bytes().all(|byte| byte.is_ascii_digit()));
+    are_digits && parts.nth(1).is_some() && cell.starts_with(|first: char| first.is_ascii_digit())
+}
+
 fn describe(cell: &str) -> String {
     let shown: String = cell.chars().take(24).collect();
     if cell.is_empty() {
@@ -122,7 +146,9 @@ fn describe(cell: &str) -> String {
     } else if cell.parse::<f64>().is_ok() {
         format!("`{shown}` is not a finite number; remove the row")
     } else if cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok() {
-        format!("`{shown}` is not a number; write the decimal comma as a point")
+        format!("`{shown}` is not a number; write the decimal comma as a point, or part cells by semicolons")
+    } else if is_date(cell) {
+        format!("`{shown}` is a date or a time of day; write seconds, or another unit, from a start of your choice")
     } else {
         format!("`{shown}` is not a number; correct it or remove the row")
     }

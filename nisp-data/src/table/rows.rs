@@ -12,6 +12,7 @@ pub struct Rows<R> {
     records: csv::Reader<R>,
     record: csv::StringRecord,
     row: Table,
+    separator: u8,
 }
 
 impl<R: BufRead> Rows<R> {
@@ -39,6 +40,7 @@ impl<R: BufRead> Rows<R> {
             records,
             record: csv::StringRecord::new(),
             row: Table { path: path.into(), columns, lines: vec![0] },
+            separator: mark,
         })
     }
 
@@ -65,7 +67,7 @@ impl<R: BufRead> Rows<R> {
         for (column, cell) in columns.iter_mut().zip(&self.record) {
             column.values.clear();
             column.fault = None;
-            column.push(line, cell);
+            column.push(line, cell, self.separator);
         }
         Some(Ok(&self.row))
     }
@@ -77,7 +79,7 @@ mod tests {
 
     #[test]
     fn rows_come_one_by_one_and_a_bad_one_does_not_end_them() {
-        let text = "# a remark\nt_s;q [mm]\n0;1\n1;\n\n2;3;4\n3;x\n4;5\n";
+        let text = "# a remark\nt_s;q [mm]\n0;1,0\n1;\n\n2;3;4\n3;x\n4;5\n";
         let mut rows = Rows::read(Path::new("pipe"), text.as_bytes()).unwrap();
         let mut read = || {
             let row = rows.next_row()?;

@@ -145,8 +145,8 @@ fn two_units(symbol: &str) -> Option<(&str, &str)> {
 
 pub(crate) fn unknown_unit(symbol: &str) -> String {
     let stem = symbol.trim_end_matches(|c: char| c.is_ascii_digit());
-    let step = if symbol == "degC" {
-        "temperatures are in `K`: degrees Celsius are no multiple of it".into()
+    let step = if matches!(symbol, "degC" | "degF") {
+        format!("temperatures of equations are in `K`; columns of tables may be in `{symbol}`")
     } else if stem.len() < symbol.len() && look_up(stem).is_some() {
         format!("a power is written `{stem}^{}`", &symbol[stem.len()..])
     } else if let Some((_, short)) = SPELLED_OUT.iter().find(|(long, _)| symbol.to_lowercase().starts_with(long)) {
