@@ -137,7 +137,8 @@ pub(crate) fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
     order.into_iter().map(|at| values[at]).collect()
 }
 
-fn deviation(values: &[f64]) -> f64 {
+/// Standard deviation of values about their mean.
+pub(crate) fn deviation(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count).sqrt()
@@ -148,7 +149,7 @@ const MEDIAN: f64 = 0.674_489_75;
 
 /// From eighth differences, of which a signal that is sampled well has none: their median magnitude, so that a layer or an
 /// outlier does not count. Noise of deviation s gives differences of deviation `sqrt(12870) s`.
-fn by_differences(values: &[f64]) -> Option<f64> {
+pub(crate) fn by_differences(values: &[f64]) -> Option<f64> {
     const EIGHTH: [f64; 9] = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0];
     let difference = |window: &[f64]| window.iter().zip(EIGHTH).map(|(y, c)| c * y).sum::<f64>().abs();
     let differences: Vec<f64> = values.windows(EIGHTH.len()).map(difference).collect();

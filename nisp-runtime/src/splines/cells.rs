@@ -1,6 +1,7 @@
 //! Which cells carry the heads, and where equations are asked to hold.
 
 use super::basis::{Basis, HIGHEST_DEGREE};
+use super::drives;
 use super::prior;
 use super::resolved;
 use crate::noise::Noise;
@@ -22,7 +23,15 @@ pub(super) const MANY: usize = 8;
 /// long and says no more.
 pub(super) fn breakpoints(bound: &Bound, noise: &Noise) -> Vec<f64> {
     let all = all_breakpoints(bound, stretches(bound));
-    if noise.observations.is_empty() { all } else { resolved::breakpoints(bound, noise, all) }
+    // On wider cells equations that hold at their own points would be more than the unknowns.
+    let is_told = all.len() <= LONG && asked(bound).is_some();
+    if is_told || noise.observations.is_empty() {
+        return all;
+    }
+    let groups: Vec<usize> = (0..bound.coordinates.len()).filter(|&at| stands_for_interval(bound, at)).collect();
+    let degrees = degrees(bound.problem.scene().schema).unwrap_or_default();
+    let drives = drives::drives(bound, &groups, &degrees, &all);
+    resolved::breakpoints(bound, noise, drives, all)
 }
 
 /// True where a source may set in with the record, in a layer that its start is looked at more closely for. A long record is not
@@ -65,7 +74,8 @@ fn asked(bound: &Bound) -> Option<Vec<f64>> {
     let groups = bound.problem.scene().schema.groups.iter().enumerate();
     let is_asked = |(at, group): &(usize, &schema::Group)| {
         let has_equations = group.terms.iter().any(|term| term.kind == TermKind::Residual);
-        has_equations && !is_interval(bound, *at) && bound.coordinates[*at].len() >= MANY
+        let is_free = group.columns.is_empty() && stands_for_interval(bound, *at);
+        has_equations && !is_free && bound.coordinates[*at].len() >= MANY
     };
     let distinct = |(at, _): (usize, &schema::Group)| {
         let mut points = bound.coordinates[at].clone();
@@ -118,8 +128,8 @@ pub(super) fn middle<'a>(bound: &Bound, breakpoints: &'a [f64]) -> Option<&'a [f
 pub(super) fn part(bound: &Bound, breakpoints: &[f64]) -> Bound {
     let mut part = bound.between(breakpoints[0], breakpoints[breakpoints.len() - 1]);
     for (group, points) in part.coordinates.iter_mut().enumerate() {
-        if let Some(places) = places(bound, group, breakpoints) {
-            *points = places;
+        if let Some(Moved { places, columns }) = moved(bound, group, breakpoints) {
+            (*points, part.columns[group]) = (places, columns);
         }
     }
     part
@@ -136,10 +146,11 @@ pub(super) fn degrees(schema: &schema::Scene) -> Option<Vec<usize>> {
     degrees.iter().all(|&degree| degree <= HIGHEST_DEGREE).then_some(degrees)
 }
 
-/// True where a group's equations stand for an interval, and may be asked for elsewhere on it.
-fn is_interval(bound: &Bound, group: usize) -> bool {
+/// True where a group is equations alone, whose points stand for an interval: it may be asked for at some of them, or elsewhere where
+/// no columns are known at them.
+fn stands_for_interval(bound: &Bound, group: usize) -> bool {
     let schema = &bound.problem.scene().schema.groups[group];
-    let only_equations = schema.columns.is_empty() && schema.terms.iter().all(|term| term.kind == TermKind::Residual);
+    let only_equations = schema.terms.iter().all(|term| term.kind == TermKind::Residual);
     let mut sorted = bound.coordinates[group].clone();
     sorted.sort_by(f64::total_cmp);
     if !only_equations || sorted.len() < MANY {
@@ -149,16 +160,41 @@ fn is_interval(bound: &Bound, group: usize) -> bool {
     longest * (sorted.len() - 1) as f64 <= GAP * (sorted[sorted.len() - 1] - sorted[0])
 }
 
-/// Places where the rows of a group of equations are asked for instead of at its points: as many on the interval that those
-/// stand for as its residual has freedom. Nothing where it is asked for at its points, as data and conditions are.
-pub(super) fn places(bound: &Bound, group: usize, breakpoints: &[f64]) -> Option<Vec<f64>> {
-    if !is_interval(bound, group) {
+/// Places at which the rows of a group are asked for instead of at its points, and its columns there.
+pub(super) struct Moved {
+    pub(super) places: Vec<f64>,
+    pub(super) columns: Vec<Vec<f64>>,
+}
+
+/// Where the rows of a group of equations are asked for instead of at its points: at as many places as their residual has freedom, on
+/// the interval that the points stand for; at the nearest of the points where columns are known. Nothing where they are asked for at
+/// all points, as data and conditions are.
+pub(super) fn moved(bound: &Bound, group: usize, breakpoints: &[f64]) -> Option<Moved> {
+    if !stands_for_interval(bound, group) {
         return None;
     }
-    let own = || bound.coordinates[group].iter().copied();
-    let (low, high) = (own().fold(f64::INFINITY, f64::min), own().fold(f64::NEG_INFINITY, f64::max));
+    let own = &bound.coordinates[group];
+    let (low, high) = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
     let residual = Basis::new(SMOOTH, breakpoints);
     let slack = 1e-9 * (high - low);
     let centres = (0..residual.len()).map(|i| residual.centre(i));
-    Some(centres.filter(|at| (low - slack..=high + slack).contains(at)).collect())
+    let centres = centres.filter(|at| (low - slack..=high + slack).contains(at));
+    if bound.problem.scene().schema.groups[group].columns.is_empty() {
+        return Some(Moved { places: centres.collect(), columns: Vec::new() });
+    }
+    if residual.len() >= own.len() {
+        return None;
+    }
+    let mut order: Vec<usize> = (0..own.len()).collect();
+    order.sort_by(|&a, &b| own[a].total_cmp(&own[b]));
+    let nearest = |at: f64| {
+        let above = order.partition_point(|&point| own[point] < at).min(order.len() - 1);
+        let below = above.saturating_sub(1);
+        if at - own[order[below]] < own[order[above]] - at { order[below] } else { order[above] }
+    };
+    let mut chosen: Vec<usize> = centres.map(nearest).collect();
+    chosen.dedup();
+    let of = |values: &[f64]| chosen.iter().map(|&point| values[point]).collect();
+    let columns = bound.filled_columns(group);
+    Some(Moved { places: of(own), columns: columns.iter().map(|column| of(column)).collect() })
 }

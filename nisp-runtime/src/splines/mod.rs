@@ -11,6 +11,7 @@ mod basis;
 mod bounded;
 mod cells;
 mod course;
+mod drives;
 mod expected;
 mod group;
 mod heads;
@@ -22,6 +23,7 @@ mod prior;
 mod resolved;
 mod rows;
 mod solver;
+mod starts;
 mod step;
 mod told;
 mod triangle;
@@ -145,6 +147,14 @@ pub(crate) fn solve(
         (None, None) => {}
     }
     let mut status = run.go(&mut solver, &mut place, &Place::save)?;
+    if status == Status::Converged
+        && let Some(again) = solver.again(noise, &place)
+    {
+        place.again(again, kinds(true, cells::stretches(bound)));
+        // Where the second start does not end, the first has.
+        let ended = run.go(&mut solver, &mut place, &Place::save)?;
+        status = if ended == Status::Interrupted { ended } else { status };
+    }
     let (loss, mut ahead) = (run.loss, (status != Status::Converged).then_some(run.ahead));
     let checkpoint = place.save();
     let mut warnings = Vec::new();

@@ -21,6 +21,8 @@ pub(super) struct Place {
     pub(super) since: u64,
     pub(super) state: State,
     pub(super) tried: Vec<Tried>,
+    /// Whether the steps have started again.
+    pub(super) is_again: bool,
 }
 
 /// A kind of smoothness that was tried: its index, its evidence and its iterate.
@@ -34,13 +36,23 @@ pub(super) struct Tried {
 impl Place {
     /// The start.
     pub(super) fn first(state: State, kinds: Vec<usize>) -> Self {
-        Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new() }
+        Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new(), is_again: false }
     }
 
-    /// Keeps the iterate, and turns to the next kind. A course that the evidence rules out is not tried with other orders.
+    /// Starts again from another state, with all kinds.
+    pub(super) fn again(&mut self, state: State, kinds: Vec<usize>) {
+        (self.kinds, self.phase, self.since, self.state, self.is_again) = (kinds, Phase::Regress, 0, state, true);
+    }
+
+    /// Keeps the iterate, unless another start of its kind has ended with more evidence, and turns to the next kind. A course that
+    /// the evidence rules out is not tried with other orders.
     pub(super) fn next(&mut self, evidence: f64) {
         let kind = self.kinds.remove(0);
-        self.tried.push(Tried { kind, evidence, state: self.state.clone() });
+        let is_less = |tried: &Tried| tried.kind == kind && tried.evidence >= evidence;
+        if !self.tried.iter().any(is_less) {
+            self.tried.retain(|tried| tried.kind != kind);
+            self.tried.push(Tried { kind, evidence, state: self.state.clone() });
+        }
         let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
         let best = most(&mut self.tried.iter());
         let tried = &self.tried;
@@ -74,6 +86,7 @@ impl Place {
             .with_counter("phase", u64::from(self.phase == Phase::Solve))
             .with_counter("since", self.since)
             .with_counter("iterations", self.state.step)
+            .with_counter("again", u64::from(self.is_again))
             .with_counter("tried", self.tried.len() as u64);
         self.tried.iter().enumerate().fold(saved, |saved, (at, Tried { kind, evidence, state })| {
             let prefix = format!("tried {at} ");
@@ -103,6 +116,7 @@ impl Place {
         }
         self.state.restore(saved, "")?;
         self.since = saved.counter("since")?;
+        self.is_again = saved.counter("again")? == 1;
         self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
         Ok(())
     }

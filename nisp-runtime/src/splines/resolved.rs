@@ -3,9 +3,10 @@
 //! A record that is sampled much faster than it changes does not need a breakpoint at every measurement. Splines of the
 //! measurements alone, on wide cells, are compared with the noise. Where they leave more than noise their cells are halved,
 //! until they leave noise everywhere or every measurement has a breakpoint again. In the end all cells are divided once more,
-//! because a source takes derivatives of what was measured.
+//! because a source takes derivatives of what was measured. What equations know along the record, a drive, is looked at as well.
 
 use super::basis::Basis;
+use super::drives::Column;
 use super::triangle::{Row, Triangle};
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -28,16 +29,10 @@ const BESIDE: usize = 1;
 /// What coefficients of cells without measurements are held to zero by, beside the weight of a measurement.
 const RIDGE: f64 = 1e-7;
 
-/// A measured column: its places in ascending order, its values there, and their noise.
-struct Column {
-    places: Vec<f64>,
-    values: Vec<f64>,
-    noise: f64,
-}
-
-/// Breakpoints out of those that a record has at its measurements.
-pub(super) fn breakpoints(bound: &Bound, noise: &Noise, all: Vec<f64>) -> Vec<f64> {
-    let columns = columns(bound, noise);
+/// Breakpoints out of those that a record has at its measurements, for these and for what equations know along the record.
+pub(super) fn breakpoints(bound: &Bound, noise: &Noise, drives: Vec<Column>, all: Vec<f64>) -> Vec<f64> {
+    let mut columns = observed(bound, noise);
+    columns.extend(drives);
     let last = all.len() - 1;
     let mut chosen: Vec<usize> = (0..last).step_by((last / FEWEST).max(1)).chain([last]).collect();
     loop {
@@ -65,7 +60,8 @@ fn divided(chosen: &[usize], parts: impl Fn(usize) -> usize) -> Vec<usize> {
     inner.chain(chosen.last().copied()).collect()
 }
 
-fn columns(bound: &Bound, noise: &Noise) -> Vec<Column> {
+/// Columns that are observed, with their noise.
+fn observed(bound: &Bound, noise: &Noise) -> Vec<Column> {
     let schema = bound.problem.scene().schema;
     let mut columns = Vec::new();
     for found in &noise.observations {

@@ -1,6 +1,6 @@
 //! A problem on its splines: what is set up before any step, and what is read of it after the last.
 
-use super::cells;
+use super::cells::{self, Moved};
 use super::group::Group;
 use super::heads::Heads;
 use super::iterate::{Phase, State};
@@ -8,22 +8,15 @@ use super::prior::{Course, Prior, Smoothness};
 use super::triangle::Triangle;
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
-use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
-use crate::start;
-use crate::tolerance::LOOSE;
-use crate::weighed::{Class, Guess, of_terms};
 
 /// How fields are smooth while only data are regressed.
 const REGRESS: Smoothness = Smoothness { order: 2, course: Course::Steady };
 const LEVEL: Smoothness = Smoothness { order: 1, course: Course::Steady };
 /// Cells of a source's shortest wave, before the first step says how smooth it is.
-const SHORTEST: f64 = 12.0;
-/// Least roughness, and least amplitude of a source beside its natural size.
-const LEAST_ROUGHNESS: f64 = 1e-12;
-const LEAST_AMPLITUDE: f64 = 1e-6;
+pub(super) const SHORTEST: f64 = 12.0;
 
 /// A problem on its splines.
 pub(super) struct Solver<'a> {
@@ -55,10 +48,10 @@ impl<'a> Solver<'a> {
         let schema = bound.problem.scene().schema;
         let heads = Heads::new(bound, &cells::degrees(schema).unwrap_or_default(), breakpoints);
         let kernels = bound.problem.scene().double();
-        let group = |(at, kernel)| {
-            let moved = cells::places(bound, at, breakpoints);
-            let places = moved.as_deref().unwrap_or(&bound.coordinates[at]);
-            Group::new(&schema.groups[at], kernel, &heads, places, &bound.filled_columns(at))
+        let group = |(at, kernel): (usize, _)| {
+            let own = || Moved { places: bound.coordinates[at].clone(), columns: bound.filled_columns(at) };
+            let Moved { places, columns } = cells::moved(bound, at, breakpoints).unwrap_or_else(own);
+            Group::new(&schema.groups[at], kernel, &heads, &places, &columns)
         };
         let groups: Vec<Group> = kernels.into_iter().take(schema.groups.len()).enumerate().map(group).collect();
         let mut count = 0;
@@ -139,47 +132,6 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// Where the solver starts: heads at their offsets, or at another level where equations and data have no value there, and noise
-    /// as differences of the data say.
-    pub(super) fn first(&mut self, noise: &Noise) -> State {
-        let schema = self.bound.problem.scene().schema;
-        let mut classes = of_terms(self.bound, noise);
-        let open = |size: f64, least: f64| Class::open(size, Guess { size: 0.0, count: 0.0, least });
-        let natural = self.length.sqrt();
-        let observed = schema.observed();
-        let rough = self.priors.iter().enumerate().map(|(head, prior)| {
-            let own = prior.roughness(natural, SHORTEST);
-            // Observed fields are rougher than anything that the cells can hold, until the first step says how rough.
-            let is_regressed = !schema.heads[head].source && observed.contains(&head);
-            open(if is_regressed { prior.roughness(natural, 1.0).max(1e9) } else { own }, LEAST_ROUGHNESS)
-        });
-        classes.extend(rough);
-        classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));
-        let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
-        let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
-        let mut state = State { theta, learned, classes, tolerance: LOOSE, convex, step: 0 };
-        self.level(&mut state);
-        state
-    }
-
-    /// Begins where equations and data have a value, unless they have one at the state.
-    pub(super) fn come_back(&mut self, state: &mut State) {
-        self.size(state);
-        if !self.loss(state, Phase::Solve).is_finite() {
-            self.level(state);
-        }
-    }
-
-    /// Heads at their offsets, or at another level where equations and data have no value there.
-    fn level(&mut self, state: &mut State) {
-        let level = start::level(|level| {
-            state.theta.fill(level);
-            self.size(state);
-            self.loss(state, Phase::Solve).is_finite()
-        });
-        state.theta.fill(level);
-    }
-
     /// Takes over learned scalars; returns their derivatives by their parameters.
     pub(super) fn set_learned(&mut self, parameters: &[f64]) -> Vec<f64> {
         let found = self.bound.learned.iter().zip(parameters).map(|(learned, &parameter)| learned.map.at(parameter));
@@ -233,7 +185,7 @@ impl<'a> Solver<'a> {
         let Self { bound, heads, groups, .. } = self;
         let schema = bound.problem.scene().schema;
         let of = |(at, (own, kernel)): (usize, (Group, GroupKernel<f64>))| {
-            if cells::places(bound, at, breakpoints).is_none() {
+            if cells::moved(bound, at, breakpoints).is_none() {
                 return own.facts(&heads, theta);
             }
             let columns = bound.filled_columns(at);

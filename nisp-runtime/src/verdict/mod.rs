@@ -15,6 +15,7 @@ mod outside;
 mod settled;
 mod slow;
 mod smooth;
+mod taken;
 mod told;
 
 use crate::facts::Answer;

@@ -1,6 +1,6 @@
 //! What an answer leaves of observations: it should be noise, no larger than the data's own, without a pattern.
 
-use super::{Check, held, outliers, root_mean_square, slow, smooth};
+use super::{Check, held, outliers, root_mean_square, slow, smooth, taken};
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
 use crate::rhythm::rhythm;
@@ -79,9 +79,11 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
                 if rms > HEAVY * middle(own) {
                     "most of that lies in few values; if these are outliers, --robust leaves them out".into()
                 } else {
-                    format!(
-                        "the equations or a parameter do not fit these data, or the carrier is too coarse ({finer})"
-                    )
+                    taken::noisy(bound).unwrap_or_else(|| {
+                        format!(
+                            "the equations or a parameter do not fit these data, or the carrier is too coarse ({finer})"
+                        )
+                    })
                 }
             );
             // Data that do not vary are met exactly or not at all.

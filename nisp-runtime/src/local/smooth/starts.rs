@@ -1,6 +1,4 @@
-//! A second start where measurements are few. A rough source under little noise and a plain one under much noise may both be
-//! most likely among their neighbours; where neighbouring measurements lie far apart, what these say of the noise leads to the
-//! second. The other start begins with less noise, and the evidence chooses.
+//! A second start where the noise may hide a source (see `start`), and the evidence that chooses.
 
 use nalgebra::DMatrix;
 
@@ -10,27 +8,21 @@ use crate::local::block::Block;
 use crate::local::normal::Factor;
 use crate::noise::{Noise, ObservationNoise};
 use crate::schema::TermKind;
+use crate::start::{self, ENOUGH, QUIETER, ROUGHER};
 
-/// Measurements that are enough for one start.
-const ENOUGH: usize = 200;
-/// Noise that may hide a source, as a share of the spread of the data.
-const LOUD: f64 = 0.05;
-/// Noise of the second start beside what neighbouring measurements say.
-const QUIETER: f64 = 0.1;
-/// Roughness of the second start beside the natural one.
-const ROUGHER: f64 = 30.0;
 /// A direction of which less than this is left is settled by measurements alone.
 const SETTLED: f64 = 1e-8;
 
 impl Solver<'_> {
-    /// Where the solver starts again after a state that has settled; nothing if that leaves little noise, has many measurements
-    /// behind it, or is of the second start itself.
+    /// Where the solver starts again after a state that has settled; nothing if its noise hides no source, or if it is of the second
+    /// start itself.
     pub(super) fn again(&mut self, noise: &Noise, state: &State) -> Option<State> {
         let count = |found: &ObservationNoise| self.groups[found.group].sites.count;
-        let is_few = noise.observations.iter().map(count).sum::<usize>() <= ENOUGH;
         let size = |found: &ObservationNoise| state.classes[self.classes[found.group][found.term]].size;
-        let is_loud = noise.observations.iter().any(|found| size(found) > LOUD * found.spread);
-        if state.earlier.is_some() || !is_few || !is_loud || self.judged(Phase::Solve).is_empty() {
+        // The evidence costs the cube of the measurements.
+        let is_few = noise.observations.iter().map(count).sum::<usize>() <= ENOUGH;
+        let may_hide = is_few && start::may_hide(noise, count, size);
+        if state.earlier.is_some() || !may_hide || self.judged(Phase::Solve).is_empty() {
             return None;
         }
         let evidence = self.evidence(state)?;
