@@ -54,7 +54,7 @@ fn cells() {
     says(&refusal(&with_cell(9, "1e999"), ""), &["line 11", "not a finite number"]);
     says(&refusal(&with_cell(9, "1,2"), ""), &["line 11: 3 cells where the header has 2"]);
     says(&refusal(&with_cell(9, "-1e70"), ""), &["`v` goes up to 1e70 V", "check its column and its unit"]);
-    says(&refusal("t;v\n0;1,5\n1;2,5\n", ""), &["decimal comma"]);
+    says(&refusal("t,v\n0,\"1,5\"\n1,\"2,5\"\n", ""), &["decimal comma"]);
 }
 
 #[test]

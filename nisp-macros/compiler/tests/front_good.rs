@@ -71,6 +71,16 @@ fn the_rlc_circuit() {
 }
 
 #[test]
+fn a_value_with_a_unit_declares_it() {
+    let model = model_of("spring");
+    let units: Vec<&str> = model.parameters.iter().map(|parameter| parameter.unit.text.as_str()).collect();
+    assert_eq!(units, ["N/m", "kg", "m/s^2"]);
+    let values: Vec<_> = model.parameters.iter().map(|parameter| parameter.default).collect();
+    assert_eq!(values, [Some(5.0), Some(0.2), Some(-9.81)]);
+    assert_eq!(model.constants[0].unit.text, "mm");
+}
+
+#[test]
 fn the_sponge() {
     let model = model_of("sponge");
     assert_eq!(model.fields[2].name.text, "u_z");

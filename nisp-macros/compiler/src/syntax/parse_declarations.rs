@@ -5,7 +5,7 @@ use proc_macro2::Delimiter;
 use super::parse_number;
 use super::recover::{self, at_statement};
 use super::stream::{Context, Stream};
-use super::tree::{Declaration, Kind, Name, Shape};
+use super::tree::{Declaration, Expr, ExprKind, Kind, Name, Shape};
 use super::{parse_expression, parse_unit};
 use crate::error::{Checked, Place, catalogue};
 use crate::unit::Unit;
@@ -95,10 +95,9 @@ fn entry(
     context.broken.insert(name.text.clone());
     let depends = depends(stream, context, kind)?;
     let shape = if stream.take(":").is_some() { shape(stream, context, kind)? } else { Shape::Scalar };
-    let unit = match parse_unit::parse_optional(stream, context) {
-        None => Some(Unit::one()),
-        Some(unit) => unit.ok(),
-    };
+    let written = parse_unit::parse_optional(stream, context);
+    let is_written = written.is_some();
+    let unit = written.map_or(Some(Unit::one()), Checked::ok);
     let broken_name = name.text.clone();
     let mut declaration = Declaration {
         kind,
@@ -115,8 +114,20 @@ fn entry(
         docs,
     };
     attributes(stream, context, &mut declaration)?;
+    if let (false, Kind::Parameter | Kind::Constant, Some(value)) = (is_written, kind, &declaration.value) {
+        declaration.unit = unit_of(value).or(declaration.unit);
+    }
     context.broken.remove(&broken_name);
     Ok(declaration)
+}
+
+/// The unit of a plain number: `J = 2e-4 [kg m^2]` is `J [kg m^2] = 2e-4`.
+fn unit_of(value: &Expr) -> Option<Unit> {
+    match &value.kind {
+        ExprKind::Number(_, unit) => unit.as_deref().cloned(),
+        ExprKind::Negate(inner) => unit_of(inner),
+        _ => None,
+    }
 }
 
 /// `(x, y)` behind the name of a field or a source: the coordinates that it depends on.
