@@ -57,6 +57,21 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// Sound of one frequency in a room whose walls give way.
+    pub mod sound {
+        units: off;
+        coordinates: x, y;
+        fields: u;
+        sources: f;
+        parameters: k = 7;
+        on inside { helmholtz: laplacian(u) + k^2 * u == f; }
+        on walls { soft: u == 0; }
+        on samples { observe u; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
     /// A cloud of dye that a stream of unknown speed carries.
     pub mod stream {
         units: off;
@@ -215,6 +230,35 @@ fn a_conductivity_is_found_with_bars_that_hold() {
 fn an_equation_that_the_data_contradict_is_inconsistent() {
     let solution = solve(&conduction(scene::<conduction::recover::Scene>(), 0.01, -1.0));
     assert!(!solution.verdict.passed() && solution.status != Status::Converged);
+}
+
+/// Walls that reflect have the waves of cosines, which are largest where the conditions ask for none: cells that bend in a strip
+/// along the walls, between the points of the equation, meet both.
+#[test]
+fn a_wrong_condition_at_a_wall_is_noticed() {
+    let waves = [(1.0, 1.0, 0.8), (2.0, 1.0, 0.6), (1.0, 3.0, 0.4), (2.0, 2.0, -0.5)];
+    for (wave, is_right) in [(f64::sin as fn(f64) -> f64, true), (f64::cos, false)] {
+        let sum = |[x, y]: [f64; 2], of: &dyn Fn(f64) -> f64| -> f64 {
+            waves.iter().map(|(m, n, a)| of(m * m + n * n) * a * wave(m * PI * x) * wave(n * PI * y)).sum()
+        };
+        let mut normal = normals(8);
+        let samples = grid([20, 20], [1.0, 1.0], true);
+        let measured = pairs(&samples).map(|place| sum(place, &|_| 1.0) + 2e-3 * normal()).collect();
+        let walls = (0..40).map(|i| f64::from(i) / 39.0).flat_map(|s| [s, 0.0, s, 1.0, 0.0, s, 1.0, s]);
+        let mut problem = Problem::new(scene::<sound::recover::Scene>());
+        problem.set_group("inside", grid([20, 20], [1.0, 1.0], false).into(), Vec::new()).unwrap();
+        problem.set_group("walls", walls.collect::<Vec<f64>>().into(), Vec::new()).unwrap();
+        problem.set_group("samples", samples.into(), vec![measured]).unwrap();
+        let settings = Settings { carrier: Carrier::Splines, ..settings() };
+        let mut solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
+        assert_eq!(solution.verdict.passed(), is_right, "{:?}", solution.verdict.checks);
+        let places = grid([15, 15], [1.0, 1.0], false);
+        let (found, deviations) = values(&mut solution, "f", &places);
+        assert_eq!(deviations.is_some(), is_right);
+        let exact = |place| sum(place, &|squares| 49.0 - PI * PI * squares);
+        let off = root_mean_square(found.iter().zip(pairs(&places)).map(|(f, place)| f - exact(place)));
+        assert!(!is_right || off < 0.1 * root_mean_square(pairs(&places).map(exact)), "{off}");
+    }
 }
 
 #[test]

@@ -24,6 +24,7 @@ impl Engine<f64> {
         }
         Answer {
             facts,
+            between: None,
             clouds: seen,
             scalars: self.scalars.clone(),
             scores: Vec::new(),

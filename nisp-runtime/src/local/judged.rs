@@ -23,6 +23,7 @@ impl Solver {
         });
         Answer {
             facts: facts.collect(),
+            between: None,
             clouds: clouds.collect(),
             scalars: self.scalars.clone(),
             scores: Vec::new(),

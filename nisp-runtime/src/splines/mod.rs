@@ -212,8 +212,16 @@ pub(crate) fn solve(
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let kept = KeptSplines { heads, theta, learned, spreads };
     let told = course.map(|course| told::told(&kept, course, &along, &variances)).unwrap_or_default();
-    let answer =
-        Answer { facts, clouds: Vec::new(), scalars, scores: Vec::new(), told, ahead, finer: OTHER_THAN_SPLINES };
+    let answer = Answer {
+        facts,
+        between: None,
+        clouds: Vec::new(),
+        scalars,
+        scores: Vec::new(),
+        told,
+        ahead,
+        finer: OTHER_THAN_SPLINES,
+    };
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })
 }
 

@@ -94,6 +94,14 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         let programs = kernels[at].programs;
         let rows = facts.rows(programs, group, &answer.scalars);
         checks.extend(equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer)));
+        // Equations hold between their points as well.
+        for (_, facts) in answer.between.iter().filter(|(of, _)| *of == at) {
+            let rows = facts.rows(programs, group, &answer.scalars);
+            let between = equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer));
+            let fails = |own: &Check| checks.iter().any(|check| !check.passed && check.term == own.term);
+            let failed: Vec<Check> = between.into_iter().filter(|check| !check.passed && !fails(check)).collect();
+            checks.extend(failed);
+        }
         checks.extend(observations::checks(bound, at, (&rows, noise), answer.finer));
     }
     checks.extend(outside::checks(bound));

@@ -1,8 +1,9 @@
-//! Places between the given points of an equation, where those are few: it holds there too, and a lattice can only be as fine as
-//! it is asked.
+//! Places between the given points of an equation: it holds there too. Where the points are few a lattice can only be as fine as it
+//! is asked, and whether an answer holds its equations is told by places that it was not asked at.
 
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
 
 use crate::local::meshes::axes;
 use crate::problem::Bound;
@@ -10,6 +11,12 @@ use crate::schema::{self, TermKind};
 
 /// Points that are enough.
 const ENOUGH: usize = 2000;
+/// Other places that an answer is judged at, at least and at most.
+const FEWEST_OTHERS: usize = 1000;
+const MOST_OTHERS: usize = 4000;
+/// Seeds of places that equations are asked at, and of others.
+const ASKED: u64 = 0;
+const OTHERS: u64 = 1;
 
 /// How many points an equation is asked at before it is known whether these are enough. A source of all coordinates may be
 /// anything between the given ones.
@@ -24,14 +31,21 @@ pub(super) fn first(bound: &Bound) -> usize {
 /// known at its points alone.
 pub(super) fn filled(bound: &Bound, points: usize) -> Option<Bound> {
     let at = largest(bound)?;
-    let inputs = bound.problem.scene().schema.coordinates.len();
     if count(bound, at) >= points {
         return None;
     }
     let mut filled = bound.clone();
-    let more = between(&bound.coordinates[at], inputs, points - count(bound, at));
-    filled.coordinates[at].extend(more);
+    filled.coordinates[at].extend(between(bound, at, points - count(bound, at), ASKED));
     Some(filled)
+}
+
+/// The problem with the equation of [`filled`] at other places, and which group that is.
+pub(super) fn others(bound: &Bound) -> Option<(usize, Bound)> {
+    let at = largest(bound)?;
+    let mut others = bound.clone();
+    let many = count(bound, at).clamp(FEWEST_OTHERS, MOST_OTHERS);
+    others.coordinates[at] = between(bound, at, many, OTHERS);
+    Some((at, others))
 }
 
 /// The group of equations with most points that may have more.
@@ -47,39 +61,54 @@ fn count(bound: &Bound, group: usize) -> usize {
     bound.coordinates[group].len() / bound.problem.scene().schema.coordinates.len()
 }
 
-/// So many places at random between points and their neighbours: places in rows would leave patterns of coefficients that vanish at
-/// all of them.
-fn between(points: &[f64], inputs: usize, more: usize) -> Vec<f64> {
-    let point = |at: usize| &points[at * inputs..][..inputs];
+/// So many places at random between neighbours among the points of an equation and those of conditions, at which it holds too: places
+/// in rows would leave patterns of coefficients that vanish at all of them, and a strip along an edge would be free.
+fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
+    let schema = bound.problem.scene().schema;
+    let inputs = schema.coordinates.len();
+    let is_edge = |at: &usize| {
+        let other = &schema.groups[*at];
+        other.order < schema.groups[group].order && other.terms.iter().all(|term| term.kind == TermKind::Residual)
+    };
+    let own = &bound.coordinates[group];
+    let edges = (0..schema.groups.len()).filter(is_edge).flat_map(|at| bound.coordinates[at].iter().copied());
+    let points: Vec<f64> = own.iter().copied().chain(edges).collect();
     let count = points.len() / inputs;
+    let point = |at: usize| &points[at * inputs..][..inputs];
     let width = |axis: usize| {
-        let values = points.iter().skip(axis).step_by(inputs);
+        let values = own.iter().skip(axis).step_by(inputs);
         let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
         (high - low).max(f64::MIN_POSITIVE)
     };
     let widths: Vec<f64> = (0..inputs).map(width).collect();
     // The nearest along every coordinate, either way: rows of points may lie close, and far apart from each other.
-    let along = |at: usize, axis: usize, sign: f64| {
-        let away = |other: usize| -> Vec<f64> {
-            point(other).iter().zip(point(at)).zip(&widths).map(|((b, a), width)| sign * (b - a) / width).collect()
-        };
-        let ahead = |other: &usize| {
-            let away = away(*other);
-            away[axis] > 0.0 && away.iter().all(|other| other.abs() <= away[axis])
-        };
-        let apart = |other: usize| away(other).iter().map(|x| x * x).sum::<f64>();
-        (0..count).filter(ahead).min_by(|&a, &b| apart(a).total_cmp(&apart(b)))
-    };
     let near = |at: usize| {
-        let found = (0..inputs).flat_map(|axis| [along(at, axis, 1.0), along(at, axis, -1.0)]).flatten();
-        let found: Vec<usize> = found.collect();
-        if found.is_empty() { vec![at] } else { found }
+        let mut nearest = vec![(f64::INFINITY, at); 2 * inputs];
+        let mut away = vec![0.0; inputs];
+        for other in (0..count).filter(|&other| other != at) {
+            for (axis, away) in away.iter_mut().enumerate() {
+                *away = (point(other)[axis] - point(at)[axis]) / widths[axis];
+            }
+            let apart = away.iter().map(|x| x * x).sum::<f64>();
+            let farthest = away.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+            for (axis, away) in away.iter().enumerate().filter(|(_, away)| away.abs() == farthest && farthest > 0.0) {
+                let place = &mut nearest[2 * axis + usize::from(*away > 0.0)];
+                *place = if apart < place.0 { (apart, other) } else { *place };
+            }
+        }
+        let mut found: Vec<usize> = nearest.into_iter().map(|(_, other)| other).filter(|&other| other != at).collect();
+        found.extend(found.is_empty().then_some(at));
+        found
     };
-    let neighbours: Vec<Vec<usize>> = (0..count).map(near).collect();
-    let mut random = StdRng::seed_from_u64(0);
+    // All of the equation's own in turn, or some from all along: their neighbours are as dense as they are, however many points the
+    // conditions have.
+    let bases = own.len() / inputs;
+    let chosen: Vec<usize> = (0..more.min(bases)).map(|number| number * bases / more.min(bases)).collect();
+    let neighbours: Vec<Vec<usize>> = chosen.par_iter().map(|&at| near(at)).collect();
+    let mut random = StdRng::seed_from_u64(seed);
     let mut place = |number: usize| {
-        let at = number % count;
-        let mut pick = || neighbours[at][random.random_range(0..neighbours[at].len())];
+        let (at, near) = (chosen[number % chosen.len()], &neighbours[number % chosen.len()]);
+        let mut pick = || near[random.random_range(0..near.len())];
         let corners = [at, pick(), pick()];
         let weights: [f64; 3] = std::array::from_fn(|_| random.random());
         let whole: f64 = weights.iter().sum();

@@ -1,6 +1,7 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
-use super::solver::Solver;
+use super::between::others;
+use super::solver::{Solver, groups};
 use super::state::{Phase, State};
 use crate::facts::{Answer, OTHER_THAN_SPLINES};
 use crate::local::draws::{Deviations, Draws};
@@ -12,8 +13,12 @@ use crate::solve::vector::root_mean_square;
 
 /// Equations that are left over by this much beside their tolerance are held back by the cells of the lattice.
 const TENSE: f64 = 0.2;
+/// What may be left of an equation between the points that it was asked at, over its size.
+const BETWEEN: f64 = 0.03;
 /// Noise that is found, beside what neighbouring measurements say, from which on these are missed.
 const MISSED: f64 = 1.3;
+/// The same from which on cells cannot hold what is measured, and noise says nothing.
+const FAR: f64 = 4.0;
 /// Steps to an answer under another belief.
 pub(super) const DOUBTS: u64 = 4;
 
@@ -58,23 +63,32 @@ impl Solver<'_> {
         self.set_learned(&state.learned);
         self.size(state);
         self.set_sigmas(state);
-        let of_group = |(at, group): (usize, &Group)| {
+        // What is left of a group's equations, each row over what may be.
+        let left = |group: &Group, may_be: &dyn Fn(usize) -> f64| {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
-            let counts = self.counts(at, Phase::Solve);
-            let left = |row: usize| {
-                let there = (0..group.sites.count).filter(|&p| counts[row][p]);
-                root_mean_square(there.map(|p| found.row(row, p) / group.sigma[row])) / TENSE
+            let of_row = |row: usize| {
+                let is_known = |misfit: &f64| !misfit.is_nan();
+                let misfits = (0..group.sites.count).map(|p| found.row(row, p)).filter(is_known);
+                root_mean_square(misfits.map(|misfit| misfit / may_be(row)))
             };
             let is_equation = |term: &&schema::Term| term.kind != TermKind::Observation && term.within.is_none();
             let equations = group.schema.terms.iter().filter(is_equation);
-            equations.flat_map(|term| term.first..term.first + term.rows).map(left).fold(0.0, f64::max)
+            equations.flat_map(|term| term.first..term.first + term.rows).map(of_row).fold(0.0, f64::max)
         };
         let missed = |found: &ObservationNoise| {
             let size = state.classes[self.classes[found.group][found.term]].size;
             if found.is_exact() { 0.0 } else { size / found.deviation / MISSED }
         };
-        let groups = self.groups.iter().enumerate().map(of_group);
-        groups.chain(noise.observations.iter().map(missed)).fold(0.0, f64::max)
+        let asked = self.groups.iter().map(|group| left(group, &|row| TENSE * group.sigma[row]));
+        let between = others(&self.bound)
+            .map_or(0.0, |(at, bound)| left(&groups(&bound, &self.heads)[at], &|row| BETWEEN * self.sizes[at][row]));
+        asked.chain([between]).chain(noise.observations.iter().map(missed)).fold(0.0, f64::max)
+    }
+
+    /// Whether measurements are missed by far more than their noise.
+    pub(super) fn is_missed(&self, state: &State, noise: &Noise) -> bool {
+        let size = |found: &ObservationNoise| state.classes[self.classes[found.group][found.term]].size;
+        noise.observations.iter().any(|found| !found.is_exact() && size(found) > FAR * found.deviation)
     }
 
     /// Cells of the lattice along the coordinate that has most.
@@ -86,8 +100,11 @@ impl Solver<'_> {
     pub(super) fn answer(&mut self, state: &State) -> Answer {
         self.set_learned(&state.learned);
         let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta)).collect();
+        let others = others(&self.bound);
+        let between = others.map(|(at, bound)| (at, groups(&bound, &self.heads)[at].facts(&self.heads, &state.theta)));
         Answer {
             facts,
+            between,
             clouds: Vec::new(),
             scalars: self.scalars.clone(),
             scores: Vec::new(),

@@ -46,6 +46,8 @@ const BARS: f64 = 1.0 + judged::DOUBTS as f64;
 const MORE: usize = 2;
 /// A finer lattice that leaves more of the strain than this does not help.
 const EASED: f64 = 0.9;
+/// Finer lattices that may not help, one after the other, where measurements are missed by far.
+const MISSED_TWICE: usize = 2;
 /// How much longer a finer lattice takes.
 const SLOWER: f64 = 3.0;
 
@@ -80,24 +82,32 @@ pub(crate) fn solve(
         state.restore(saved).map_err(LocalError::Fault)?;
     }
     let mut run = Run::go(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
-    let mut strain = f64::INFINITY;
+    let (mut strain, mut idle) = (f64::INFINITY, 0);
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
-        if strain < 1.0 || strain > EASED * before {
+        let is_missed = solver.is_missed(&run.state, noise);
+        // Where the measurements count as noise, one finer lattice may be too coarse as well.
+        let patience = if is_missed { MISSED_TWICE } else { 1 };
+        idle = if strain > EASED * before { idle + 1 } else { 0 };
+        if strain < 1.0 || idle >= patience {
             break;
         }
-        let (more, bars) = (MORE * points, BARS * run.longest);
-        if !clock.has_time(SLOWER * run.seconds + bars) {
+        let bars = BARS * run.longest;
+        let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + bars);
+        let finer: &[usize] = if is_missed { &[MORE * MORE, MORE] } else { &[MORE] };
+        let Some(more) = finer.iter().find(|times| has_time(times)).map(|times| times * points) else {
             run.status = Status::Budget;
             break;
-        }
+        };
         // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
         let Ok(mut finer) = Solver::new(bound, more, noise) else { break };
         if finer.cells() <= solver.cells() {
             break;
         }
-        // What was found of noise and roughness holds there too.
-        let first = State { step: run.state.step, classes: run.state.known(), ..finer.first(noise) };
+        let first = State { step: run.state.step, ..finer.first(noise) };
+        // What was found of noise and roughness holds there too, unless it is cells that miss the measurements.
+        let classes = if is_missed { first.classes } else { run.state.known() };
+        let first = State { classes, ..first };
         let Ok(found) = Run::go(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
         match found.status {
             Status::Converged => (solver, run, points) = (finer, found, more),
@@ -138,7 +148,7 @@ fn finish(
         Deviations::default()
     };
     if status == Status::Budget && solver.strain(&state, noise) > 1.0 {
-        let message = "the lattice is too coarse for these equations; a larger --budget makes it finer".into();
+        let message = "the lattice may be too coarse for these equations; a larger --budget makes it finer".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
     }
     solver.groups = groups(bound, &solver.heads);

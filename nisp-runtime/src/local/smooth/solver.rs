@@ -40,7 +40,7 @@ pub(super) struct Solver<'a> {
     /// By head, what says how many of its numbers are settled; of sources alone.
     pub(super) freedoms: Vec<Option<Freedom>>,
     /// Sizes of equations, by group and row.
-    sizes: Vec<Vec<f64>>,
+    pub(super) sizes: Vec<Vec<f64>>,
     pub(super) normal: Normal,
     pub(super) scalars: Vec<f64>,
     /// How far equations may be off in the end.
