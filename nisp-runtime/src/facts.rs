@@ -212,6 +212,9 @@ pub(crate) struct Answer {
     /// The largest change of a learned scalar's parameter in one more whole Gauss-Newton step; nothing at the end of the steps, and
     /// where the carrier does not tell.
     pub(crate) ahead: Option<f64>,
+    /// How far the last step moved a source, over its size, at most; nothing at the end of the steps, and where the carrier does not
+    /// tell.
+    pub(crate) moved: Option<f64>,
     /// What to do where the carrier may be too coarse.
     pub(crate) finer: &'static str,
 }

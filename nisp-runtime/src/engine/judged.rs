@@ -30,6 +30,7 @@ impl Engine<f64> {
             scores: Vec::new(),
             told: Vec::new(),
             ahead: None,
+            moved: None,
             finer: "more --budget, more --width or another --seed",
         }
     }

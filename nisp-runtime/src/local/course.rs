@@ -21,8 +21,9 @@ const NEGLIGIBLE: f64 = 1e-9;
 const LEAST_NOISE: f64 = 1e-2;
 /// Largest change of a field in one step, in its natural sizes.
 const FARTHEST: f64 = 5.0;
-/// What error bars take, in steps.
+/// What error bars take, and what asking for what an answer rests on does, in steps.
 pub(super) const BARS: f64 = 2.0;
+pub(super) const ASKED: f64 = 2.0;
 /// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
 const MOST_OFF: f64 = 5.0;
 /// Relative change of the coefficients at which the answer counts as converged.
@@ -50,6 +51,8 @@ pub(super) struct End {
     pub(super) status: Status,
     pub(super) iterations: u64,
     pub(super) loss: f64,
+    /// How far the last step moved a source, over its size, at most.
+    pub(super) moved: f64,
     /// What the last step left open; empty if nothing.
     pub(super) warnings: Vec<Warning>,
     pub(super) factor: Option<Factor>,
@@ -111,7 +114,7 @@ impl Solver {
         self.set_feet(feet);
         let mut good = self.place(&state, iteration);
         let mut loss = f64::INFINITY;
-        let mut rows = 0;
+        let (mut rows, mut moved) = (0, f64::INFINITY);
         let mut status = Status::Budget;
         let mut factor = None;
         let mut faults = Vec::new();
@@ -121,7 +124,7 @@ impl Solver {
             let budget = stage.limits.budget.map_or(f64::INFINITY, |budget| budget.as_secs_f64());
             // Nobody wants error bars of what is no solution yet.
             let solved = !coarse && iteration + skipped >= CONVEX_STEPS;
-            let wanted = if solved { (1.0 + BARS) * longest } else { longest };
+            let wanted = if solved { (1.0 + BARS + ASKED) * longest } else { longest };
             if began + wanted > budget && factor.is_some() {
                 break;
             }
@@ -146,6 +149,7 @@ impl Solver {
             let (change, gain) = (self.change(&state, &next), found.gain);
             let before = std::mem::replace(&mut state, next);
             (loss, rows) = (found.loss, found.rows);
+            moved = self.heads.moved(self.bound.problem.scene().schema, &before.theta, &state.theta);
             factor = Some(found.factor);
             iteration += 1;
             let elapsed_s = stage.start.elapsed().as_secs_f64();
@@ -174,7 +178,7 @@ impl Solver {
         let fault = faults.pop().filter(|_| status == Status::NotConverged);
         warnings.extend(fault.map(|fault| Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) }));
         let checkpoint = good.save(stage.before, stage.lattice);
-        Ok(End { state, status, iterations: stage.before + iteration, loss, warnings, factor, longest, checkpoint })
+        Ok(End { state, status, iterations: stage.before + iteration, loss, moved, warnings, factor, longest, checkpoint })
     }
 
     /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it: coefficients that

@@ -8,6 +8,8 @@ use super::tabled::Splines;
 use crate::bounds::{Limit, limits};
 use crate::engine::Scaling;
 use crate::problem::Bound;
+use crate::schema::Scene;
+use crate::solve::vector::root_mean_square;
 
 /// Heads as functions of one vector of coefficients, head after head, each `offset + scale * sum(coefficient * spline)`.
 #[derive(Clone, Debug)]
@@ -25,6 +27,16 @@ pub(super) struct Heads {
 const TOGETHER: usize = 1024;
 
 impl Heads {
+    /// How far a step moves a source, over its size, at most; nothing without one.
+    pub(super) fn moved(&self, schema: &Scene, before: &[f64], after: &[f64]) -> f64 {
+        let of = |head: usize| {
+            let range = self.first[head]..self.first[head + 1];
+            let change = root_mean_square(range.clone().map(|at| after[at] - before[at]));
+            if change > 0.0 { change / root_mean_square(range.map(|at| after[at])) } else { 0.0 }
+        };
+        (0..schema.heads.len()).filter(|&head| schema.heads[head].source).map(of).fold(0.0, f64::max)
+    }
+
     pub(super) fn new(bound: &Bound, lattices: Vec<Lattice>) -> Self {
         let schema = bound.problem.scene().schema;
         let Scaling { offset, .. } = &bound.scaling;

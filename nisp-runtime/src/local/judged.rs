@@ -29,6 +29,7 @@ impl Solver {
             scores: Vec::new(),
             told: Vec::new(),
             ahead: None,
+            moved: None,
             finer: OTHER_THAN_SPLINES,
         }
     }

@@ -158,7 +158,8 @@ pub(crate) fn solve(
     }
     // Of what is no solution, the spread about it says nothing.
     let solved = matches!(end.status, Status::Converged | Status::Budget);
-    let has_time = end.status == Status::Converged || stage.has_time(course::BARS * end.longest);
+    let has_time_for = |steps: f64| end.status == Status::Converged || stage.has_time(steps * end.longest);
+    let (has_time, is_asked) = (has_time_for(course::BARS), solved && has_time_for(course::ASKED));
     let deviations =
         if solved && has_time { solver.deviations(&end.state).unwrap_or_default() } else { Deviations::default() };
     if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
@@ -166,8 +167,8 @@ pub(crate) fn solve(
     }
     end.warnings.extend(solver.rests_on_the_prior());
     let mut answer = solver.answer(&end.state);
+    answer.moved = (end.status != Status::Converged).then_some(end.moved);
     // An answer that nothing says against is asked what it rests on.
-    let is_asked = solved && (end.status == Status::Converged || stage.has_time(course::BARS * end.longest));
     let scores = if is_asked { solver.scores(&end.state).unwrap_or_default() } else { Vec::new() };
     answer.scores = scores.iter().copied().flatten().collect();
     let misfits = solver.misfits(&end.state);

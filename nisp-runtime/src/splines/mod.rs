@@ -220,6 +220,7 @@ pub(crate) fn solve(
         scores: Vec::new(),
         told,
         ahead,
+        moved: None,
         finer: OTHER_THAN_SPLINES,
     };
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })

@@ -105,7 +105,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         checks.extend(observations::checks(bound, at, (&rows, noise), answer.finer));
     }
     checks.extend(outside::checks(bound));
-    checks.extend(settled::check(bound, answer.ahead));
+    checks.extend(settled::checks(bound, answer));
     checks.extend(told::checks(bound, &answer.told));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));

@@ -1,17 +1,24 @@
-//! Learned scalars that steps still changed where the budget ended them.
+//! Learned scalars and sources that steps still changed where the budget ended them.
 
 use super::Check;
+use crate::facts::Answer;
 use crate::problem::Bound;
 
 /// How far the next whole step may move a learned scalar's parameter: a hundredth of a value that is positive.
 const NEAR: f64 = 1e-2;
+/// How far the last step may have moved a source, over its size.
+const MOVED: f64 = 0.1;
 
-/// The check of an answer whose next whole step moves a parameter so far; none at the end of the steps, or with nothing learned.
-pub(super) fn check(bound: &Bound, ahead: Option<f64>) -> Option<Check> {
-    let ahead = ahead.filter(|_| !bound.learned.is_empty())?;
-    let said = format!(
-        "the run ended while a step still moved a learned parameter by {:.1} %: give a larger budget, or more iterations",
-        100.0 * ahead
-    );
-    Some(Check::new("settled", ("", ""), (ahead, NEAR), said))
+/// The checks of an answer whose steps did not come to their end; none of one whose did.
+pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
+    let ahead = answer.ahead.filter(|_| !bound.learned.is_empty()).map(|ahead| {
+        let said = format!("a step still moved a learned parameter by {:.1} %", 100.0 * ahead);
+        (ahead, NEAR, said)
+    });
+    let moved = answer.moved.map(|moved| (moved, MOVED, format!("a step still moved a source by {:.0} %", 100.0 * moved)));
+    let check = |(value, limit, said): (f64, f64, String)| {
+        let said = format!("the run ended while {said}: give a larger budget, or more iterations");
+        Check::new("settled", ("", ""), (value, limit), said)
+    };
+    ahead.into_iter().chain(moved).map(check).collect()
 }

@@ -110,6 +110,7 @@ impl Solver<'_> {
             scores: Vec::new(),
             told: Vec::new(),
             ahead: None,
+            moved: None,
             finer: OTHER_THAN_SPLINES,
         }
     }

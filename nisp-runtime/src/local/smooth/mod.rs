@@ -135,7 +135,7 @@ fn finish(
     noise: &Noise,
     clock: &Clock,
 ) -> Result<LocalSolution, LocalError> {
-    let Run { state, loss, ahead, factor, status, longest, checkpoint, .. } = run;
+    let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
     let mut warnings = Vec::new();
     let wants_bars = status == Status::Converged && noise.is_there(bound.problem.scene().schema);
     let deviations = if !wants_bars {
@@ -153,7 +153,9 @@ fn finish(
     }
     solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
-    answer.ahead = (status != Status::Converged).then_some(ahead);
+    if status != Status::Converged {
+        (answer.ahead, answer.moved) = (Some(ahead), Some(moved));
+    }
     if status == Status::NotConverged {
         let message = "the data and the equations leave some of the unknowns open: give more conditions or data".into();
         warnings.push(Warning { kind: WarningKind::Undetermined, message });

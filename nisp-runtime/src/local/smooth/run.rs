@@ -46,6 +46,8 @@ pub(super) struct Run {
     pub(super) loss: f64,
     /// What a whole step would change of a learned scalar's parameter.
     pub(super) ahead: f64,
+    /// How far the last step moved a source, over its size, at most.
+    pub(super) moved: f64,
     pub(super) factor: Factor,
     pub(super) status: Status,
     /// Seconds of the longest step, and of all.
@@ -78,6 +80,7 @@ impl Run {
             let elapsed_s = clock.elapsed_s();
             longest = longest.max(elapsed_s - before_s);
             let (before, is_tight) = (state.phase, state.tolerance <= solver.tolerance);
+            let moved = solver.heads.moved(solver.bound.problem.scene().schema, &state.theta, &step.next.theta);
             state = step.next;
             let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
             let is_resting = gain < RESTING && state.since > 1;
@@ -90,7 +93,7 @@ impl Run {
                 (state.phase, state.since) = (before.next(), 0);
                 solver.come_back(&mut state);
             }
-            found = Some((step.loss, step.ahead, step.factor));
+            found = Some((step.loss, (step.ahead, moved), step.factor));
             let checkpoint = &|| save(&state);
             if monitor(Progress { iteration: state.step, elapsed_s, loss: step.loss, checkpoint }) == Flow::Stop {
                 break Status::Interrupted;
@@ -110,11 +113,12 @@ impl Run {
         let checkpoint = save(&state);
         if let Some(earlier) = solver.earlier(&mut state, status == Status::Converged) {
             let step = solver.step(&earlier)?;
-            (state, found) = (earlier, Some((step.loss, step.ahead, step.factor)));
+            let moved = solver.heads.moved(solver.bound.problem.scene().schema, &earlier.theta, &step.next.theta);
+            (state, found) = (earlier, Some((step.loss, (step.ahead, moved), step.factor)));
             status = if status == Status::NotConverged { Status::Converged } else { status };
         }
-        let (loss, ahead, factor) = found.ok_or(LocalError::Factorisation)?;
+        let (loss, (ahead, moved), factor) = found.ok_or(LocalError::Factorisation)?;
         let seconds = clock.elapsed_s() - began;
-        Ok(Self { state, loss, ahead, factor, status, longest, seconds, checkpoint })
+        Ok(Self { state, loss, ahead, moved, factor, status, longest, seconds, checkpoint })
     }
 }
