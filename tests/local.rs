@@ -136,7 +136,7 @@ fn a_pressed_patch_is_found_with_its_force_and_its_edge() {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
     bind(&mut problem, f, a, 0.0);
-    let patches = Patches { level: P, edges: 0.15, area: 0.75 };
+    let patches = Patches { level: P, edges: 0.15, area: 0.75, end: 0.7 };
     let solution = solve(&problem, Some(patches), 2);
     let points = disc(6000);
     let found = solution.evaluate(&points);
@@ -163,7 +163,7 @@ fn error_bars_cover_the_truth_and_no_more() {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
     bind(&mut problem, f, a, noise);
-    let mut solution = solve(&problem, Some(Patches { level: P, edges: 0.15, area: 0.75 }), 2);
+    let mut solution = solve(&problem, Some(Patches { level: P, edges: 0.15, area: 0.75, end: 0.7 }), 2);
     let points = disc(2000);
     let found = solution.evaluate_with_errors(&points);
     let of = |name: &str| {
@@ -189,7 +189,7 @@ fn what_no_cloud_saw_is_not_known() {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
     bind(&mut problem, f, a, 0.0);
-    let patches = Some(Patches { level: P, edges: 0.15, area: 0.75 });
+    let patches = Some(Patches { level: P, edges: 0.15, area: 0.75, end: 0.7 });
     let guesses = |solution: &Solution| solution.warnings.iter().any(|warning| warning.kind == WarningKind::Settled);
     let deviations = |solution: &mut Solution, points: &[f64]| {
         let found = solution.evaluate_with_errors(points);
@@ -218,7 +218,7 @@ fn a_wrong_pressure_is_named_and_a_right_one_is_not_doubted() {
         problem.set_parameter("T", T).unwrap();
         bind(&mut problem, 12_000.0, 12.0, 0.3);
         problem.set_parameter("p", given).unwrap();
-        let solution = solve(&problem, Some(Patches { level: P, edges: 0.15, area: 0.75 }), 2);
+        let solution = solve(&problem, Some(Patches { level: P, edges: 0.15, area: 0.75, end: 0.7 }), 2);
         let first = &solution.verdict.checks[0];
         assert_eq!((first.check, first.passed), ("given", passes), "{first:?}");
         assert!(passes || first.message.contains("`p` about"), "{first:?}");
@@ -230,7 +230,7 @@ fn the_answer_does_not_depend_on_the_threads() {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
     bind(&mut problem, 12_000.0, 12.0, 0.0);
-    let patches = Patches { level: P, edges: 0.15, area: 0.75 };
+    let patches = Patches { level: P, edges: 0.15, area: 0.75, end: 0.7 };
     let of = |threads| values(&solve(&problem, Some(patches), threads).evaluate(&disc(50)), "f").to_vec();
     assert_eq!(of(1), of(3));
 }
@@ -458,7 +458,7 @@ fn a_session_doubts_what_a_single_answer_doubts() {
 /// A session with the pressed drumhead, its first cloud as noisy as this.
 fn pressed_session(noise: f64) -> Session {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
-    let patches = Some(Patches { level: P, edges: 0.15, area: 0.75 });
+    let patches = Some(Patches { level: P, edges: 0.15, area: 0.75, end: 0.7 });
     problem.set_parameter("T", T).unwrap();
     bind(&mut problem, 12_000.0, 12.0, noise);
     let local = Local { cells: 24, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 2, patches };

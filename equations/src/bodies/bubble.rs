@@ -1,5 +1,7 @@
 //! The bubble: an inflated membrane of large strains.
 
+use nisp::local::Patches;
+
 use super::inflated;
 use super::inflated::Theory;
 use super::observed::Example;
@@ -15,6 +17,9 @@ const THEORY: Theory = Theory {
     load: Load::Follower,
     // A convex tool that lies on the bubble presses back at least as much as the gas does.
     rule: |gauge| Rule { least: 0.5 * gauge, of_mean: 0.0 },
+    // What is flat presses with the gauge pressure, no more, and over a wide area: that must not cost more than a ring of higher
+    // pressure about it.
+    patches: Patches { level: f64::NAN, edges: 0.15, area: 0.45, end: 0.35 },
     // Their `f` is per area at rest, and vertical.
     rather: &[("f", "p_contact")],
     rival: None,

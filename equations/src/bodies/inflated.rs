@@ -25,6 +25,9 @@ pub(super) struct Theory {
     pub(super) load: Load,
     /// How a touched point is told, given the gauge pressure in pascals.
     pub(super) rule: fn(f64) -> Rule,
+    /// What is known of the pressure; its `level` is the gauge pressure: what touches the membrane presses it out of its bulge, which
+    /// takes that much at least.
+    pub(super) patches: Patches,
     /// What the truth's files call things, see [`Headers`].
     pub(super) rather: &'static [(&'static str, &'static str)],
     /// A classical way to the pressure.
@@ -55,8 +58,6 @@ const LOCAL_POINTS: (usize, usize, usize) = (17_000, 8000, 400);
 const LOCAL: Local =
     Local { cells: 30, coarser: 3, degree: 3, tests: 1, finer: 2, source_dimensions: 2, patches: None };
 const CELLS_FOR_PATCHES: usize = 60;
-/// What touches the membrane presses it out of its bulge, which takes the gauge pressure at least.
-const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.15, area: 0.75 };
 /// Points between which the net force is integrated, and those of the surface in pictures.
 const FINE: (usize, usize) = (20_000, 4000);
 /// Points in a metre where the answer is wanted.
@@ -95,7 +96,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
 
     let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
     let level = given.of("p")?.filter(|_| pressure.is_some());
-    let patches = level.map(|level| Patches { level, ..PATCHES });
+    let patches = level.map(|level| Patches { level, ..theory.patches });
     // What a calibration leaves must not be the error of a coarser lattice than later frames are solved on.
     let usual = if patches.is_some() || calibrates { CELLS_FOR_PATCHES } else { LOCAL.cells };
     let cells = request.cells.unwrap_or(usual);

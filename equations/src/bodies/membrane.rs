@@ -2,6 +2,7 @@
 
 use std::cell::OnceCell;
 
+use nisp::local::Patches;
 use nisp_data::domain::Domain;
 
 use super::given::Given;
@@ -21,6 +22,7 @@ const THEORY: Theory = Theory {
     load: Load::Fixed([0.0, 0.0, -1.0]),
     // The paper's rule.
     rule: |_| Rule { least: 2500.0, of_mean: 2.0 },
+    patches: Patches { level: f64::NAN, edges: 0.15, area: 0.75, end: 0.7 },
     rather: &[],
     rival: Some(rival),
 };

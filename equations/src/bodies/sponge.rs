@@ -72,7 +72,7 @@ const LOCAL_POINTS: (usize, usize, usize) = (13_824, 6144, 12_696);
 const LOCAL: Local =
     Local { cells: 8, coarser: 3, degree: 2, tests: 2, finer: 2, source_dimensions: 2, patches: Some(PATCHES) };
 /// A patch carries some hundreds of pascals.
-const PATCHES: Patches = Patches { level: 500.0, edges: 0.15, area: 0.75 };
+const PATCHES: Patches = Patches { level: 500.0, edges: 0.15, area: 0.75, end: 0.7 };
 /// Nodes along an edge where the answer is wanted: a millimetre apart on the paper's sponge.
 const NODES: usize = 47;
 /// Nodes along an edge of the surface in pictures.

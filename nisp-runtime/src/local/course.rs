@@ -178,7 +178,17 @@ impl Solver {
         let fault = faults.pop().filter(|_| status == Status::NotConverged);
         warnings.extend(fault.map(|fault| Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) }));
         let checkpoint = good.save(stage.before, stage.lattice);
-        Ok(End { state, status, iterations: stage.before + iteration, loss, moved, warnings, factor, longest, checkpoint })
+        Ok(End {
+            state,
+            status,
+            iterations: stage.before + iteration,
+            loss,
+            moved,
+            warnings,
+            factor,
+            longest,
+            checkpoint,
+        })
     }
 
     /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it: coefficients that

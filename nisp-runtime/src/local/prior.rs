@@ -19,8 +19,10 @@ pub struct Patches {
     pub level: f64,
     /// Penalty of an edge, by its length over one cell of the state and its height over `level`.
     pub edges: f64,
-    /// Penalty of a patch by its area over that of one cell of the state.
+    /// Penalty of a patch by its area over that of one cell of the state and its height over `level`, up to `end`.
     pub area: f64,
+    /// Height over `level` beyond which a patch costs no more. What is lower is taken for noise.
+    pub end: f64,
 }
 
 /// Heights above this many levels are compressed.
@@ -29,11 +31,11 @@ const CAP: f64 = 10.0;
 const SMOOTH: f64 = 0.02;
 /// How the penalty of a length depends on the noise in cells, and the noise below which it rises no more.
 const FALL: f64 = -0.3;
-const FINEST: f64 = 0.03;
+const FINEST: f64 = 0.1;
 /// Stiffness of the wall at the bound, by area as above.
 const WALL: f64 = 200.0;
-/// Where the penalty of small sources ends, in levels, and how softly.
-const END: (f64, f64) = (0.7, 0.12);
+/// How softly the penalty of small sources ends, over where it does.
+const SOFTLY: f64 = 0.17;
 
 /// A source's prior at work.
 pub(super) struct Sparse<'a> {
@@ -83,7 +85,7 @@ impl Sparse<'_> {
             }
         }
         for (at, &f) in f.iter().enumerate().filter(|(at, _)| seen(*at)) {
-            let slope = patch * area * if concave { small(f) } else { 1.0 };
+            let slope = patch * area * if concave { small(f, self.prior.end) } else { 1.0 };
             normal.gradient[first + at] += slope / self.level;
             if f < 0.0 {
                 normal.gradient[first + at] += WALL * area * f / self.level;
@@ -102,7 +104,9 @@ impl Sparse<'_> {
         let (area, length) = self.measures();
         let (edges, patch) = self.penalties();
         let heights: Vec<f64> = f.iter().map(|&f| if concave { compressed(f) } else { f }).collect();
-        let areas = f.iter().map(|&f| patch * if concave { charge(f) } else { f } + 0.5 * WALL * f.min(0.0).powi(2));
+        let areas = f
+            .iter()
+            .map(|&f| patch * if concave { charge(f, self.prior.end) } else { f } + 0.5 * WALL * f.min(0.0).powi(2));
         edges * length * self.steepness(&heights).iter().sum::<f64>() + area * areas.sum::<f64>()
     }
 
@@ -130,11 +134,12 @@ fn compressed(height: f64) -> f64 {
 }
 
 /// Integral of [`small`] from zero to a height.
-fn charge(height: f64) -> f64 {
+fn charge(height: f64, end: f64) -> f64 {
     if height < 0.0 {
-        return small(height) * height;
+        return small(height, end) * height;
     }
-    let soft = |height: f64| crate::functions::softplus((height - END.0) / END.1) * END.1;
+    let width = SOFTLY * end;
+    let soft = |height: f64| crate::functions::softplus((height - end) / width) * width;
     height - soft(height) + soft(0.0)
 }
 
@@ -144,6 +149,6 @@ fn compression(height: f64) -> f64 {
 }
 
 /// Slope of the concave penalty at a height in levels.
-fn small(height: f64) -> f64 {
-    1.0 / (1.0 + ((height.max(0.0) - END.0) / END.1).exp())
+fn small(height: f64, end: f64) -> f64 {
+    1.0 / (1.0 + ((height.max(0.0) / end - 1.0) / SOFTLY).exp())
 }

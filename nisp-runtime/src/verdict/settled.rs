@@ -15,7 +15,8 @@ pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
         let said = format!("a step still moved a learned parameter by {:.1} %", 100.0 * ahead);
         (ahead, NEAR, said)
     });
-    let moved = answer.moved.map(|moved| (moved, MOVED, format!("a step still moved a source by {:.0} %", 100.0 * moved)));
+    let moved =
+        answer.moved.map(|moved| (moved, MOVED, format!("a step still moved a source by {:.0} %", 100.0 * moved)));
     let check = |(value, limit, said): (f64, f64, String)| {
         let said = format!("the run ended while {said}: give a larger budget, or more iterations");
         Check::new("settled", ("", ""), (value, limit), said)
