@@ -19,7 +19,7 @@ const THEORY: Theory = Theory {
     rule: |gauge| Rule { least: 0.5 * gauge, of_mean: 0.0 },
     // What is flat presses with the gauge pressure, no more, and over a wide area: that must not cost more than a ring of higher
     // pressure about it.
-    patches: Patches { level: f64::NAN, edges: 0.25, area: 0.75, end: 0.25 },
+    patches: Patches { level: f64::NAN, edges: 0.15, area: 0.75, end: 0.45 },
     // Their `f` is per area at rest, and vertical.
     rather: &[("f", "p_contact")],
     rival: None,
