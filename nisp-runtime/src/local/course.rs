@@ -122,8 +122,8 @@ impl Solver {
         while factor.is_none() || stage.before + iteration < stage.limits.iterations {
             let began = stage.start.elapsed().as_secs_f64();
             let budget = stage.limits.budget.map_or(f64::INFINITY, |budget| budget.as_secs_f64());
-            // Nobody wants error bars of what is no solution yet.
-            let solved = !coarse && iteration + skipped >= CONVEX_STEPS;
+            // What is no solution yet has no error bars; that of a coarse lattice may be the answer.
+            let solved = iteration + skipped >= CONVEX_STEPS;
             let wanted = if solved { (1.0 + BARS + ASKED) * longest } else { longest };
             if began + wanted > budget && factor.is_some() {
                 break;

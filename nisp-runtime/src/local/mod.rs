@@ -159,7 +159,8 @@ pub(crate) fn solve(
     // Of what is no solution, the spread about it says nothing.
     let solved = matches!(end.status, Status::Converged | Status::Budget);
     let has_time_for = |steps: f64| end.status == Status::Converged || stage.has_time(steps * end.longest);
-    let (has_time, is_asked) = (has_time_for(course::BARS), solved && has_time_for(course::ASKED));
+    // What an answer rests on matters more than its error bars.
+    let (has_time, is_asked) = (has_time_for(course::BARS + course::ASKED), solved && has_time_for(course::ASKED));
     let deviations =
         if solved && has_time { solver.deviations(&end.state).unwrap_or_default() } else { Deviations::default() };
     if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {

@@ -98,7 +98,9 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         for (_, facts) in answer.between.iter().filter(|(of, _)| *of == at) {
             let rows = facts.rows(programs, group, &answer.scalars);
             let between = equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer));
-            let fails = |own: &Check| checks.iter().any(|check| !check.passed && check.term == own.term);
+            let fails = |own: &Check| {
+                checks.iter().any(|check| !check.passed && (check.group, check.term) == (own.group, own.term))
+            };
             let failed: Vec<Check> = between.into_iter().filter(|check| !check.passed && !fails(check)).collect();
             checks.extend(failed);
         }

@@ -47,7 +47,7 @@ const MORE: usize = 2;
 /// A finer lattice that leaves more of the strain than this does not help.
 const EASED: f64 = 0.9;
 /// Finer lattices that may not help, one after the other, where measurements are missed by far.
-const MISSED_TWICE: usize = 2;
+const PATIENCE: usize = 2;
 /// How much longer a finer lattice takes.
 const SLOWER: f64 = 3.0;
 
@@ -87,15 +87,15 @@ pub(crate) fn solve(
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
         let is_missed = solver.is_missed(&run.state, noise);
         // Where the measurements count as noise, one finer lattice may be too coarse as well.
-        let patience = if is_missed { MISSED_TWICE } else { 1 };
+        let patience = if is_missed { PATIENCE } else { 1 };
         idle = if strain > EASED * before { idle + 1 } else { 0 };
         if strain < 1.0 || idle >= patience {
             break;
         }
         let bars = BARS * run.longest;
         let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + bars);
-        let finer: &[usize] = if is_missed { &[MORE * MORE, MORE] } else { &[MORE] };
-        let Some(more) = finer.iter().find(|times| has_time(times)).map(|times| times * points) else {
+        let factors: &[usize] = if is_missed { &[MORE * MORE, MORE] } else { &[MORE] };
+        let Some(more) = factors.iter().find(|times| has_time(times)).map(|times| times * points) else {
             run.status = Status::Budget;
             break;
         };

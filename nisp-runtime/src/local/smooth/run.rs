@@ -80,7 +80,6 @@ impl Run {
             let elapsed_s = clock.elapsed_s();
             longest = longest.max(elapsed_s - before_s);
             let (before, is_tight) = (state.phase, state.tolerance <= solver.tolerance);
-            let moved = solver.heads.moved(solver.bound.problem.scene().schema, &state.theta, &step.next.theta);
             state = step.next;
             let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
             let is_resting = gain < RESTING && state.since > 1;
@@ -93,7 +92,7 @@ impl Run {
                 (state.phase, state.since) = (before.next(), 0);
                 solver.come_back(&mut state);
             }
-            found = Some((step.loss, (step.ahead, moved), step.factor));
+            found = Some((step.loss, (step.ahead, step.moved), step.factor));
             let checkpoint = &|| save(&state);
             if monitor(Progress { iteration: state.step, elapsed_s, loss: step.loss, checkpoint }) == Flow::Stop {
                 break Status::Interrupted;
@@ -113,8 +112,7 @@ impl Run {
         let checkpoint = save(&state);
         if let Some(earlier) = solver.earlier(&mut state, status == Status::Converged) {
             let step = solver.step(&earlier)?;
-            let moved = solver.heads.moved(solver.bound.problem.scene().schema, &earlier.theta, &step.next.theta);
-            (state, found) = (earlier, Some((step.loss, (step.ahead, moved), step.factor)));
+            (state, found) = (earlier, Some((step.loss, (step.ahead, step.moved), step.factor)));
             status = if status == Status::NotConverged { Status::Converged } else { status };
         }
         let (loss, (ahead, moved), factor) = found.ok_or(LocalError::Factorisation)?;

@@ -40,6 +40,8 @@ pub(super) struct Found {
     pub(super) change: f64,
     /// What it would be of a learned scalar's parameter, were the whole step taken.
     pub(super) ahead: f64,
+    /// How far it moved a source, over its size, at most.
+    pub(super) moved: f64,
     /// What the loss is less after the whole step; infinite if only a part of it was taken.
     pub(super) gain: f64,
     pub(super) factor: Factor,
@@ -174,7 +176,8 @@ impl Solver<'_> {
             next.tolerance = tolerance::after(state.tolerance, share, self.tolerance);
         }
         (next.step, next.since) = (state.step + 1, state.since + 1);
-        Ok(Found { next, loss, change, ahead, gain, factor })
+        let moved = self.heads.moved(self.schema(), &state.theta, &next.theta);
+        Ok(Found { next, loss, change, ahead, moved, gain, factor })
     }
 
     /// The normal equations about a state; returns the rows of all groups that take part, with the group's number.
