@@ -200,7 +200,7 @@ pub(crate) fn spread(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone
 pub(crate) struct Answer {
     /// By group.
     pub(crate) facts: Vec<Facts>,
-    /// The group of an equation, and what is said at other places of it; nothing where the carrier does not tell.
+    /// The number of an equation's group, and its facts at places where the solver did not ask it. Lattices alone have them.
     pub(crate) between: Option<(usize, Facts)>,
     pub(crate) clouds: Vec<CloudFacts>,
     /// Scalars that programs read, learned ones at their found values.

@@ -17,8 +17,8 @@ const THEORY: Theory = Theory {
     load: Load::Follower,
     // A convex tool that lies on the bubble presses back at least as much as the gas does.
     rule: |gauge| Rule { least: 0.5 * gauge, of_mean: 0.0 },
-    // What is flat presses with the gauge pressure, no more, and over a wide area: that must not cost more than a ring of higher
-    // pressure about it.
+    // A flat tool presses with the gauge pressure over a wide area. Its disc should not cost more than a narrow ring of higher
+    // pressure. `level` is set from the gauge pressure.
     patches: Patches { level: f64::NAN, edges: 0.15, area: 0.75, end: 0.45 },
     // Their `f` is per area at rest, and vertical.
     rather: &[("f", "p_contact")],

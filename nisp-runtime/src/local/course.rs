@@ -21,8 +21,9 @@ const NEGLIGIBLE: f64 = 1e-9;
 const LEAST_NOISE: f64 = 1e-2;
 /// Largest change of a field in one step, in its natural sizes.
 const FARTHEST: f64 = 5.0;
-/// What error bars take, and what asking for what an answer rests on does, in steps.
+/// Time of the error bars, in steps.
 pub(super) const BARS: f64 = 2.0;
+/// Time of the score tests of what is given (`scores.rs`), in steps.
 pub(super) const ASKED: f64 = 2.0;
 /// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
 const MOST_OFF: f64 = 5.0;

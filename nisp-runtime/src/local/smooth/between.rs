@@ -100,8 +100,8 @@ fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
         found.extend(found.is_empty().then_some(at));
         found
     };
-    // All of the equation's own in turn, or some from all along: their neighbours are as dense as they are, however many points the
-    // conditions have.
+    // Start from the equation's own points only. Starting from conditions too would crowd the places along edges that have many
+    // points.
     let bases = own.len() / inputs;
     let chosen: Vec<usize> = (0..more.min(bases)).map(|number| number * bases / more.min(bases)).collect();
     let neighbours: Vec<Vec<usize>> = chosen.par_iter().map(|&at| near(at)).collect();

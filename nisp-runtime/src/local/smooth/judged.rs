@@ -17,7 +17,7 @@ const TENSE: f64 = 0.2;
 const BETWEEN: f64 = 0.03;
 /// Noise that is found, beside what neighbouring measurements say, from which on these are missed.
 const MISSED: f64 = 1.3;
-/// The same from which on cells cannot hold what is measured, and noise says nothing.
+/// The same ratio above which the cells are taken to be too coarse for what is measured.
 const FAR: f64 = 4.0;
 /// Steps to an answer under another belief.
 pub(super) const DOUBTS: u64 = 4;
