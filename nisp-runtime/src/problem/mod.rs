@@ -8,6 +8,7 @@ mod engine;
 mod error;
 mod evaluate;
 mod frame;
+mod place;
 mod powers;
 mod scale;
 mod system;
@@ -16,6 +17,7 @@ mod units;
 pub(crate) use bound::Bound;
 pub use error::BindError;
 pub(crate) use frame::Frame;
+pub(crate) use place::place;
 pub use system::UnitSystem;
 
 use crate::kernel::SceneRef;

@@ -14,7 +14,6 @@ mod network;
 mod on_lattice;
 mod on_splines;
 mod open;
-mod place;
 mod promotion;
 mod resolution;
 mod session;

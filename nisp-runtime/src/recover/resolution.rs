@@ -1,6 +1,5 @@
 //! Where a network is the wrong size: data that it follows too closely, and places where an equation fails.
 
-use super::place::place;
 use crate::engine::Engine;
 use crate::noise::{Noise, ObservationNoise};
 use crate::problem::Bound;
@@ -47,17 +46,13 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
                     })
                 }
                 TermKind::Residual => hot_spot(own, points, bound.sizes[at][number]).map(|(point, share)| {
-                    let schema = bound.problem.scene().schema;
-                    let inputs = schema.coordinates.len();
-                    let inward = &bound.coordinates[at][point * inputs..][..inputs];
-                    let units = schema.coordinates.iter().map(|c| bound.system.outward(&c.unit));
-                    let outward: Vec<f64> = inward.iter().zip(units).map(|(x, unit)| x * unit).collect();
+                    let inputs = bound.problem.scene().schema.coordinates.len();
                     format!(
                         "`{}.{}` fails around {}, by {share:.2} of its natural size and much more than elsewhere: bind \
                          more points there, or take a wider network",
                         group.name,
                         term.name,
-                        place(schema.coordinates, &outward),
+                        bound.place(&bound.coordinates[at][point * inputs..][..inputs]),
                     )
                 }),
                 _ => None,

@@ -1,9 +1,8 @@
 //! Open directions in the user's words.
 
 use super::open::{Open, What};
-use super::place::place;
 use super::spread::Spread;
-use crate::problem::Bound;
+use crate::problem::{Bound, place};
 use crate::schema::Scalar;
 use crate::solve::vector;
 

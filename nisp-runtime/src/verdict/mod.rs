@@ -6,15 +6,19 @@
 
 mod clouds;
 mod equations;
+mod gathered;
 mod held;
 mod known;
 mod learned;
+mod misfits;
 mod observations;
 mod outliers;
 mod outside;
+mod patterns;
 mod settled;
 mod slow;
 mod smooth;
+mod stretches;
 mod taken;
 mod told;
 
@@ -29,7 +33,7 @@ const FIRM: f64 = 0.25;
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `rhythm`,
+    /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `stretch`, `rhythm`,
     /// `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
@@ -62,7 +66,7 @@ impl Verdict {
     /// True where an answer holds its equations firmly and misses the data: these equations do not describe the data, and another
     /// answer could only fit them by bending the equations.
     pub(crate) fn contradicts(&self) -> bool {
-        let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "rhythm");
+        let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");
         let mut equations = self.checks.iter().filter(|check| check.check == "equation");
         self.failed().any(misses) && equations.all(|check| check.value <= FIRM * check.limit)
     }

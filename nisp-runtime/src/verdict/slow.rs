@@ -44,6 +44,12 @@ pub(super) fn deviations(square: f64, freedom: usize) -> f64 {
     ((square / freedom as f64).cbrt() - (1.0 - part)) / part.sqrt()
 }
 
+/// Root mean square of so many normal numbers of deviation one that so many deviations of chance allow.
+pub(super) fn chance(count: usize, deviations: f64) -> f64 {
+    let part = 2.0 / (9.0 * count.max(1) as f64);
+    (1.0 - part + deviations * part.sqrt()).max(0.0).powf(1.5)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -90,5 +96,13 @@ mod tests {
             let (excess, share) = excess(&values);
             assert!(excess > 4.0 && share > 0.02, "{seed}: {excess} {share}");
         }
+    }
+
+    /// Chi squared over its degrees of freedom has mean 1 and deviation sqrt(2 / n).
+    #[test]
+    fn chance_allows_less_to_many() {
+        let exact = |count: f64| (1.0 + 4.0 * (2.0 / count).sqrt()).sqrt();
+        assert!((chance(10_000, 4.0) - exact(1e4)).abs() < 1e-3);
+        assert!(chance(4, 4.0) > 2.3 && chance(4, 4.0) < 2.8);
     }
 }

@@ -45,7 +45,7 @@ pub(super) fn excess(places: &[f64], axes: usize, misfits: &[f64]) -> (f64, f64)
 }
 
 /// Every coordinate brought to [-1, 1], axis by axis.
-fn scaled(places: &[f64], axes: usize) -> Vec<Vec<f64>> {
+pub(super) fn scaled(places: &[f64], axes: usize) -> Vec<Vec<f64>> {
     let axis = |at: usize| {
         let own: Vec<f64> = places.iter().skip(at).step_by(axes).copied().collect();
         let low = own.iter().copied().fold(f64::INFINITY, f64::min);

@@ -1,0 +1,106 @@
+//! Whether what is left of an observation has a pattern, which noise has not.
+
+use super::misfits::Misfits;
+use super::stretches::worst;
+use super::{Check, root_mean_square, slow, smooth};
+use crate::noise::in_order;
+use crate::rhythm::rhythm;
+
+/// Excess of slow misfits in standard deviations.
+const PATTERN: f64 = 4.0;
+/// Excess of smooth misfits over several coordinates in standard deviations.
+const SMOOTH: f64 = 5.0;
+/// Patterns with less than this share of the misfit's square do not matter.
+const SLIGHT: f64 = 0.05;
+/// Misfit over the noise below which it has no pattern to speak of.
+const BELOW: f64 = 0.5;
+/// Amplitude of a rhythm over the noise below which it does not matter.
+const FAINT: f64 = 0.1;
+/// Values that say something of a correlation, at least.
+const FEW: usize = 16;
+/// Mean of a misfit over its size above which it is a constant.
+const CONSTANT: f64 = 0.9;
+
+/// Checks of the order of misfits. Those of exact data are of rounding, and those far below the noise are what a fit that follows
+/// the data leaves, not a part that it leaves out.
+pub(super) fn checks(left: &Misfits, finer: &str) -> Vec<Check> {
+    if left.is_exact() || left.noise.is_some_and(|noise| left.size < BELOW * noise.deviation) {
+        return Vec::new();
+    }
+    let rows = left.kept();
+    let long = rows.iter().filter(|row| row.len() >= FEW);
+    if !left.is_record() {
+        return long.map(|row| over(left, row)).collect();
+    }
+    let mut checks: Vec<Check> = long.clone().map(|row| along(left, row)).collect();
+    checks.extend(long.enumerate().filter_map(|(at, row)| stretch(left, at, row)));
+    checks.extend(swing(left, &rows[0], finer));
+    checks
+}
+
+/// Smooth misfits over several coordinates.
+fn over(left: &Misfits, row: &[f64]) -> Check {
+    let (excess, share) = smooth::excess(&left.places, left.axes(), row);
+    let said = format!(
+        "what is left of `{}` is no noise: {:.1} % of its square is smooth, so the equations or a parameter do not fit these data, or a \
+         part of them is smoothed away",
+        left.term.name,
+        100.0 * share
+    );
+    Check::new("pattern", left.name(), (excess, SMOOTH), said)
+}
+
+/// Slow misfits along a record.
+fn along(left: &Misfits, row: &[f64]) -> Check {
+    let (excess, share) = slow::excess(&in_order(&left.places, row));
+    let value = if share > SLIGHT { excess } else { excess.min(PATTERN) };
+    let mean = row.iter().sum::<f64>() / row.len() as f64;
+    let said = if mean.abs() > CONSTANT * root_mean_square(row.iter().copied()) {
+        format!(
+            "`{}` is off by {} all along: its sensor has an offset, or the equations do not describe it",
+            left.term.name,
+            left.words(-mean)
+        )
+    } else {
+        format!(
+            "what is left of `{}` is no noise: {:.0} % of its square is a slow course, so a part of the data is smoothed away or not \
+             described by the equations",
+            left.term.name,
+            100.0 * share
+        )
+    };
+    Check::new("pattern", left.name(), (value, PATTERN), said)
+}
+
+/// A stretch of a record that is missed, however well the rest is met.
+fn stretch(left: &Misfits, at: usize, row: &[f64]) -> Option<Check> {
+    let noise = (left.noise?.deviation * left.doubt()).max(left.middle());
+    let column = *left.term.columns.get(at)?;
+    let values = left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]);
+    let places = in_order(&left.places, &left.places);
+    let found = worst(&in_order(&left.places, row), &in_order(&left.places, &values), noise)?;
+    let place = |row: usize| left.bound.place(&places[row..][..1]);
+    let said = format!(
+        "`{}` is missed by {:.1} times its noise from {} to {}: what acts there, or how the record starts or ends, is not described by \
+         the equations, or is smoothed away",
+        left.term.name,
+        found.size,
+        place(found.rows.0),
+        place(found.rows.1 - 1),
+    );
+    Some(Check::new("stretch", left.name(), (found.size, found.limit), said))
+}
+
+/// A rhythm along a record.
+fn swing(left: &Misfits, row: &[f64], finer: &str) -> Option<Check> {
+    let noise = left.noise?;
+    let swing = rhythm(&left.places, row, noise)?;
+    let said = format!(
+        "what is left of `{}` goes up and down {} over the record by {}, which noise does not: the equations or a parameter do not \
+         describe it, or a rhythm was smoothed away ({finer})",
+        left.term.name,
+        if swing.periods == 1 { "once".into() } else { format!("{} times", swing.periods) },
+        left.words(swing.amplitude)
+    );
+    Some(Check::new("rhythm", left.name(), (swing.amplitude / noise.deviation, FAINT), said))
+}
