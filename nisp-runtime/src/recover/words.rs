@@ -137,9 +137,12 @@ impl Words<'_> {
         place(coordinates, &spread.points[point * coordinates.len()..])
     }
 
-    /// The direction of a head in words: an exponential where it is one.
+    /// The direction of a head in words: a constant or an exponential where it is one.
     fn shape(&self, open: &Open, spread: &Spread) -> String {
         let share = format!("({:.1} % of its variance)", 100.0 * open.direction.share);
+        if is_constant(&open.direction.shape) {
+            return format!("a constant {share}");
+        }
         match (self.bound.problem.scene().schema.coordinates, exponent(&spread.points, &open.direction.shape)) {
             ([c], Some(rate)) => format!("a multiple of exp({rate:.3} {}) {share}", c.name),
             _ => format!("one pattern {share}"),
@@ -157,9 +160,17 @@ fn figures(value: f64) -> String {
     if (0.01..100.0).contains(&value) { format!("{value:.2}") } else { format!("{value:.2e}") }
 }
 
+/// Deviations from a shape that may be overlooked, as a share of the largest value.
+const CLOSE: f64 = 0.03;
+
+/// True if the values are the same to within a few per cent.
+fn is_constant(y: &[f64]) -> bool {
+    let Some(&peak) = y.get(vector::largest(y)) else { return false };
+    y.iter().all(|y| (y / peak - 1.0).abs() < CLOSE)
+}
+
 /// The rate of an exponential through the values, if they are one to within a few per cent of the largest.
 fn exponent(x: &[f64], y: &[f64]) -> Option<f64> {
-    const CLOSE: f64 = 0.03;
     let peak = *y.get(vector::largest(y))?;
     // Where it has decayed, what is left may have any sign.
     let high = x.iter().zip(y).filter(|(_, y)| **y / peak > 10.0 * CLOSE).map(|(x, y)| (*x, (*y / peak).ln()));
@@ -185,5 +196,6 @@ mod tests {
         let wave: Vec<f64> = x.iter().map(|x| 1.5 + x.sin()).collect();
         assert_eq!(exponent(&x, &wave), None);
         assert_eq!(exponent(&x, &x), None);
+        assert!(is_constant(&[-0.500, -0.501]) && !is_constant(&decay));
     }
 }

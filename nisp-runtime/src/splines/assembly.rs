@@ -11,6 +11,9 @@ use crate::solve::fault::Fault;
 
 /// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
 pub(super) const RIDGE: f64 = 1e-6;
+/// How far a step may move all coefficients of a head together where nothing speaks of that. A field of which equations take
+/// derivatives alone may be off by any constant; beside variances much larger than this those of the rest would be rounding.
+const FREE: f64 = 1e3;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
 const LEARNED: f64 = 10.0;
 
@@ -74,10 +77,12 @@ impl Solver<'_> {
         let none = vec![0.0; shared];
         cost += self.add_priors(state, phase, &mut |row, class| rows.push(row, class));
         for head in 0..self.heads.bases.len() {
-            for &number in self.heads.numbers(head, 0) {
+            let numbers = self.heads.numbers(head, 0);
+            let stay = RIDGE.max((FREE * (numbers.len() as f64).sqrt()).recip());
+            for &number in numbers {
                 // What no data speak of stays where equations have a value.
-                let value = if phase == Phase::Regress { 0.0 } else { RIDGE * state.theta[number] };
-                rows.push(Row { first: number, slopes: &[RIDGE], shared: &none, value }, known);
+                let pull = if phase == Phase::Regress { 0.0 } else { RIDGE.powi(2) * state.theta[number] };
+                rows.push(Row { first: number, slopes: &[stay], shared: &none, value: pull / stay }, known);
             }
         }
         rows.sort();
