@@ -9,6 +9,7 @@ mod equations;
 mod free;
 mod measured;
 mod oscillator;
+mod steps;
 
 /// Normal numbers, about: sums of twelve uniform ones.
 pub(crate) fn normals(seed: u64) -> impl FnMut() -> f64 {

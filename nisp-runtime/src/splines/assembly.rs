@@ -116,7 +116,7 @@ impl Solver<'_> {
 
     /// Gives the rows that keep sources small and smooth, or fields smooth while only data are regressed, with their classes;
     /// returns half the sum of their squares.
-    fn add_priors(&self, state: &State, phase: Phase, take: &mut dyn FnMut(Row<'_>, usize)) -> f64 {
+    pub(super) fn add_priors(&self, state: &State, phase: Phase, take: &mut dyn FnMut(Row<'_>, usize)) -> f64 {
         let none = vec![0.0; state.learned.len()];
         let mut slopes = Vec::new();
         let mut cost = 0.0;

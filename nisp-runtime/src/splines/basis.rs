@@ -57,6 +57,18 @@ impl Basis {
         inner.iter().sum::<f64>() / inner.len() as f64
     }
 
+    /// The mean width of a cell in a function's support.
+    pub(super) fn width(&self, function: usize) -> f64 {
+        let (first, last) = (function.max(self.degree), (function + self.degree + 1).min(self.len()));
+        (self.knots[last] - self.knots[first]) / (last - first).max(1) as f64
+    }
+
+    /// The sum of the squares of all functions where one is centred.
+    pub(super) fn squares(&self, function: usize) -> f64 {
+        let at = self.centre(function);
+        self.line(self.cell(at), at, 0).iter().map(|value| value * value).sum()
+    }
+
     /// A derivative of the functions that do not vanish on a cell, at a place in it. Zero above the degree.
     pub(super) fn line(&self, cell: usize, at: f64, order: usize) -> Line {
         let (degree, knots) = (self.degree, &self.knots[cell + 1..]);

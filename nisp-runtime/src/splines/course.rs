@@ -55,7 +55,7 @@ impl Run<'_> {
         let mut taken = 0;
         while let Some(&kind) = place.kinds.first() {
             if place.phase == Phase::Solve {
-                solver.set_smoothness(KINDS[kind]);
+                solver.set_smoothness(KINDS[kind], &place.state);
             }
             let elapsed = self.start.elapsed().as_secs_f64();
             let spent = self.limits.budget.is_some_and(|b| elapsed + 2.0 * self.longest > b.as_secs_f64());
@@ -84,7 +84,11 @@ impl Run<'_> {
                         place.state.convex = false;
                     } else {
                         // An iterate that wanders about has no evidence.
-                        place.next(if found.change < WANDERING { found.evidence } else { f64::MIN });
+                        place.next(if found.change < WANDERING {
+                            found.evidence - place.state.doubt
+                        } else {
+                            f64::MIN
+                        });
                         if let Some(&kind) = place.kinds.first() {
                             solver.change_smoothness(KINDS[kind], &mut place.state);
                         }

@@ -10,6 +10,10 @@ pub(super) struct State {
     pub(super) theta: Vec<f64>,
     pub(super) learned: Vec<f64>,
     pub(super) classes: Vec<Class>,
+    /// By source and function, how rough the source is there beside its mean; empty where it is as rough all along.
+    pub(super) uneven: Vec<f64>,
+    /// Logarithm of how much less likely that is beforehand than one roughness all along.
+    pub(super) doubt: f64,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
@@ -31,6 +35,8 @@ impl State {
         save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)
             .with(&format!("{prefix}learned"), &self.learned)
+            .with(&format!("{prefix}uneven"), &self.uneven)
+            .with(&format!("{prefix}doubt"), &[self.doubt])
             .with(&format!("{prefix}tolerance"), &[self.tolerance])
             .with_counter(&format!("{prefix}convex"), u64::from(self.convex))
             .with_counter(&format!("{prefix}step"), self.step)
@@ -41,6 +47,8 @@ impl State {
         restore_classes(&mut self.classes, saved, prefix)?;
         self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
         self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
+        self.uneven = saved.vector(&format!("{prefix}uneven"))?.to_vec();
+        [self.doubt] = saved.scalars(&format!("{prefix}doubt"))?;
         [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
         self.convex = saved.counter(&format!("{prefix}convex"))? == 1;
         self.step = saved.counter(&format!("{prefix}step"))?;

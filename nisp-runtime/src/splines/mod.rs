@@ -27,6 +27,7 @@ mod starts;
 mod step;
 mod told;
 mod triangle;
+mod uneven;
 
 use std::time::Instant;
 
@@ -155,6 +156,23 @@ pub(crate) fn solve(
         let ended = run.go(&mut solver, &mut place, &Place::save)?;
         status = if ended == Status::Interrupted { ended } else { status };
     }
+    while status == Status::Converged
+        && solver.has_sources()
+        && run.has_time_for(1)
+        && let Some(tried) = place.to_vary()
+    {
+        solver.set_smoothness(KINDS[tried.kind], &tried.state);
+        let Some(next) = solver.uneven(&tried.state)? else {
+            place.has_varied();
+            continue;
+        };
+        place.vary(&tried, next);
+        let ended = run.go(&mut solver, &mut place, &Place::save)?;
+        status = if ended == Status::Interrupted { ended } else { status };
+        if ended != Status::Converged {
+            break;
+        }
+    }
     let (loss, mut ahead) = (run.loss, (status != Status::Converged).then_some(run.ahead));
     let checkpoint = place.save();
     let mut warnings = Vec::new();
@@ -164,7 +182,7 @@ pub(crate) fn solve(
             && solver.has_sources()
             && let Some(best) = place.best()
         {
-            solver.set_smoothness(KINDS[best.kind]);
+            solver.set_smoothness(KINDS[best.kind], &best.state);
             place.state = State { step: place.state.step, ..solver.expected(place.state.clone())? };
         }
         // A kind of smoothness was tried to its end.
@@ -175,12 +193,14 @@ pub(crate) fn solve(
     // Only a minimum has error bars.
     let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
     let along = Along::sources(&solver.heads, schema, &place.state.theta);
-    let mut variances = Vec::new();
+    let (mut variances, mut unresolved) = (Vec::new(), Vec::new());
     if run.has_time_for(likely.len()) {
         for (share, Tried { kind, state, .. }) in likely {
-            solver.set_smoothness(KINDS[kind]);
+            solver.set_smoothness(KINDS[kind], &state);
             match solver.doubted(state, &along)? {
-                Some((State { theta, learned, .. }, found, own)) => {
+                Some((state, found, own)) => {
+                    unresolved.push(solver.unresolved(&state));
+                    let State { theta, learned, .. } = state;
                     spreads.push(Spread { share, theta, learned, covariance: found.covariance });
                     variances.push(own);
                 }
@@ -195,7 +215,7 @@ pub(crate) fn solve(
         && solver.heads.len() <= MANY
         && let Some(best) = place.best()
     {
-        solver.set_smoothness(KINDS[best.kind]);
+        solver.set_smoothness(KINDS[best.kind], &best.state);
         for without in std::iter::once(None).chain(conditions.iter().copied().map(Some)) {
             let triangle = if run.has_time_for(1) { solver.root(&place.state, without)? } else { None };
             roots.extend(triangle.map(|triangle| Root { without, triangle }));
@@ -210,8 +230,10 @@ pub(crate) fn solve(
     let course = place.best().map(|best| KINDS[best.kind].course);
     let State { theta, learned, step: iterations, .. } = place.state;
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
-    let kept = KeptSplines { heads, theta, learned, spreads };
+    let mut kept = KeptSplines { heads, theta, learned, spreads };
+    // What the cells cannot hold tells no source from none.
     let told = course.map(|course| told::told(&kept, course, &along, &variances)).unwrap_or_default();
+    kept.spreads.iter_mut().zip(&unresolved).for_each(|(spread, own)| spread.covariance.widen(own));
     let answer = Answer {
         facts,
         between: None,

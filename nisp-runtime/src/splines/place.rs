@@ -2,12 +2,17 @@
 
 use super::METHOD;
 use super::iterate::{Phase, State};
-use super::prior::KINDS;
+use super::prior::{Course, KINDS};
 use crate::solve::fault::Fault;
 use crate::solve::state;
 
 /// Logarithm of the evidence by which a kind of smoothness may fall behind and still count.
 const NEAR: f64 = 8.0;
+/// Courses, in the order in which sources may be uneven along them.
+const COURSES: [Course; 2] = [Course::Steady, Course::Fading];
+/// How often the roughness of sources along a record is found anew, and the gain of the logarithm of the evidence for which it is.
+const MOST_ROUNDS: u64 = 12;
+const GAIN: f64 = 0.5;
 /// How far differences of the evidence are trusted: all kinds are approximations of what the source is like.
 const TRUST: f64 = 0.3;
 
@@ -23,6 +28,11 @@ pub(super) struct Place {
     pub(super) tried: Vec<Tried>,
     /// Whether the steps have started again.
     pub(super) is_again: bool,
+    /// Courses whose sources' roughness along the record was found anew, how often that of the next one was, and the evidence
+    /// before the last time.
+    varied: usize,
+    rounds: u64,
+    before: f64,
 }
 
 /// A kind of smoothness that was tried: its index, its evidence and its iterate.
@@ -36,12 +46,51 @@ pub(super) struct Tried {
 impl Place {
     /// The start.
     pub(super) fn first(state: State, kinds: Vec<usize>) -> Self {
-        Self { kinds, phase: Phase::Regress, since: 0, state, tried: Vec::new(), is_again: false }
+        Self {
+            kinds,
+            phase: Phase::Regress,
+            since: 0,
+            state,
+            tried: Vec::new(),
+            is_again: false,
+            varied: 0,
+            rounds: 0,
+            before: f64::MIN,
+        }
     }
 
     /// Starts again from another state, with all kinds.
     pub(super) fn again(&mut self, state: State, kinds: Vec<usize>) {
         (self.kinds, self.phase, self.since, self.state, self.is_again) = (kinds, Phase::Regress, 0, state, true);
+    }
+
+    /// The end whose sources' roughness along the record is to be found anew; nothing where that was done. What a course makes of
+    /// steps along a record is not known before.
+    pub(super) fn to_vary(&mut self) -> Option<Tried> {
+        while let Some(&course) = COURSES.get(self.varied) {
+            let own = self.tried.iter().filter(|tried| KINDS[tried.kind].course == course);
+            let own = own.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).cloned();
+            let best = self.best().map_or(f64::MAX, |best| best.evidence);
+            let is_likely = |tried: &Tried| course == Course::Steady || tried.evidence >= best - NEAR;
+            let has_gained = |tried: &Tried| tried.evidence > self.before + GAIN && self.rounds < MOST_ROUNDS;
+            if let Some(tried) = own.filter(|tried| is_likely(tried) && (self.rounds == 0 || has_gained(tried))) {
+                return Some(tried);
+            }
+            self.has_varied();
+        }
+        None
+    }
+
+    /// Turns to the next course.
+    pub(super) fn has_varied(&mut self) {
+        (self.varied, self.rounds) = (self.varied + 1, 0);
+    }
+
+    /// Goes on from an end with sources that are as rough along the record as this state says.
+    pub(super) fn vary(&mut self, from: &Tried, state: State) {
+        (self.kinds, self.phase, self.since) = (vec![from.kind], Phase::Solve, 0);
+        self.state = State { step: self.state.step, ..state };
+        (self.is_again, self.rounds, self.before) = (true, self.rounds + 1, from.evidence);
     }
 
     /// Keeps the iterate, unless another start of its kind has ended with more evidence, and turns to the next kind. A course that
@@ -87,6 +136,9 @@ impl Place {
             .with_counter("since", self.since)
             .with_counter("iterations", self.state.step)
             .with_counter("again", u64::from(self.is_again))
+            .with_counter("varied", self.varied as u64)
+            .with_counter("rounds", self.rounds)
+            .with("before", &[self.before])
             .with_counter("tried", self.tried.len() as u64);
         self.tried.iter().enumerate().fold(saved, |saved, (at, Tried { kind, evidence, state })| {
             let prefix = format!("tried {at} ");
@@ -116,6 +168,9 @@ impl Place {
         }
         self.state.restore(saved, "")?;
         self.since = saved.counter("since")?;
+        self.varied = saved.counter("varied")? as usize;
+        [self.before] = saved.scalars("before")?;
+        self.rounds = saved.counter("rounds")?;
         self.is_again = saved.counter("again")? == 1;
         self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
         Ok(())

@@ -5,6 +5,8 @@
 //! is what the source adds up to in it. What is set off with the record answers at first in a layer that is thin beside the rest,
 //! then slower and slower, and dies away as it does so.
 
+use std::f64::consts::PI;
+
 use super::basis::{Basis, Line};
 use super::triangle::{Row, Triangle};
 use crate::schema;
@@ -69,6 +71,8 @@ pub(super) struct Prior {
     along: Basis,
     /// What the head's coefficients are multiplied by for what is alike all along.
     evened: Vec<f64>,
+    /// By function, how rough the head is there beside its mean.
+    uneven: Vec<f64>,
 }
 
 /// What the rows of a prior are worth.
@@ -85,21 +89,33 @@ impl Prior {
     pub(super) fn new(basis: &Basis, kind: Smoothness) -> Self {
         let places = basis.breakpoints();
         let (first, length) = (places[0], places[places.len() - 1] - places[0]);
+        let ones = vec![1.0; basis.len()];
         match kind.course {
-            Course::Steady => Self { order: kind.order, along: basis.clone(), evened: vec![1.0; basis.len()] },
+            Course::Steady => Self { order: kind.order, along: basis.clone(), evened: ones.clone(), uneven: ones },
             Course::Fading => {
                 let stretch = |at: &f64| first + length * (LAYER * (at - first) / length).ln_1p() / LAYER.ln_1p();
                 let along = Basis::new(basis.degree, &places.iter().map(stretch).collect::<Vec<f64>>());
                 let even = |function: usize| pace((basis.centre(function) - first) / length).recip();
-                Self { order: kind.order, along, evened: (0..basis.len()).map(even).collect() }
+                Self { order: kind.order, along, evened: (0..basis.len()).map(even).collect(), uneven: ones }
             }
         }
+    }
+
+    /// The same with a head that is as rough as this beside its mean, function by function.
+    pub(super) fn with(self, uneven: &[f64]) -> Self {
+        Self { uneven: uneven.to_vec(), ..self }
+    }
+
+    /// By function, how rough the head is there beside its mean.
+    pub(super) fn uneven(&self) -> &[f64] {
+        &self.uneven
     }
 
     /// Rows that keep the head smooth: for each the first of its coefficients, and what so many of them are multiplied by.
     pub(super) fn smooth(&self, roughness: f64) -> impl Iterator<Item = (usize, Line)> + '_ {
         self.along.differences(self.order).map(move |(first, mut factors, width)| {
             let evened = self.evened[first..].iter();
+            let roughness = roughness * self.uneven[first];
             factors.iter_mut().zip(evened).for_each(|(factor, even)| *factor *= even * width.sqrt() / roughness);
             (first, factors)
         })
@@ -128,6 +144,18 @@ impl Prior {
         let covariance = triangle.covariance();
         let settled = self.small(amplitude).enumerate().map(|(first, factor)| covariance.of(first, &[factor], &[]));
         Worth { log_determinant: triangle.log_determinant(), amplitude: settled.sum() }
+    }
+
+    /// The variance about a function that is in waves shorter than four cells, of a head of this roughness and amplitude: cells are chosen so
+    /// that the data say nothing of these, and splines on the cells hold few of them.
+    pub(super) fn unresolved(&self, function: usize, roughness: f64, amplitude: f64) -> f64 {
+        let roughness = roughness * self.uneven[function];
+        let power = 2 * self.order as i32 - 1;
+        let longest = 2.0 * self.along.width(function) / PI;
+        // The spectrum `1 / (amplitude^-2 + frequency^(2 order) roughness^-2)` above a frequency; no more than below it.
+        let above = roughness.powi(2) * longest.powi(power) / (PI * f64::from(power));
+        let below = amplitude.powi(2) / (PI * longest);
+        above.min(below) / self.evened[function].powi(2)
     }
 
     /// A roughness at which a head of this amplitude is one wave over so many cells of the mean width.

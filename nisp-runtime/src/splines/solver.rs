@@ -110,17 +110,25 @@ impl<'a> Solver<'a> {
         self.bound.problem.scene().schema.heads.iter().any(|head| head.source)
     }
 
-    /// Takes sources for smooth in this way from now on.
-    pub(super) fn set_smoothness(&mut self, kind: Smoothness) {
+    /// Takes sources for smooth in this way from now on, and as rough along the record as a state says.
+    pub(super) fn set_smoothness(&mut self, kind: Smoothness, state: &State) {
+        let mut uneven = &state.uneven[..];
         for head in self.believed(Phase::Solve) {
-            self.priors[head] = Prior::new(&self.heads.bases[head], kind);
+            let prior = Prior::new(&self.heads.bases[head], kind);
+            self.priors[head] = match uneven.split_at_checked(self.heads.bases[head].len()) {
+                Some((own, rest)) => {
+                    uneven = rest;
+                    prior.with(own)
+                }
+                None => prior,
+            };
         }
     }
 
     /// Takes sources for smooth in another way from now on, with waves as long as a state's.
     pub(super) fn change_smoothness(&mut self, kind: Smoothness, state: &mut State) {
         let before = self.priors.clone();
-        self.set_smoothness(kind);
+        self.set_smoothness(kind, state);
         for (head, before) in before.iter().enumerate() {
             let Some(amplitude) = self.amplitude[head] else { continue };
             let [own, rough] = [amplitude, self.roughness[head]].map(|class| state.classes[class].size);

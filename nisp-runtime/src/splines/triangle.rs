@@ -333,6 +333,11 @@ impl Covariance {
         [&self.rows, &self.border, &self.corner]
     }
 
+    /// Adds to the variances of the unknowns.
+    pub(super) fn widen(&mut self, variances: &[f64]) {
+        self.rows.chunks_exact_mut(self.band).zip(variances).for_each(|(row, variance)| row[0] += variance);
+    }
+
     /// Variance of what a row says of the unknowns.
     pub(super) fn of(&self, first: usize, slopes: &[f64], shared: &[f64]) -> f64 {
         let mut sum = 0.0;

@@ -62,7 +62,7 @@ impl Stretch {
         let status = run.go(&mut solver, &mut place, &Place::save)?;
         let best = place.best().filter(|_| status == Status::Converged).cloned();
         let Tried { kind, state, .. } = best.ok_or(LiveError::Open)?;
-        solver.set_smoothness(KINDS[kind]);
+        solver.set_smoothness(KINDS[kind], &state);
         let classes = state.classes.clone();
         let (state, found, _) = solver.doubted(state, &[])?.ok_or(LiveError::Open)?;
         let covariance = found.covariance;

@@ -1,0 +1,58 @@
+//! Sources that step: one roughness along all of a record is too small at the step and too large elsewhere.
+
+use nisp::solve::driver::Status;
+use nisp::{Carrier, Problem, scene};
+
+use crate::{normals, of, solve};
+
+nisp::pde! {
+    /// A vessel that drains, filled through a valve.
+    mod vessel {
+        coordinates: t [s];
+        fields: h [m];
+        sources: f [m/s];
+        parameters: drain [s] = 2;
+        on motion { level: d(h, t) == f - h / drain; }
+        on samples { observe h; }
+        scene filling { }
+    }
+}
+
+/// When the valve opens and closes, and how much comes through it.
+const OPEN: [(f64, f64, f64); 2] = [(2.0, 3.5, 1.0), (6.0, 6.4, 0.6)];
+
+fn inflow(t: f64) -> f64 {
+    OPEN.iter().filter(|(from, to, _)| (*from..*to).contains(&t)).map(|(.., flow)| flow).sum()
+}
+
+/// The level by superposition: what comes in from a time on fills the vessel to `drain` times as much, exponentially.
+fn level(t: f64) -> f64 {
+    let since = |from: f64| 2.0 * (1.0 - (-(t - from).max(0.0) / 2.0).exp());
+    OPEN.iter().map(|(from, to, flow)| flow * (since(*from) - since(*to))).sum()
+}
+
+#[test]
+fn a_valve_that_opens_and_closes_is_covered() {
+    let times: Vec<f64> = (0..600).map(|row| f64::from(row) / 60.0).collect();
+    let mut normal = normals(11);
+    let measured = times.iter().map(|&t| level(t) + 0.001 * normal()).collect();
+    let mut problem = Problem::new(scene::<vessel::filling::Scene>());
+    problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
+    let mut solution = solve(&problem, Carrier::Splines);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let estimates = solution.evaluate_with_errors(&times);
+    let found = of(&estimates, "f");
+    let bars = found.deviations.as_ref().expect("a sound answer has error bars");
+    let misses: Vec<f64> = (0..times.len()).map(|row| found.values[row] - inflow(times[row])).collect();
+    let within = |deviations: f64| {
+        let covered = misses.iter().zip(bars).filter(|(miss, bar)| miss.abs() <= deviations * **bar).count();
+        covered as f64 / times.len() as f64
+    };
+    assert!(within(2.0) > 0.93 && within(4.0) > 0.995, "{} {}", within(2.0), within(4.0));
+    // Away from the steps the inflow is known far better than one roughness for all of the record would say.
+    let quiet: Vec<f64> =
+        (0..times.len()).filter(|&row| (8.0..9.5).contains(&times[row])).map(|row| bars[row]).collect();
+    let typical = quiet.iter().sum::<f64>() / quiet.len() as f64;
+    assert!(typical < 0.02, "{typical}");
+}
