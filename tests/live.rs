@@ -143,6 +143,19 @@ fn a_wrong_equation_is_told_from_a_right_one() {
     }
 }
 
+/// The smoother follows a value that stands alone, and says so of the rows beside it and of no others.
+#[test]
+fn rows_beside_a_glitch_are_not_called_sound() {
+    let mut rows = record(3000, 0.05, 0.01);
+    rows[1500].1 += 1.0;
+    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let is_far = |found: &&Smoothed| (found.heads[1].0 - drive(found.at, 0.0)).abs() > 8.0 * found.heads[1].1;
+    let far: Vec<&Smoothed> = found[200..2900].iter().filter(is_far).collect();
+    assert!(far.len() > 5, "{} rows are far off", far.len());
+    assert!(far.iter().all(|found| !found.is_sound()), "a row that is far off is called sound");
+    assert!(found[..1400].iter().chain(&found[1700..]).all(Smoothed::is_sound));
+}
+
 #[test]
 fn rows_that_cannot_be_taken_are_left_out() {
     let rows = record(600, 0.1, 0.02);

@@ -162,8 +162,11 @@ impl Answers {
     fn line(&self, found: &Smoothed) -> Value {
         let of = |source: bool| -> Map<String, Value> {
             let heads = self.scene.heads.iter().zip(&found.heads).filter(|(head, _)| head.source == source);
-            let member =
-                |(head, (value, sd)): (&Head, &(f64, f64))| (head.name.into(), json!({ "value": value, "sd": sd }));
+            let member = |(head, (value, sd)): (&Head, &(f64, f64))| {
+                // Bars of rows that are missed would be those of noise that is not theirs.
+                let sd = found.is_sound().then_some(sd);
+                (head.name.into(), json!({ "value": value, "sd": sd }))
+            };
             heads.map(member).collect()
         };
         json!({
@@ -173,6 +176,7 @@ impl Answers {
             "sources": of(true),
             "state": of(false),
             "misfit": found.misfit,
+            "nearby": found.nearby,
         })
     }
 }

@@ -46,15 +46,19 @@ pub struct Smoothed {
     /// Root mean square of what observations are off, over the noise that differences of neighbouring rows show: about one
     /// where equations and data agree. A running mean over a hundred values or so.
     pub misfit: f64,
+    /// The same over a dozen values or so about the place: a contact that the source follows too slowly shows there alone.
+    pub nearby: f64,
 }
 
 impl Smoothed {
     /// Misfit up to which equations and data agree.
     pub const MISFIT: f64 = 1.6;
+    /// The same of a dozen values: chance makes more of few.
+    pub const NEARBY: f64 = 2.0;
 
     /// True where equations and data agree.
     pub fn is_sound(&self) -> bool {
-        self.misfit <= Self::MISFIT
+        self.misfit <= Self::MISFIT && self.nearby <= Self::NEARBY
     }
 }
 

@@ -26,6 +26,10 @@ const BETWEEN: usize = 4000;
 /// Values that the running mean of misfits looks back over, and the square that one may count for: a value that stands alone
 /// does not make equations wrong.
 const LOOKED_BACK: f64 = 100.0;
+/// Values that the mean about a place looks back over, and the square that one may count for: answers beside one that stands alone
+/// are wrong.
+const NEARBY: f64 = 12.0;
+const LARGEST_NEARBY: f64 = 200.0;
 const LARGEST_SQUARE: f64 = 16.0;
 /// Share of a cell by which a place may miss the lag.
 const SLACK: f64 = 1e-6;
@@ -56,8 +60,11 @@ struct Live {
     /// Conditions at places that the record has not reached yet.
     conditions: VecDeque<Event>,
     last: f64,
-    /// Running mean of the squares of misfits over the noise.
+    /// Running mean of the squares of misfits over the noise, of rows that have an answer.
     square: f64,
+    /// The same of fewer rows up to the middle of those that wait, which shows a source that is followed too slowly, and up to the
+    /// last of them, which shows a value that stands alone before it spoils its neighbours.
+    nearby: [Nearby; 2],
     /// The last rows, for the next stretch.
     recent: VecDeque<MeasuredRow>,
     rows: usize,
@@ -201,6 +208,7 @@ impl FixedLagSmoother {
             conditions: conditions.into(),
             last: start,
             square: 1.0,
+            nearby: [2, 1].map(|part| Nearby { part, square: 1.0, counted: 0 }),
             recent: VecDeque::new(),
             rows: 0,
             due: 2 * rows.len(),
@@ -210,6 +218,24 @@ impl FixedLagSmoother {
         live.replay(&self.layout, rows, &known, &mut found)?;
         self.live = Some(live);
         Ok(found)
+    }
+}
+
+/// A running mean of squares up to a part of the rows that wait.
+struct Nearby {
+    /// One over the part.
+    part: usize,
+    square: f64,
+    /// Rows that wait and have been counted.
+    counted: usize,
+}
+
+impl Nearby {
+    fn count_up(&mut self, window: &Window, pending: &VecDeque<(f64, Vec<Event>)>) {
+        for (_, events) in pending.iter().take(pending.len().div_ceil(self.part)).skip(self.counted) {
+            count(window, events, &mut self.square, (NEARBY, LARGEST_NEARBY));
+            self.counted += 1;
+        }
     }
 }
 
@@ -311,20 +337,20 @@ impl Live {
     }
 
     fn answer_next(&mut self) -> Option<Smoothed> {
-        let (at, events) = self.pending.pop_front()?;
-        for event in &events {
-            self.window.misfits(event, &mut |misfit| {
-                let square = (misfit * misfit).min(LARGEST_SQUARE);
-                self.square += (square - self.square) / LOOKED_BACK;
-            });
+        for nearby in &mut self.nearby {
+            nearby.count_up(&self.window, &self.pending);
         }
+        let (at, events) = self.pending.pop_front()?;
+        self.nearby.iter_mut().for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
+        count(&self.window, &events, &mut self.square, (LOOKED_BACK, LARGEST_SQUARE));
         let read = |(head, outward): (usize, &f64)| {
             let (value, deviation) = self.window.read(head, at);
             (value * outward, deviation * outward)
         };
         let heads = self.outward.iter().enumerate().map(read).collect();
         let outward = self.inward.0.recip();
-        Some(Smoothed { at: at * outward, lag: (self.last - at) * outward, heads, misfit: self.square.sqrt() })
+        let nearby = self.nearby.iter().map(|nearby| nearby.square.sqrt()).fold(0.0, f64::max);
+        Some(Smoothed { at: at * outward, lag: (self.last - at) * outward, heads, misfit: self.square.sqrt(), nearby })
     }
 
     /// Answers all rows that wait.
@@ -356,6 +382,13 @@ impl Live {
             }
         }
         Ok(())
+    }
+}
+
+/// Counts the misfits of a row's values in a running mean of their squares over so many values, none larger than that.
+fn count(window: &Window, events: &[Event], mean: &mut f64, (values, largest): (f64, f64)) {
+    for event in events {
+        window.misfits(event, &mut |misfit| *mean += ((misfit * misfit).min(largest) - *mean) / values);
     }
 }
 
