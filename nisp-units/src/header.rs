@@ -86,7 +86,7 @@ impl Written {
         let (mut next, mut within, mut after) = (1, 1, 1);
         for part in split(text) {
             match part {
-                "" | " " | "*" | "·" | "_" | "1" => {}
+                "" | " " | "*" | "·" | "." | "_" | "1" => {}
                 "/" => next = -1,
                 "(" => (within, next) = (next, 1),
                 ")" => within = 1,
@@ -122,11 +122,11 @@ impl Written {
 
 /// A text at its separators, which are parts too.
 fn split(text: &str) -> impl Iterator<Item = &str> {
-    text.split_inclusive(['/', '*', '·', ' ', '_', '(', ')']).flat_map(|part| {
+    text.split_inclusive(['/', '*', '·', '.', ' ', '_', '(', ')']).flat_map(|part| {
         let end = part
             .char_indices()
             .next_back()
-            .filter(|(_, last)| "/*· _()".contains(*last))
+            .filter(|(_, last)| "/*·. _()".contains(*last))
             .map_or(part.len(), |(at, _)| at);
         [&part[..end], &part[end..]]
     })
@@ -162,6 +162,8 @@ mod tests {
         assert_eq!(found("mg/l", "kg/m^3"), Some(1e-3));
         assert_eq!(found("J/(kg K)", "kJ kg^-1 K^-1"), Some(1e-3));
         assert_eq!(found("N*m", "J"), Some(1.0));
+        assert_eq!(found("N.m", "J"), Some(1.0));
+        assert_eq!(found("W.m-2.K-1", "W/(m^2 K)"), Some(1.0));
         assert_eq!(found("%", "1"), Some(0.01));
         assert_eq!(found("1/min", "Hz"), Some(0.016_666_666_667));
     }
