@@ -3,8 +3,9 @@
 use super::Bound;
 use crate::schema::Coordinate;
 
-/// Numbers from here on are written without an exponent.
+/// Numbers from here on are written without an exponent, and those below the other are rounding.
 const SHORT: f64 = 0.01;
+const NOTHING: f64 = 1e-12;
 
 /// A point given in declared units: `x = 0.100 m, t = 2.000 s`.
 pub(crate) fn place(coordinates: &[Coordinate], point: &[f64]) -> String {
@@ -14,6 +15,7 @@ pub(crate) fn place(coordinates: &[Coordinate], point: &[f64]) -> String {
 
 /// One coordinate of a point, in its declared unit.
 fn along(coordinate: &Coordinate, x: f64) -> String {
+    let x = if x.abs() < NOTHING { 0.0 } else { x };
     let number = if x == 0.0 || x.abs() >= SHORT { format!("{x:.3}") } else { format!("{x:.2e}") };
     format!("{} = {number} {}", coordinate.name, coordinate.unit.text).trim_end().into()
 }

@@ -159,7 +159,7 @@ pub(crate) fn solve(
     while status == Status::Converged
         && solver.has_sources()
         && run.has_time_for(1)
-        && let Some(tried) = place.to_vary()
+        && let Some(tried) = place.next_uneven()
     {
         solver.set_smoothness(KINDS[tried.kind], &tried.state);
         let Some(next) = solver.uneven(&tried.state)? else {

@@ -66,7 +66,7 @@ impl Place {
 
     /// The end whose sources' roughness along the record is to be found anew; nothing where that was done. What a course makes of
     /// steps along a record is not known before.
-    pub(super) fn to_vary(&mut self) -> Option<Tried> {
+    pub(super) fn next_uneven(&mut self) -> Option<Tried> {
         while let Some(&course) = COURSES.get(self.varied) {
             let own = self.tried.iter().filter(|tried| KINDS[tried.kind].course == course);
             let own = own.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).cloned();
