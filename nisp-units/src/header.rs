@@ -120,9 +120,16 @@ impl Written {
     }
 }
 
-/// A text at its separators, which are parts too.
+/// A text at its separators, which are parts too. A point parts what is before a letter, and belongs to numbers elsewhere.
 fn split(text: &str) -> impl Iterator<Item = &str> {
-    text.split_inclusive(['/', '*', '·', '.', ' ', '_', '(', ')']).flat_map(|part| {
+    let is_end = move |(at, c): &(usize, char)| match c {
+        '.' => text[at + 1..].starts_with(char::is_alphabetic),
+        _ => "/*· _()".contains(*c),
+    };
+    let mut begin = 0;
+    let ends = text.char_indices().filter(is_end).map(|(at, c)| at + c.len_utf8()).chain([text.len()]);
+    let parts = ends.map(move |end| &text[std::mem::replace(&mut begin, end)..end]);
+    parts.flat_map(|part| {
         let end = part
             .char_indices()
             .next_back()
@@ -191,7 +198,7 @@ mod tests {
     #[test]
     fn words_are_no_units() {
         assert!(is_unit("m_s2") && is_unit("W/(m^2 K)"));
-        for text in ["", "1", "in", "obs", "m_obs", "sigma0.01", "s^x", "m^1000", "left"] {
+        for text in ["m.1", "m^2.1", "1.1 m", "", "1", "in", "obs", "m_obs", "sigma0.01", "s^x", "m^1000", "left"] {
             assert!(!is_unit(text), "{text}");
         }
     }

@@ -9,7 +9,7 @@ use crate::loss::Loss;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 
-/// What coefficients are multiplied by in rows that keep those bounded that nothing else speaks of.
+/// Coefficients that nothing speaks of are drawn to zero as by rows that multiply each by this.
 pub(super) const RIDGE: f64 = 1e-6;
 /// How far a step may move all coefficients of a head together where nothing speaks of that. A field of which equations take
 /// derivatives alone may be off by any constant; beside variances much larger than this those of the rest would be rounding.
@@ -80,7 +80,8 @@ impl Solver<'_> {
             let numbers = self.heads.numbers(head, 0);
             let stay = RIDGE.max((FREE * (numbers.len() as f64).sqrt()).recip());
             for &number in numbers {
-                // What no data speak of stays where equations have a value.
+                // What no data speak of stays where equations have a value. The row holds coefficients to where they are more than
+                // it draws them to zero.
                 let pull = if phase == Phase::Regress { 0.0 } else { RIDGE.powi(2) * state.theta[number] };
                 rows.push(Row { first: number, slopes: &[stay], shared: &none, value: pull / stay }, known);
             }

@@ -1,6 +1,6 @@
 //! Steps until they change nothing, kind of smoothness after kind.
 
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 use super::iterate::Phase;
 use super::place::Place;
@@ -23,6 +23,8 @@ const WANDERING: f64 = 5e-3;
 /// Steps of a kind of smoothness at most, and those after which equations that are still loose are left so.
 const MOST_STEPS: u64 = 60;
 const MOST_LOOSE_STEPS: u64 = 120;
+/// Steps for which time is kept while sources may still be rougher in some parts: those of the error bars.
+const KEPT: f64 = 8.0;
 /// The end of the error bars' steps at the latest, beside the budget.
 const LATE: f64 = 1.05;
 
@@ -43,6 +45,41 @@ impl Run<'_> {
     pub(super) fn has_time_for(&self, steps: usize) -> bool {
         let end = self.start.elapsed().as_secs_f64() + steps as f64 * self.longest;
         steps == 0 || self.limits.budget.is_none_or(|budget| end <= LATE * budget.as_secs_f64())
+    }
+
+    /// Lets sources be as rough along the record as answers say, while the evidence grows and there is time.
+    pub(super) fn vary(
+        &mut self,
+        solver: &mut Solver<'_>,
+        place: &mut Place,
+        save: &dyn Fn(&Place) -> state::State,
+    ) -> Result<Flow, Fault> {
+        let whole = self.limits;
+        let kept = Duration::from_secs_f64(KEPT * self.longest);
+        self.limits.budget = whole.budget.map(|budget| budget.saturating_sub(kept));
+        let mut flow = Flow::Continue;
+        while self.has_time_for(2)
+            && place.state.step < self.limits.iterations
+            && let Some(tried) = place.next_uneven()
+        {
+            solver.set_smoothness(KINDS[tried.kind], &tried.state);
+            let Some(next) = solver.uneven(&tried.state)? else {
+                place.leave_course();
+                continue;
+            };
+            place.vary(&tried, next);
+            match self.go(solver, place, save)? {
+                Status::Converged => {}
+                Status::Interrupted => {
+                    flow = Flow::Stop;
+                    break;
+                }
+                // Another roughness takes too long, or leaves unknowns open: what was found before stands.
+                _ => place.drop_round(),
+            }
+        }
+        self.limits = whole;
+        Ok(flow)
     }
 
     /// Takes steps until all kinds of smoothness that are to be tried have been, or steps or time are spent.

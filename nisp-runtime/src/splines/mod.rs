@@ -129,7 +129,7 @@ pub(crate) fn solve(
     let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY, ahead: f64::INFINITY };
     let begun = |saved: &&state::State| saved.indices("kinds").is_ok();
     match (from.filter(begun), cells::middle(bound, &breakpoints)) {
-        (Some(saved), _) => place.restore(saved)?,
+        (Some(saved), _) => place.restore(saved, solver.source_functions())?,
         // A part of a long record says how smooth the sources are, and how large the noise is.
         (None, Some(middle)) => {
             let part = cells::part(bound, middle);
@@ -138,11 +138,14 @@ pub(crate) fn solve(
             // A run that ends here begins anew.
             let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
             if run.go(&mut solver, &mut trial, &save)? == Status::Converged
+                && (!solver.has_sources() || run.vary(&mut solver, &mut trial, &save)? == Flow::Continue)
                 && let Some(Tried { kind, state, .. }) = trial.best().cloned()
             {
                 place.kinds = vec![kind];
                 place.state.classes = state.classes;
                 place.state.step = trial.state.step;
+                // What one roughness describes in a part, it describes in all.
+                place.is_even = state.uneven.is_empty();
             }
         }
         (None, None) => {}
@@ -156,22 +159,11 @@ pub(crate) fn solve(
         let ended = run.go(&mut solver, &mut place, &Place::save)?;
         status = if ended == Status::Interrupted { ended } else { status };
     }
-    while status == Status::Converged
+    if status == Status::Converged
         && solver.has_sources()
-        && run.has_time_for(1)
-        && let Some(tried) = place.next_uneven()
+        && run.vary(&mut solver, &mut place, &Place::save)? == Flow::Stop
     {
-        solver.set_smoothness(KINDS[tried.kind], &tried.state);
-        let Some(next) = solver.uneven(&tried.state)? else {
-            place.has_varied();
-            continue;
-        };
-        place.vary(&tried, next);
-        let ended = run.go(&mut solver, &mut place, &Place::save)?;
-        status = if ended == Status::Interrupted { ended } else { status };
-        if ended != Status::Converged {
-            break;
-        }
+        status = Status::Interrupted;
     }
     let (loss, mut ahead) = (run.loss, (status != Status::Converged).then_some(run.ahead));
     let checkpoint = place.save();
@@ -199,7 +191,7 @@ pub(crate) fn solve(
             solver.set_smoothness(KINDS[kind], &state);
             match solver.doubted(state, &along)? {
                 Some((state, found, own)) => {
-                    unresolved.push(solver.unresolved(&state));
+                    unresolved.push(solver.unresolved(&state, &found.covariance));
                     let State { theta, learned, .. } = state;
                     spreads.push(Spread { share, theta, learned, covariance: found.covariance });
                     variances.push(own);

@@ -26,13 +26,15 @@ pub(super) struct Place {
     pub(super) since: u64,
     pub(super) state: State,
     pub(super) tried: Vec<Tried>,
-    /// Whether the steps have started again.
+    /// Whether the steps have started again, or must not any more.
     pub(super) is_again: bool,
-    /// Courses whose sources' roughness along the record was found anew, how often that of the next one was, and the evidence
-    /// before the last time.
-    varied: usize,
+    /// Number of the course along which the sources' roughness is found anew, how often it was, and the evidence before the last
+    /// time.
+    course: usize,
     rounds: u64,
     before: f64,
+    /// Whether one roughness describes all of the record: a part of it has said so.
+    pub(super) is_even: bool,
 }
 
 /// A kind of smoothness that was tried: its index, its evidence and its iterate.
@@ -53,9 +55,10 @@ impl Place {
             state,
             tried: Vec::new(),
             is_again: false,
-            varied: 0,
+            course: 0,
             rounds: 0,
             before: f64::MIN,
+            is_even: false,
         }
     }
 
@@ -64,10 +67,9 @@ impl Place {
         (self.kinds, self.phase, self.since, self.state, self.is_again) = (kinds, Phase::Regress, 0, state, true);
     }
 
-    /// The end whose sources' roughness along the record is to be found anew; nothing where that was done. What a course makes of
-    /// steps along a record is not known before.
+    /// The end whose sources' roughness along the record is to be found anew; nothing where that was done for all courses.
     pub(super) fn next_uneven(&mut self) -> Option<Tried> {
-        while let Some(&course) = COURSES.get(self.varied) {
+        while let Some(&course) = COURSES.get(self.course).filter(|_| !self.is_even) {
             let own = self.tried.iter().filter(|tried| KINDS[tried.kind].course == course);
             let own = own.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).cloned();
             let best = self.best().map_or(f64::MAX, |best| best.evidence);
@@ -76,20 +78,27 @@ impl Place {
             if let Some(tried) = own.filter(|tried| is_likely(tried) && (self.rounds == 0 || has_gained(tried))) {
                 return Some(tried);
             }
-            self.has_varied();
+            self.leave_course();
         }
         None
     }
 
     /// Turns to the next course.
-    pub(super) fn has_varied(&mut self) {
-        (self.varied, self.rounds) = (self.varied + 1, 0);
+    pub(super) fn leave_course(&mut self) {
+        (self.course, self.rounds) = (self.course + 1, 0);
+    }
+
+    /// Leaves a round without an end, and its course.
+    pub(super) fn drop_round(&mut self) {
+        self.kinds.clear();
+        self.leave_course();
     }
 
     /// Goes on from an end with sources that are as rough along the record as this state says.
     pub(super) fn vary(&mut self, from: &Tried, state: State) {
         (self.kinds, self.phase, self.since) = (vec![from.kind], Phase::Solve, 0);
         self.state = State { step: self.state.step, ..state };
+        // Another start now would begin with even sources.
         (self.is_again, self.rounds, self.before) = (true, self.rounds + 1, from.evidence);
     }
 
@@ -136,7 +145,8 @@ impl Place {
             .with_counter("since", self.since)
             .with_counter("iterations", self.state.step)
             .with_counter("again", u64::from(self.is_again))
-            .with_counter("varied", self.varied as u64)
+            .with_counter("even", u64::from(self.is_even))
+            .with_counter("course", self.course as u64)
             .with_counter("rounds", self.rounds)
             .with("before", &[self.before])
             .with_counter("tried", self.tried.len() as u64);
@@ -147,7 +157,8 @@ impl Place {
         })
     }
 
-    pub(super) fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
+    /// Takes over what [`Place::save`] gave of the same problem, whose sources have so many functions together.
+    pub(super) fn restore(&mut self, saved: &state::State, functions: usize) -> Result<(), Fault> {
         saved.check_method(METHOD)?;
         let known = |kind: &usize| *kind < KINDS.len();
         self.kinds = saved.indices("kinds")?;
@@ -167,8 +178,13 @@ impl Place {
             });
         }
         self.state.restore(saved, "")?;
+        let mut uneven = self.tried.iter().map(|tried| &tried.state).chain([&self.state]).map(|state| &state.uneven);
+        if !uneven.all(|own| (own.is_empty() || own.len() == functions) && own.iter().all(|rough| *rough > 0.0)) {
+            return Err(Fault::state("uneven"));
+        }
         self.since = saved.counter("since")?;
-        self.varied = saved.counter("varied")? as usize;
+        self.is_even = saved.counter("even")? == 1;
+        self.course = saved.counter("course")? as usize;
         [self.before] = saved.scalars("before")?;
         self.rounds = saved.counter("rounds")?;
         self.is_again = saved.counter("again")? == 1;

@@ -115,7 +115,7 @@ impl Prior {
     pub(super) fn smooth(&self, roughness: f64) -> impl Iterator<Item = (usize, Line)> + '_ {
         self.along.differences(self.order).map(move |(first, mut factors, width)| {
             let evened = self.evened[first..].iter();
-            let roughness = roughness * self.uneven[first];
+            let roughness = roughness * self.uneven[first + self.order / 2];
             factors.iter_mut().zip(evened).for_each(|(factor, even)| *factor *= even * width.sqrt() / roughness);
             (first, factors)
         })
@@ -146,8 +146,8 @@ impl Prior {
         Worth { log_determinant: triangle.log_determinant(), amplitude: settled.sum() }
     }
 
-    /// The variance about a function that is in waves shorter than four cells, of a head of this roughness and amplitude: cells are chosen so
-    /// that the data say nothing of these, and splines on the cells hold few of them.
+    /// The variance, about a function, of waves shorter than four cells, for a head of this roughness and amplitude. Splines on the
+    /// cells hold few of them, and cells are chosen so that the data say little of them.
     pub(super) fn unresolved(&self, function: usize, roughness: f64, amplitude: f64) -> f64 {
         let roughness = roughness * self.uneven[function];
         let power = 2 * self.order as i32 - 1;

@@ -105,6 +105,11 @@ impl<'a> Solver<'a> {
         size_of::<f64>() as f64 * (triangles + groups.sum::<f64>())
     }
 
+    /// Functions of all sources together.
+    pub(super) fn source_functions(&self) -> usize {
+        self.believed(Phase::Solve).into_iter().map(|head| self.heads.bases[head].len()).sum()
+    }
+
     /// True if a source is sought.
     pub(super) fn has_sources(&self) -> bool {
         self.bound.problem.scene().schema.heads.iter().any(|head| head.source)

@@ -159,20 +159,6 @@ impl Solver<'_> {
         Ok(Some((state, found, spread)))
     }
 
-    /// By unknown, the variance of sources that splines on the cells cannot hold.
-    pub(super) fn unresolved(&self, state: &State) -> Vec<f64> {
-        let mut variances = vec![0.0; self.heads.len()];
-        for head in self.believed(Phase::Solve) {
-            let Some((rough, amplitude)) = self.source_sizes(state, head) else { continue };
-            let (basis, prior) = (&self.heads.bases[head], &self.priors[head]);
-            for function in 0..basis.len() {
-                variances[self.heads.numbers(head, function)[0]] =
-                    prior.unresolved(function, rough, amplitude) / basis.squares(function);
-            }
-        }
-        variances
-    }
-
     /// What priors use up, and what they are worth; returns the logarithm of the determinant of their rows.
     ///
     /// What roughness uses up is what everything else leaves of all unknowns: summed row by row it would be a small difference of

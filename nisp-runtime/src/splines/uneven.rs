@@ -7,13 +7,15 @@
 
 use super::iterate::{Phase, State};
 use super::solver::Solver;
+use super::triangle::Covariance;
 use crate::solve::fault::Fault;
 
 /// Numbers of a source that are told by the innovations that are looked at together.
 const TOGETHER: f64 = 1.5;
 /// Shape of the gamma number, twice: how many numbers of a source its mean roughness is worth.
 const BELIEF: f64 = 1.0;
-/// Square of innovations over what it should be that chance does not make, in one of many parts of a record.
+/// Square of the innovations in the roughest part over what it should be, below which a source is clearly even. Chance makes as much
+/// of some even sources too: of these the evidence refuses another roughness.
 const CHANCE: f64 = 2.0;
 /// Changes of the logarithm of a roughness that no longer matter.
 const SETTLED: f64 = 0.05;
@@ -25,35 +27,66 @@ struct Innovation {
 }
 
 impl Solver<'_> {
-    /// The state with sources that are as rough along the record as it says itself; nothing where that changes nothing, or where
-    /// one roughness describes all of the record.
+    /// The state with the roughness that its own sources show along the record; nothing where that is the one they have, or where
+    /// they are clearly even.
     pub(super) fn uneven(&mut self, state: &State) -> Result<Option<State>, Fault> {
         let Some(found) = self.step(state, Phase::Solve)? else { return Ok(None) };
-        let mut innovations: Vec<Vec<Innovation>> = self.roughness.iter().map(|_| Vec::new()).collect();
-        let (roughness, covariance) = (self.roughness.clone(), &found.covariance);
-        self.add_priors(state, Phase::Solve, &mut |row, class| {
-            if let Some(head) = roughness.iter().position(|&own| own == class) {
-                let told = 1.0 - covariance.of(row.first, row.slopes, row.shared);
-                innovations[head].push(Innovation { square: row.value.powi(2), told: told.clamp(0.0, 1.0) });
-            }
-        });
+        let innovations = self.innovations(state, &found.covariance);
         let (mut next, mut change, mut most) = (State { uneven: Vec::new(), doubt: 0.0, ..state.clone() }, 0.0, 0.0);
         for (head, own) in innovations.iter().enumerate().filter(|(_, own)| !own.is_empty()) {
             let before = self.priors[head].uneven();
-            let parts = parts(own, before);
-            for (at, (square, told)) in parts.iter().enumerate() {
-                let rough = ((square + BELIEF) / (told + BELIEF)).sqrt();
-                most = f64::max(most, square / told.max(TOGETHER));
-                change = f64::max(change, (rough / before[at]).ln().abs());
-                next.doubt += own[at].told / TOGETHER * 0.5 * BELIEF * (rough.powi(-2) + 2.0 * rough.ln() - 1.0);
-                next.uneven.push(rough);
+            let parts = parts(own, &before[(before.len() - own.len()) / 2..]);
+            let rough = |&(square, told): &(f64, f64)| ((square + BELIEF) / (told + BELIEF)).sqrt();
+            for (own, part) in own.iter().zip(&parts) {
+                let rough = rough(part);
+                most = f64::max(most, part.0 / part.1.max(TOGETHER));
+                next.doubt += own.told / TOGETHER * 0.5 * BELIEF * (rough.powi(-2) + 2.0 * rough.ln() - 1.0);
             }
-            let last = next.uneven[next.uneven.len() - 1];
-            next.uneven.resize(next.uneven.len() + before.len() - own.len(), last);
+            for (function, row) in rows(before.len(), own.len()) {
+                change = f64::max(change, (rough(&parts[row]) / before[function]).ln().abs());
+                next.uneven.push(rough(&parts[row]));
+            }
         }
         let is_even = state.uneven.is_empty() && most < CHANCE;
         Ok((!is_even && change > SETTLED).then_some(next))
     }
+}
+
+impl Solver<'_> {
+    /// By head, the innovations in the rows of its prior; none of fields.
+    fn innovations(&self, state: &State, covariance: &Covariance) -> Vec<Vec<Innovation>> {
+        let mut innovations: Vec<Vec<Innovation>> = self.roughness.iter().map(|_| Vec::new()).collect();
+        self.add_priors(state, Phase::Solve, &mut |row, class| {
+            if let Some(head) = self.roughness.iter().position(|&own| own == class) {
+                let told = 1.0 - covariance.of(row.first, row.slopes, row.shared);
+                innovations[head].push(Innovation { square: row.value.powi(2), told: told.clamp(0.0, 1.0) });
+            }
+        });
+        innovations
+    }
+
+    /// By unknown, the variance of sources that splines on the cells cannot hold. Where the data tell the innovations in single
+    /// cells, as where every measurement has one, they tell of shorter waves too.
+    pub(super) fn unresolved(&self, state: &State, covariance: &Covariance) -> Vec<f64> {
+        let mut variances = vec![0.0; self.heads.len()];
+        for (head, innovations) in self.innovations(state, covariance).iter().enumerate() {
+            let Some((rough, amplitude)) = self.source_sizes(state, head) else { continue };
+            let (basis, prior) = (&self.heads.bases[head], &self.priors[head]);
+            for (function, row) in rows(basis.len(), innovations.len()) {
+                variances[self.heads.numbers(head, function)[0]] = (1.0 - innovations[row].told)
+                    * prior.unresolved(function, rough, amplitude)
+                    / basis.squares(function);
+            }
+        }
+        variances
+    }
+}
+
+/// Functions, and of each the row of a prior that is about it: rows are about the middle of the functions that they are a
+/// difference of.
+fn rows(functions: usize, rows: usize) -> impl Iterator<Item = (usize, usize)> {
+    let ahead = (functions - rows) / 2;
+    (0..functions).map(move |function| (function, function.saturating_sub(ahead).min(rows - 1)))
 }
 
 /// About every row: the sum of the squares of innovations, each over the mean roughness, and the numbers that they tell.

@@ -24,9 +24,15 @@ pub(super) fn lie(places: &[f64], axes: usize, misfits: &[f64], far: f64) -> Lie
     found.sort_by(|&a, &b| misfits[b].abs().total_cmp(&misfits[a].abs()));
     found.truncate(MOST);
     let (Some(&worst), true) = (found.first(), found.len() > 1) else { return Lie::Apart };
-    let same = |&axis: &usize| found.iter().all(|&at| places[at * axes + axis] == places[worst * axes + axis]);
+    let is_there = |at: usize, axis: usize| places[at * axes + axis] == places[worst * axes + axis];
+    // What is the same for all data is no station.
+    let same =
+        |&axis: &usize| found.iter().all(|&at| is_there(at, axis)) && !(0..misfits.len()).all(|at| is_there(at, axis));
     let station: Vec<usize> = (0..axes).filter(same).collect();
-    if !station.is_empty() && station.len() < axes {
+    let there = (0..misfits.len()).filter(|&at| station.iter().all(|&axis| is_there(at, axis)));
+    let (far_there, all_there) =
+        there.fold((0, 0), |(is_far, all), at| (is_far + usize::from(misfits[at].abs() > far), all + 1));
+    if !station.is_empty() && station.len() < axes && far_there as f64 > TOGETHER * f64::from(all_there) {
         return Lie::Station(worst, station);
     }
     let scaled = scaled(places, axes);
@@ -56,6 +62,15 @@ mod tests {
         let (places, misfits) = stations(|x, t| (x * 20 + t) % 37 == 3);
         assert_eq!(lie(&places, 2, &misfits, 5.0), Lie::Apart);
         assert_eq!(lie(&places, 2, &misfits, 50.0), Lie::Apart);
+    }
+
+    #[test]
+    fn one_station_alone_is_none() {
+        let places: Vec<f64> = (0..60).flat_map(|t| [0.5, f64::from(t)]).collect();
+        let misfits: Vec<f64> = (0..60).map(|t| if t == 7 || t == 41 { 10.0 } else { 1.0 }).collect();
+        assert_eq!(lie(&places, 2, &misfits, 5.0), Lie::Apart);
+        let (places, misfits) = stations(|x, t| x == 4 && (t == 2 || t == 11));
+        assert_eq!(lie(&places, 2, &misfits, 5.0), Lie::Apart);
     }
 
     #[test]

@@ -6,6 +6,8 @@ use crate::noise::{Noise, ObservationNoise};
 use crate::problem::Bound;
 use crate::schema;
 
+/// Misfit over the noise that differences between neighbouring data show.
+pub(super) const MISFIT: f64 = 1.6;
 /// Misfits beyond so many of their size by the median are left out by robust losses, and are far from the others.
 pub(super) const TAIL: f64 = 3.0;
 /// Deviations that chance may make of the misfit of all values.

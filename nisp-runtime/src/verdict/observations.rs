@@ -1,14 +1,12 @@
 //! What an answer leaves of observations: it should be noise, no larger than the data's own, without a pattern.
 
 use super::gathered::{Lie, lie};
-use super::misfits::{Misfits, TAIL};
+use super::misfits::{MISFIT, Misfits, TAIL};
 use super::{Check, held, outliers, patterns, root_mean_square, taken};
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
 use crate::schema::TermKind;
 
-/// Misfit over the noise that differences between neighbouring data show.
-const MISFIT: f64 = 1.6;
 /// Misfit over a declared tolerance.
 const TOLERANCE: f64 = 1.5;
 /// Misfit of data that are exact but for rounding, over their spread.

@@ -78,13 +78,14 @@ fn stretch(left: &Misfits, at: usize, row: &[f64]) -> Option<Check> {
     let column = *left.term.columns.get(at)?;
     let values = left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]);
     let places = in_order(&left.places, &left.places);
-    let found = worst(&in_order(&left.places, row), &in_order(&left.places, &values), noise)?;
+    let ordered = in_order(&left.places, row);
+    let found = worst(&ordered, &in_order(&left.places, &values), noise)?;
     let place = |row: usize| left.bound.place(&places[row..][..1]);
     let said = format!(
-        "`{}` is missed by {:.1} times its noise from {} to {}: what acts there, or how the record starts or ends, is not described by \
+        "`{}` is missed by {} (rms) from {} to {}: what acts there, or how the record starts or ends, is not described by \
          the equations, or is smoothed away",
         left.term.name,
-        found.size,
+        left.words(root_mean_square(ordered[found.rows.0..found.rows.1].iter().copied())),
         place(found.rows.0),
         place(found.rows.1 - 1),
     );

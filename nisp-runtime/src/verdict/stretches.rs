@@ -1,6 +1,7 @@
 //! Whether a record is missed in one stretch of it, however well the rest is met.
 
-use super::slow::{chance, deviations};
+use super::misfits::MISFIT;
+use super::slow::chance;
 use crate::noise::by_differences;
 
 /// Rows of the shortest stretch; longer ones have twice as many each time, up to a quarter of the record.
@@ -9,8 +10,6 @@ const SHORTEST: usize = 16;
 const LARGEST: f64 = 3.0;
 /// Deviations that chance may make of the worst of all stretches.
 const CHANCE: f64 = 6.0;
-/// Misfit over the noise that is never too much.
-const MISFIT: f64 = 1.6;
 
 /// The stretch of a record that is missed most.
 pub(super) struct Stretch {
@@ -34,11 +33,10 @@ pub(super) fn worst(misfits: &[f64], values: &[f64], noise: f64) -> Option<Stret
         let level = by_differences(&values[from..to]).unwrap_or(0.0).max(noise);
         let square: f64 = misfits[from..to].iter().map(|misfit| (misfit / level).abs().min(LARGEST).powi(2)).sum();
         let limit = MISFIT.max(chance(to - from, CHANCE));
-        let stretch = Stretch { rows: (from, to), size: (square / (to - from) as f64).sqrt(), limit };
-        (deviations(square, to - from), stretch)
+        Stretch { rows: (from, to), size: (square / (to - from) as f64).sqrt(), limit }
     };
-    let worst = lengths.flat_map(starts).map(stretch).max_by(|a, b| a.0.total_cmp(&b.0));
-    worst.map(|(_, stretch)| stretch).filter(|_| noise > 0.0)
+    let worse = |a: &Stretch, b: &Stretch| (a.size / a.limit).total_cmp(&(b.size / b.limit));
+    lengths.flat_map(starts).map(stretch).max_by(worse).filter(|_| noise > 0.0)
 }
 
 #[cfg(test)]
@@ -67,11 +65,24 @@ mod tests {
     /// Twenty rows of a thousand: a twentieth of the square of all misfits.
     #[test]
     fn a_short_stretch_is_found_where_it_is() {
-        let (mut misfits, values) = record(3, 1000);
-        misfits[700..720].iter_mut().for_each(|misfit| *misfit += 4.0);
+        let (mut misfits, mut values) = record(3, 1000);
+        for row in 700..720 {
+            misfits[row] += 4.0;
+            values[row] += 4.0;
+        }
         let worst = worst(&misfits, &values, 1.0).unwrap();
         assert!(worst.size > worst.limit);
         assert!(worst.rows.0 <= 708 && worst.rows.1 >= 712, "{:?}", worst.rows);
+    }
+
+    /// A long stretch that is a little noisier does not hide a short one that is missed.
+    #[test]
+    fn a_long_stretch_hides_no_short_one() {
+        let (mut misfits, values) = record(6, 8000);
+        misfits[..4000].iter_mut().for_each(|misfit| *misfit *= 1.3);
+        misfits[6000..6020].iter_mut().for_each(|misfit| *misfit += 5.0);
+        let worst = worst(&misfits, &values, 1.0).unwrap();
+        assert!(worst.size > worst.limit && worst.rows.0 > 5900, "{:?}", worst.rows);
     }
 
     #[test]
