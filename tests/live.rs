@@ -148,12 +148,15 @@ fn a_wrong_equation_is_told_from_a_right_one() {
 fn rows_beside_a_glitch_are_not_called_sound() {
     let mut rows = record(3000, 0.05, 0.01);
     rows[1500].1 += 1.0;
-    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
-    let is_far = |found: &&Smoothed| (found.heads[1].0 - drive(found.at, 0.0)).abs() > 8.0 * found.heads[1].1;
-    let far: Vec<&Smoothed> = found[200..2900].iter().filter(is_far).collect();
-    assert!(far.len() > 5, "{} rows are far off", far.len());
-    assert!(far.iter().all(|found| !found.is_sound()), "a row that is far off is called sound");
-    assert!(found[..1400].iter().chain(&found[1700..]).all(Smoothed::is_sound));
+    for lag in [None, Some(1.0), Some(5.0)] {
+        let settings = LagSettings { lag, ..LagSettings::default() };
+        let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), settings), &rows);
+        let is_far = |found: &&Smoothed| (found.heads[1].0 - drive(found.at, 0.0)).abs() > 8.0 * found.heads[1].1;
+        let far: Vec<&Smoothed> = found[200..2900].iter().filter(is_far).collect();
+        assert!(far.len() > 5, "{lag:?}: {} rows are far off", far.len());
+        assert!(far.iter().all(|found| !found.is_sound()), "{lag:?}: a row that is far off is called sound");
+        assert!(found[..1400].iter().chain(&found[1700..]).all(Smoothed::is_sound), "{lag:?}");
+    }
 }
 
 #[test]

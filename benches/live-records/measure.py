@@ -19,7 +19,8 @@ def main(nisp, folder, name, options):
     truth = np.loadtxt(f"{folder}/{name}_truth.csv", delimiter=",", skiprows=1)
     stream = subprocess.run([nisp, "stream", *data], capture_output=True, text=True, check=True).stdout
     lines = [json.loads(line) for line in stream.splitlines()]
-    live = np.array([[line["t"], line["lag"], *next(iter(line["sources"].values())).values()] for line in lines])
+    # A row whose data are missed has no bar.
+    live = np.array([[line["t"], line["lag"], *next(iter(line["sources"].values())).values()] for line in lines], float)
     order = [next(iter(lines[0]["sources"].values())).keys()]
     assert list(order[0]) == ["sd", "value"], order
     took = np.array([line["latency_ms"] for line in lines])

@@ -163,7 +163,7 @@ impl Answers {
         let of = |source: bool| -> Map<String, Value> {
             let heads = self.scene.heads.iter().zip(&found.heads).filter(|(head, _)| head.source == source);
             let member = |(head, (value, sd)): (&Head, &(f64, f64))| {
-                // Bars of rows that are missed would be those of noise that is not theirs.
+                // The bar of a row whose data are missed would assume that equations and data agree.
                 let sd = found.is_sound().then_some(sd);
                 (head.name.into(), json!({ "value": value, "sd": sd }))
             };

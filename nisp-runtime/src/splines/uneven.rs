@@ -65,17 +65,17 @@ impl Solver<'_> {
         innovations
     }
 
-    /// By unknown, the variance of sources that splines on the cells cannot hold. Where the data tell the innovations in single
+    /// By unknown, the variance of sources that splines on the cells cannot hold. Where the data tell the innovations in most single
     /// cells, as where every measurement has one, they tell of shorter waves too.
     pub(super) fn unresolved(&self, state: &State, covariance: &Covariance) -> Vec<f64> {
         let mut variances = vec![0.0; self.heads.len()];
         for (head, innovations) in self.innovations(state, covariance).iter().enumerate() {
             let Some((rough, amplitude)) = self.source_sizes(state, head) else { continue };
             let (basis, prior) = (&self.heads.bases[head], &self.priors[head]);
-            for (function, row) in rows(basis.len(), innovations.len()) {
-                variances[self.heads.numbers(head, function)[0]] = (1.0 - innovations[row].told)
-                    * prior.unresolved(function, rough, amplitude)
-                    / basis.squares(function);
+            let told = innovations.iter().map(|own| own.told).sum::<f64>() / innovations.len() as f64;
+            for function in 0..basis.len() {
+                variances[self.heads.numbers(head, function)[0]] =
+                    (1.0 - told) * prior.unresolved(function, rough, amplitude) / basis.squares(function);
             }
         }
         variances

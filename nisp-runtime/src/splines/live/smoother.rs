@@ -26,11 +26,10 @@ const BETWEEN: usize = 4000;
 /// Values that the running mean of misfits looks back over, and the square that one may count for: a value that stands alone
 /// does not make equations wrong.
 const LOOKED_BACK: f64 = 100.0;
-/// Values that the mean about a place looks back over, and the square that one may count for: answers beside one that stands alone
-/// are wrong.
+const LARGEST_SQUARE: f64 = 16.0;
+/// The same about a place: answers beside a value that stands alone are wrong.
 const NEARBY: f64 = 12.0;
 const LARGEST_NEARBY: f64 = 200.0;
-const LARGEST_SQUARE: f64 = 16.0;
 /// Share of a cell by which a place may miss the lag.
 const SLACK: f64 = 1e-6;
 
@@ -62,9 +61,9 @@ struct Live {
     last: f64,
     /// Running mean of the squares of misfits over the noise, of rows that have an answer.
     square: f64,
-    /// The same of fewer rows up to the middle of those that wait, which shows a source that is followed too slowly, and up to the
-    /// last of them, which shows a value that stands alone before it spoils its neighbours.
-    nearby: [Nearby; 2],
+    /// The same of fewer rows, up to the one that is answered and up to two behind it: a value that stands alone, or a source that
+    /// is followed too slowly, spoils answers on both of its sides.
+    nearby: [Nearby; 3],
     /// The last rows, for the next stretch.
     recent: VecDeque<MeasuredRow>,
     rows: usize,
@@ -174,12 +173,15 @@ impl FixedLagSmoother {
         let (start, end) = (rows[0].at, rows[rows.len() - 1].at);
         let width = width(&rows);
         let sought: Vec<usize> = sought(&bound);
+        let settled = settled_lag(&stretch, &sought, (start, end), width);
+        // Rows that a value says something of.
+        let reach = (settled / width).round() as usize;
         let lag = match self.settings.lag {
             Some(lag) if lag * by > MOST_CELLS as f64 * width => {
                 return Err(LiveError::Lag { lag, most: MOST_CELLS });
             }
             Some(lag) => lag * by,
-            None => settled_lag(&stretch, &sought, (start, end), width),
+            None => settled,
         };
         let grid = Grid::new(start, width, lag);
         let mut conditions: Vec<Event> = Vec::new();
@@ -208,7 +210,7 @@ impl FixedLagSmoother {
             conditions: conditions.into(),
             last: start,
             square: 1.0,
-            nearby: [2, 1].map(|part| Nearby { part, square: 1.0, counted: 0 }),
+            nearby: [0, reach / 2, reach].map(|ahead| Nearby { ahead, square: 1.0, counted: 0 }),
             recent: VecDeque::new(),
             rows: 0,
             due: 2 * rows.len(),
@@ -221,10 +223,10 @@ impl FixedLagSmoother {
     }
 }
 
-/// A running mean of squares up to a part of the rows that wait.
+/// A running mean of squares up to a row that waits.
 struct Nearby {
-    /// One over the part.
-    part: usize,
+    /// How many rows that is behind the one that is answered.
+    ahead: usize,
     square: f64,
     /// Rows that wait and have been counted.
     counted: usize,
@@ -232,7 +234,7 @@ struct Nearby {
 
 impl Nearby {
     fn count_up(&mut self, window: &Window, pending: &VecDeque<(f64, Vec<Event>)>) {
-        for (_, events) in pending.iter().take(pending.len().div_ceil(self.part)).skip(self.counted) {
+        for (_, events) in pending.iter().take(self.ahead + 1).skip(self.counted) {
             count(window, events, &mut self.square, (NEARBY, LARGEST_NEARBY));
             self.counted += 1;
         }
