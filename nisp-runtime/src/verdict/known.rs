@@ -25,9 +25,12 @@ pub(super) fn check(bound: &Bound, answer: &Answer) -> Option<Check> {
     let matters = |score: &Score| if score.change.abs() > SLIGHT { score.gain } else { score.gain.min(GAIN) };
     let mut scores: Vec<&Score> = answer.scores.iter().collect();
     scores.sort_by(|a, b| matters(b).total_cmp(&matters(a)));
-    let (first, others) = scores.split_first()?;
-    // What gains half as much may be meant as well.
-    let others = others.iter().filter(|other| matters(other) > 0.5 * matters(first));
+    let most = matters(scores.first()?);
+    // What gains half as much may be meant as well. A number that makes no sense is named where nothing else is.
+    let mut likely: Vec<&Score> = scores.into_iter().filter(|score| matters(score) > 0.5 * most).collect();
+    likely.sort_by_key(|score| !may_be(bound, answer, score));
+    let (&first, others) = likely.split_first()?;
+    let others = others.iter().filter(|other| may_be(bound, answer, other));
     let others: Vec<String> = others.take(3).map(|other| said(bound, answer, other)).collect();
     let or = if others.is_empty() { String::new() } else { format!(", or {}", others.join(", or ")) };
     let message = format!(
@@ -43,7 +46,15 @@ pub(super) fn check(bound: &Bound, answer: &Answer) -> Option<Check> {
             (bound.problem.scene().schema.groups[cloud.group].name, cloud.term)
         }
     };
-    Some(Check::new("given", place, (matters(first), GAIN), message))
+    Some(Check::new("given", place, (most, GAIN), message))
+}
+
+/// False of a number that would be outside of its declared range.
+fn may_be(bound: &Bound, answer: &Answer, score: &Score) -> bool {
+    let Known::Scalar(slot) = score.known else { return true };
+    let scalar = &bound.problem.scene().schema.scalars[slot];
+    let changed = answer.scalars[slot] * (1.0 + score.change) * bound.system.size(&scalar.unit);
+    scalar.lower.is_none_or(|lower| changed >= lower) && scalar.upper.is_none_or(|upper| changed <= upper)
 }
 
 /// Something known as it should rather be.
