@@ -91,3 +91,25 @@ fn lattices_become_as_fine_as_the_equations_ask() {
     let (off, within) = judged(&mut solution, "q", &places, &heat);
     assert!(off < 0.2 && within > 0.8, "{off} off, {within} within");
 }
+
+/// A heater that is switched on and off: its edges are in waves that the cells cannot hold.
+#[test]
+fn a_switched_source_is_within_its_bars() {
+    let (rate, on, off) = (0.05 * PI * PI, 0.35, 0.7);
+    let since = |t: f64| (1.0 - (-rate * t.max(0.0)).exp()) / rate;
+    let warm = |[x, t]: [f64; 2]| (PI * x).sin() * (since(t - on) - since(t - off));
+    let heat = |[x, t]: [f64; 2]| if (on..off).contains(&t) { (PI * x).sin() } else { 0.0 };
+    let samples = scattered(800, [1.0, 1.0], 9);
+    let mut normal = normals(12);
+    let measured = pairs(&samples).map(|place| warm(place) + 3e-3 * normal()).collect();
+    let mut problem = Problem::new(scene::<lit::recover::Scene>());
+    problem.set_group("rod", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
+    problem.set_group("samples", samples.into(), vec![measured]).unwrap();
+    let mut solution = solve(&problem);
+    let places = grid([40, 40], [1.0, 1.0], false);
+    let (_, within) = judged(&mut solution, "q", &places, &heat);
+    let (found, deviations) = values(&mut solution, "q", &places);
+    let far = found.iter().zip(pairs(&places).map(heat)).zip(deviations.unwrap());
+    let far = far.filter(|((found, exact), deviation)| (*found - exact).abs() > 4.0 * deviation).count();
+    assert!(within > 0.93 && far <= 16, "{within} within, {far} of 1600 far outside");
+}

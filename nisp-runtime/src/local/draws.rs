@@ -31,6 +31,16 @@ pub(super) struct Deviations {
     pub(super) learned: Vec<Vec<f64>>,
 }
 
+impl Deviations {
+    /// Adds numbers of these deviations to the coefficients, each by itself.
+    pub(super) fn widen(&mut self, deviations: &[f64]) {
+        let mut random = StdRng::seed_from_u64(1);
+        for draw in &mut self.coefficients {
+            draw.iter_mut().zip(deviations).for_each(|(x, deviation)| *x += deviation * normal(&mut random));
+        }
+    }
+}
+
 impl Draws {
     /// Of so many coefficients and learned scalars. The same every time.
     pub(super) fn new(len: usize, learned: usize) -> Self {

@@ -1,6 +1,7 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
 use super::between::others;
+use super::prior::unresolved;
 use super::solver::{Solver, groups};
 use super::state::{Phase, State};
 use crate::facts::{Answer, OTHER_THAN_SPLINES};
@@ -23,9 +24,10 @@ const FAR: f64 = 4.0;
 pub(super) const DOUBTS: u64 = 4;
 
 impl Solver<'_> {
-    /// Deviations of all unknowns from an answer. How an answer changes with what is believed of its sources is unknown as well:
-    /// draws are from the posterior under another belief, about the answer under that one.
-    pub(super) fn doubted(&mut self, state: &State) -> Option<Deviations> {
+    /// Deviations of all unknowns from an answer, and by coefficient the deviation of what the cells cannot hold. How an answer
+    /// changes with what is believed of its sources is unknown as well: draws are from the posterior under another belief, about the
+    /// answer under that one.
+    pub(super) fn doubted(&mut self, state: &State) -> Option<(Deviations, Vec<f64>)> {
         let mut other = state.clone();
         if !self.judged(Phase::Solve).is_empty() {
             self.doubt(&mut other).ok()?;
@@ -44,7 +46,13 @@ impl Solver<'_> {
         };
         add(&mut deviations.coefficients, &state.theta, &other.theta);
         add(&mut deviations.learned, &state.learned, &other.learned);
-        Some(deviations)
+        let mut beyond = vec![0.0; state.theta.len()];
+        for head in self.judged(Phase::Solve) {
+            let roughness = state.classes[self.roughness[head]].size;
+            let first = self.heads.first[head];
+            beyond[first..first + self.heads.lattices[head].len()].fill(unresolved(&self.heads, head, roughness));
+        }
+        Some((deviations, beyond))
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state.

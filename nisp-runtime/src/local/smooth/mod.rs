@@ -23,7 +23,6 @@ use std::time::Instant;
 use super::{KeptLattices, LocalError, LocalSolution};
 use crate::bounds;
 use crate::carrier::Progress;
-use crate::local::draws::Deviations;
 use crate::local::lattice::MOST_COORDINATES;
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -138,14 +137,14 @@ fn finish(
     let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
     let mut warnings = Vec::new();
     let wants_bars = status == Status::Converged && noise.is_there(bound.problem.scene().schema);
-    let deviations = if !wants_bars {
-        Deviations::default()
+    let (draws, beyond) = if !wants_bars {
+        Default::default()
     } else if clock.has_time(BARS * longest) {
         solver.doubted(&state).unwrap_or_default()
     } else {
         let message = "no time was left for error bars; give a larger budget".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
-        Deviations::default()
+        Default::default()
     };
     if status == Status::Budget && solver.strain(&state, noise) > 1.0 {
         let message = "the lattice may be too coarse for these equations; a larger --budget makes it finer".into();
@@ -161,8 +160,10 @@ fn finish(
         warnings.push(Warning { kind: WarningKind::Undetermined, message });
     }
     let State { theta, learned, step: iterations, .. } = state;
-    let kept = KeptLattices { heads: solver.heads, theta, learned, draws: deviations };
+    let mut kept = KeptLattices { heads: solver.heads, theta, learned, draws };
+    // What the cells cannot hold tells no source from none.
     answer.told = told::told(bound, &kept);
+    kept.draws.widen(&beyond);
     let factor = Some(factor).filter(|_| wants_bars);
     Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits })
 }
