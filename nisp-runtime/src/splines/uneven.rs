@@ -33,8 +33,12 @@ impl Solver<'_> {
         let Some(found) = self.step(state, Phase::Solve)? else { return Ok(None) };
         let innovations = self.innovations(state, &found.covariance);
         let (mut next, mut change, mut most) = (State { uneven: Vec::new(), doubt: 0.0, ..state.clone() }, 0.0, 0.0);
-        for (head, own) in innovations.iter().enumerate().filter(|(_, own)| !own.is_empty()) {
-            let before = self.priors[head].uneven();
+        for head in self.believed(Phase::Solve) {
+            let (own, before) = (&innovations[head], self.priors[head].uneven());
+            if own.is_empty() {
+                next.uneven.extend(before);
+                continue;
+            }
             let parts = parts(own, &before[(before.len() - own.len()) / 2..]);
             let rough = |&(square, told): &(f64, f64)| ((square + BELIEF) / (told + BELIEF)).sqrt();
             for (own, part) in own.iter().zip(&parts) {
@@ -50,9 +54,7 @@ impl Solver<'_> {
         let is_even = state.uneven.is_empty() && most < CHANCE;
         Ok((!is_even && change > SETTLED).then_some(next))
     }
-}
 
-impl Solver<'_> {
     /// By head, the innovations in the rows of its prior; none of fields.
     fn innovations(&self, state: &State, covariance: &Covariance) -> Vec<Vec<Innovation>> {
         let mut innovations: Vec<Vec<Innovation>> = self.roughness.iter().map(|_| Vec::new()).collect();
@@ -70,7 +72,9 @@ impl Solver<'_> {
     pub(super) fn unresolved(&self, state: &State, covariance: &Covariance) -> Vec<f64> {
         let mut variances = vec![0.0; self.heads.len()];
         for (head, innovations) in self.innovations(state, covariance).iter().enumerate() {
-            let Some((rough, amplitude)) = self.source_sizes(state, head) else { continue };
+            let Some((rough, amplitude)) = self.source_sizes(state, head).filter(|_| !innovations.is_empty()) else {
+                continue;
+            };
             let (basis, prior) = (&self.heads.bases[head], &self.priors[head]);
             let told = innovations.iter().map(|own| own.told).sum::<f64>() / innovations.len() as f64;
             for function in 0..basis.len() {
