@@ -13,7 +13,7 @@ use crate::solve::fault::Fault;
 pub(super) const RIDGE: f64 = 1e-6;
 /// How far a step may move all coefficients of a head together where nothing speaks of that. A field of which equations take
 /// derivatives alone may be off by any constant; beside variances much larger than this those of the rest would be rounding.
-const FREE: f64 = 1e3;
+const FREE: f64 = 10.0;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
 const LEARNED: f64 = 10.0;
 
