@@ -185,6 +185,8 @@ pub(crate) struct Told {
     pub(crate) size: f64,
     /// Deviations by which the true source is nearer to it than to none, in the mean square.
     pub(crate) nearer: f64,
+    /// Share that the data leave of what was not known of its mean beforehand, as a variance; zero where that is not asked.
+    pub(crate) open: f64,
 }
 
 /// The middle of a cloud, and its radius: the root mean square of the distances from there.

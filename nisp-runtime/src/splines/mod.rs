@@ -185,6 +185,8 @@ pub(crate) fn solve(
     // Only a minimum has error bars.
     let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
     let along = Along::sources(&solver.heads, schema, &place.state.theta);
+    let means = Along::means(&solver.heads, schema);
+    let mut open = vec![0.0; means.len()];
     let (mut variances, mut unresolved) = (Vec::new(), Vec::new());
     if run.has_time_for(likely.len()) {
         for (share, Tried { kind, state, .. }) in likely {
@@ -192,6 +194,7 @@ pub(crate) fn solve(
             match solver.doubted(state, &along)? {
                 Some((state, found, own)) => {
                     unresolved.push(solver.unresolved(&state, &found.covariance));
+                    open.iter_mut().zip(&means).for_each(|(open, mean)| *open += share * solver.left_of(mean, &state));
                     let State { theta, learned, .. } = state;
                     spreads.push(Spread { share, theta, learned, covariance: found.covariance });
                     variances.push(own);
@@ -224,7 +227,7 @@ pub(crate) fn solve(
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let mut kept = KeptSplines { heads, theta, learned, spreads };
     // What the cells cannot hold tells no source from none.
-    let told = course.map(|course| told::told(&kept, course, &along, &variances)).unwrap_or_default();
+    let told = course.map(|course| told::told(&kept, course, (&along, &open), &variances)).unwrap_or_default();
     kept.spreads.iter_mut().zip(&unresolved).for_each(|(spread, own)| spread.covariance.widen(own));
     let answer = Answer {
         facts,

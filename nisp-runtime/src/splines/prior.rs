@@ -131,8 +131,8 @@ impl Prior {
         self.along.differences(0).map(move |(at, _, width)| self.evened[at] * width.sqrt() / amplitude)
     }
 
-    /// What all rows are worth.
-    pub(super) fn worth(&self, roughness: f64, amplitude: f64) -> Worth {
+    /// All rows.
+    pub(super) fn triangle(&self, roughness: f64, amplitude: f64) -> Triangle {
         let mut triangle = Triangle::new(self.along.len(), self.width(), 0);
         let mut smooth = self.smooth(roughness);
         for (first, factor) in self.small(amplitude).enumerate() {
@@ -141,6 +141,12 @@ impl Prior {
                 triangle.add(Row { first, slopes: &factors[..self.width()], shared: &[], value: 0.0 });
             }
         }
+        triangle
+    }
+
+    /// What all rows are worth.
+    pub(super) fn worth(&self, roughness: f64, amplitude: f64) -> Worth {
+        let triangle = self.triangle(roughness, amplitude);
         let covariance = triangle.covariance();
         let settled = self.small(amplitude).enumerate().map(|(first, factor)| covariance.of(first, &[factor], &[]));
         Worth { log_determinant: triangle.log_determinant(), amplitude: settled.sum() }

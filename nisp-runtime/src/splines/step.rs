@@ -159,6 +159,14 @@ impl Solver<'_> {
         Ok(Some((state, found, spread)))
     }
 
+    /// Share of the variance of a source's mean beforehand that the last step's rows leave.
+    pub(super) fn left_of(&self, mean: &Along, state: &State) -> f64 {
+        let sizes = self.source_sizes(state, mean.head);
+        sizes.map_or(0.0, |sizes| {
+            mean.variance(&self.triangle) / mean.beforehand(&self.heads, &self.priors[mean.head], sizes)
+        })
+    }
+
     /// What priors use up, and what they are worth; returns the logarithm of the determinant of their rows.
     ///
     /// What roughness uses up is what everything else leaves of all unknowns: summed row by row it would be a small difference of

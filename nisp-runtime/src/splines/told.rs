@@ -2,7 +2,7 @@
 
 use super::heads::Heads;
 use super::kept::KeptSplines;
-use super::prior::Course;
+use super::prior::{Course, Prior};
 use super::triangle::Triangle;
 use crate::facts::Told;
 use crate::schema::Scene;
@@ -12,7 +12,7 @@ const PARTS: usize = 200;
 
 /// A source that was found, as a row of the unknowns: how far any other source goes along it.
 pub(super) struct Along {
-    head: usize,
+    pub(super) head: usize,
     /// By unknown.
     slopes: Vec<f64>,
     /// Of the source itself.
@@ -35,6 +35,25 @@ impl Along {
         (0..schema.heads.len()).filter(|&head| schema.heads[head].source).map(of).collect()
     }
 
+    /// Their means, as rows of the unknowns.
+    pub(super) fn means(heads: &Heads, schema: &Scene) -> Vec<Self> {
+        let of = |head: usize| {
+            let mut along = Self { head, slopes: vec![0.0; heads.len()], square: 0.0 };
+            for at in places(heads, Course::Steady) {
+                let (first, slopes) = heads.value_row(head, at);
+                along.slopes[first..].iter_mut().zip(&slopes).for_each(|(sum, slope)| *sum += slope);
+            }
+            along
+        };
+        (0..schema.heads.len()).filter(|&head| schema.heads[head].source).map(of).collect()
+    }
+
+    /// The variance along this row that a source of such sizes has beforehand.
+    pub(super) fn beforehand(&self, heads: &Heads, prior: &Prior, (roughness, amplitude): (f64, f64)) -> f64 {
+        let slopes: Vec<f64> = heads.numbers(self.head, 0).iter().map(|&number| self.slopes[number]).collect();
+        prior.triangle(roughness, amplitude).root(0, &slopes, &[]).iter().map(|x| x * x).sum()
+    }
+
     /// How far a source with other coefficients goes along this one beyond it.
     fn apart(&self, theta: &[f64], other: &[f64]) -> f64 {
         self.slopes.iter().zip(theta.iter().zip(other)).map(|(slope, (own, other))| slope * (other - own)).sum()
@@ -53,9 +72,14 @@ fn places(heads: &Heads, course: Course) -> Vec<f64> {
     (0..=PARTS).map(|at| first + length * course.passed(at as f64 / PARTS as f64)).collect()
 }
 
-/// How much is told of sources whose course is known, with the variances along them of every kind of smoothness; nothing without
-/// deviations.
-pub(super) fn told(kept: &KeptSplines, course: Course, along: &[Along], variances: &[Vec<f64>]) -> Vec<Told> {
+/// How much is told of sources whose course is known, with the variances along them of every kind of smoothness, and the share that
+/// is left of those of their means; nothing without deviations.
+pub(super) fn told(
+    kept: &KeptSplines,
+    course: Course,
+    (along, open): (&[Along], &[f64]),
+    variances: &[Vec<f64>],
+) -> Vec<Told> {
     let places = places(&kept.heads, course);
     let of = |(at, along): (usize, &Along)| {
         let head = along.head;
@@ -67,7 +91,7 @@ pub(super) fn told(kept: &KeptSplines, course: Course, along: &[Along], variance
             .map(|(spread, own)| spread.share * (own[at] + along.apart(&kept.theta, &spread.theta).powi(2)))
             .sum();
         let nearer = along.square / (2.0 * variance.sqrt());
-        Some(Told { head, size: (squares / places.len() as f64).sqrt(), nearer })
+        Some(Told { head, size: (squares / places.len() as f64).sqrt(), nearer, open: open[at] })
     };
     along.iter().enumerate().filter_map(of).collect()
 }

@@ -64,8 +64,11 @@ impl Verdict {
     }
 
     /// True where an answer holds its equations firmly and misses the data: these equations do not describe the data, and another
-    /// answer could only fit them by bending the equations.
+    /// answer could only fit them by bending the equations. Also where the data leave a source open: so does any other answer.
     pub(crate) fn contradicts(&self) -> bool {
+        if self.failed().any(|check| check.check == "determined") {
+            return true;
+        }
         let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");
         let mut equations = self.checks.iter().filter(|check| check.check == "equation");
         self.failed().any(misses) && equations.all(|check| check.value <= FIRM * check.limit)

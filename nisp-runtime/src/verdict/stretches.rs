@@ -30,7 +30,11 @@ pub(super) fn worst(misfits: &[f64], values: &[f64], noise: f64) -> Option<Stret
         (0..last).step_by(length / 2).chain([last]).map(move |start| (start, start + length))
     };
     let stretch = |(from, to): (usize, usize)| {
-        let level = by_differences(&values[from..to]).unwrap_or(0.0).max(noise);
+        // Where noise grows, a stretch on both sides of that is as noisy as the one behind it.
+        let length = to - from;
+        let beside = [from.saturating_sub(length)..from, from..to, to..(to + length).min(values.len())];
+        let levels = beside.into_iter().filter_map(|rows| by_differences(&values[rows]));
+        let level = levels.fold(noise, f64::max);
         let square: f64 = misfits[from..to].iter().map(|misfit| (misfit / level).abs().min(LARGEST).powi(2)).sum();
         let limit = MISFIT.max(chance(to - from, CHANCE));
         Stretch { rows: (from, to), size: (square / (to - from) as f64).sqrt(), limit }

@@ -10,7 +10,10 @@ use crate::problem::Bound;
 const LEAST: f64 = 1.2;
 const NEARER: f64 = 3.0;
 
-/// One check for every source that its carrier tells of.
+/// Share of what was not known of a source's mean beforehand that data may leave.
+const OPEN: f64 = 0.9;
+
+/// Two checks for every source that its carrier tells of.
 pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
     let heads = bound.problem.scene().schema.heads;
     let check = |told: &Told| {
@@ -22,5 +25,14 @@ pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
         );
         Check::new("told", ("", name), (size.recip(), 1.0 / LEAST), said)
     };
-    told.iter().map(check).collect()
+    let open = |told: &Told| {
+        let name = heads[told.head].name;
+        let said = format!(
+            "the data do not determine the mean of `{name}`: {:.0} % of its variance is what was believed before any measurement; a \
+             condition on a field that moves along with it would settle it",
+            100.0 * told.open
+        );
+        Check::new("determined", ("", name), (told.open, OPEN), said)
+    };
+    told.iter().flat_map(|told| [check(told), open(told)]).collect()
 }

@@ -32,5 +32,5 @@ fn of(head: usize, points: &[f64], kept: &KeptLattices) -> Option<Told> {
     // The truth `f` is nearer to the answer `a` than to none if `2 a (f - a) > -a a`.
     let along = kept.deviation_of_sum(&kept.weights_of_sum(head, points, &values))?;
     let nearer = vector::dot(&values, &values) / (2.0 * along);
-    Some(Told { head, size: (squares / values.len().max(1) as f64).sqrt(), nearer })
+    Some(Told { head, size: (squares / values.len().max(1) as f64).sqrt(), nearer, open: 0.0 })
 }
