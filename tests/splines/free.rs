@@ -38,3 +38,39 @@ fn a_field_off_by_any_constant_takes_nothing_from_the_rest() {
     let free = free.expect("nothing says where the way starts");
     assert!(free.message.contains("do not determine `s`: a constant"), "{}", free.message);
 }
+
+nisp::pde! {
+    /// A rotor whose speed is measured. Nothing says how far its shaft is twisted at first, and the torque balances that.
+    mod rotor {
+        units: off;
+        coordinates: t;
+        fields: w, p;
+        sources: f;
+        on shaft { turn: d(w, t) == f - 2 * p - 0.2 * w; twist: d(p, t) == w; }
+        on start { rest: p == 0; }
+        on samples { observe w; }
+        scene turned { }
+        scene twisted { without start.rest; }
+    }
+}
+
+/// A twist of `c` more and a torque of `2 c` more turn the rotor alike: no bar of the torque can hold that.
+#[test]
+fn a_source_with_an_open_mean_is_not_called_right() {
+    let times: Vec<f64> = (0..400).map(|row| f64::from(row) / 40.0).collect();
+    let speed = |t: f64| 1.2 * (0.8 * t).sin() + 0.5 * (2.3 * t).sin();
+    let mut normal = normals(8);
+    let measured: Vec<f64> = times.iter().map(|&t| speed(t) + 0.01 * normal()).collect();
+    for (scene, is_settled) in [(scene::<rotor::turned::Scene>(), true), (scene::<rotor::twisted::Scene>(), false)] {
+        let mut problem = Problem::new(scene);
+        problem.set_group("shaft", times.clone().into(), vec![]).unwrap();
+        problem.set_group("samples", times.clone().into(), vec![measured.clone()]).unwrap();
+        if is_settled {
+            problem.set_group("start", vec![0.0].into(), vec![]).unwrap();
+        }
+        let solution = solve(&problem, Carrier::Splines);
+        assert_eq!(solution.status == Status::Converged, is_settled, "{:?}", solution.verdict);
+        let is_open = solution.verdict.failed().any(|check| (check.check, check.term) == ("determined", "f"));
+        assert_eq!(is_open, !is_settled, "{:?}", solution.verdict);
+    }
+}

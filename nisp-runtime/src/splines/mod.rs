@@ -184,9 +184,10 @@ pub(crate) fn solve(
     let mut roots = Vec::new();
     // Only a minimum has error bars.
     let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
-    let along = Along::sources(&solver.heads, schema, &place.state.theta);
-    let means = Along::means(&solver.heads, schema);
-    let mut open = vec![0.0; means.len()];
+    let mut along = Along::sources(&solver.heads, schema, &place.state.theta);
+    let sources = along.len();
+    along.extend(Along::means(&solver.heads, schema));
+    let mut open = vec![0.0; sources];
     let (mut variances, mut unresolved) = (Vec::new(), Vec::new());
     if run.has_time_for(likely.len()) {
         for (share, Tried { kind, state, .. }) in likely {
@@ -194,7 +195,9 @@ pub(crate) fn solve(
             match solver.doubted(state, &along)? {
                 Some((state, found, own)) => {
                     unresolved.push(solver.unresolved(&state, &found.covariance));
-                    open.iter_mut().zip(&means).for_each(|(open, mean)| *open += share * solver.left_of(mean, &state));
+                    for ((open, mean), left) in open.iter_mut().zip(&along[sources..]).zip(&own[sources..]) {
+                        *open += share * left / solver.beforehand(mean, &state);
+                    }
                     let State { theta, learned, .. } = state;
                     spreads.push(Spread { share, theta, learned, covariance: found.covariance });
                     variances.push(own);
@@ -227,7 +230,8 @@ pub(crate) fn solve(
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let mut kept = KeptSplines { heads, theta, learned, spreads };
     // What the cells cannot hold tells no source from none.
-    let told = course.map(|course| told::told(&kept, course, (&along, &open), &variances)).unwrap_or_default();
+    let told =
+        course.map(|course| told::told(&kept, course, (&along[..sources], &open), &variances)).unwrap_or_default();
     kept.spreads.iter_mut().zip(&unresolved).for_each(|(spread, own)| spread.covariance.widen(own));
     let answer = Answer {
         facts,

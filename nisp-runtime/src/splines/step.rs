@@ -159,12 +159,10 @@ impl Solver<'_> {
         Ok(Some((state, found, spread)))
     }
 
-    /// Share of the variance of a source's mean beforehand that the last step's rows leave.
-    pub(super) fn left_of(&self, mean: &Along, state: &State) -> f64 {
-        let sizes = self.source_sizes(state, mean.head);
-        sizes.map_or(0.0, |sizes| {
-            mean.variance(&self.triangle) / mean.beforehand(&self.heads, &self.priors[mean.head], sizes)
-        })
+    /// The variance along a row of a source that is believed before any measurement.
+    pub(super) fn beforehand(&self, along: &Along, state: &State) -> f64 {
+        let sizes = self.source_sizes(state, along.head);
+        sizes.map_or(f64::INFINITY, |sizes| along.beforehand(&self.heads, &self.priors[along.head], sizes))
     }
 
     /// What priors use up, and what they are worth; returns the logarithm of the determinant of their rows.
