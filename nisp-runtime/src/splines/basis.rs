@@ -172,6 +172,16 @@ mod tests {
     }
 
     #[test]
+    fn widths_and_squares_are_those_of_the_support() {
+        let basis = Basis::new(2, &BREAKPOINTS);
+        // Breakpoints .3, .5, 1.1, 1.3; of the first function one cell alone.
+        assert!((basis.width(3) - 1.0 / 3.0).abs() < 1e-14 && (basis.width(0) - 0.3).abs() < 1e-14);
+        // A parabola on cells of one width is 3/4 in the middle and 1/8 on either side.
+        let even = Basis::new(2, &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0]);
+        assert!((even.squares(4) - (9.0 / 16.0 + 2.0 / 64.0)).abs() < 1e-14 && (even.squares(0) - 1.0).abs() < 1e-14);
+    }
+
+    #[test]
     fn splines_on_cells_of_one_width_are_shifts_of_each_other() {
         let basis = Basis::uniform(3, 6, 0.25);
         assert_eq!((basis.len(), basis.cells(), basis.cell(0.3)), (9, 6, 1));

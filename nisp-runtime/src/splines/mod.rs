@@ -7,6 +7,7 @@
 //! evidence (MacKay 1992), and so is the kind of smoothness.
 
 mod assembly;
+mod bars;
 mod basis;
 mod bounded;
 mod cells;
@@ -44,7 +45,7 @@ use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::state;
 
-use kept::Spread;
+use bars::Bars;
 use prior::{Course, KINDS};
 pub(crate) use triangle::Triangle;
 
@@ -52,7 +53,6 @@ use course::Run;
 use iterate::State;
 use place::{Place, Tried};
 use solver::Solver;
-use told::Along;
 
 /// Coefficients up to which it is looked for what is open.
 const MANY: usize = 20_000;
@@ -180,35 +180,18 @@ pub(crate) fn solve(
         // A kind of smoothness was tried to its end.
         ahead = None;
     }
-    let mut spreads = Vec::new();
-    let mut roots = Vec::new();
     // Only a minimum has error bars.
     let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
-    let mut along = Along::sources(&solver.heads, schema, &place.state.theta);
-    let sources = along.len();
-    along.extend(Along::means(&solver.heads, schema));
-    let mut open = vec![0.0; sources];
-    let (mut variances, mut unresolved) = (Vec::new(), Vec::new());
-    if run.has_time_for(likely.len()) {
-        for (share, Tried { kind, state, .. }) in likely {
-            solver.set_smoothness(KINDS[kind], &state);
-            match solver.doubted(state, &along)? {
-                Some((state, found, own)) => {
-                    unresolved.push(solver.unresolved(&state, &found.covariance));
-                    for ((open, mean), left) in open.iter_mut().zip(&along[sources..]).zip(&own[sources..]) {
-                        *open += share * left / solver.beforehand(mean, &state);
-                    }
-                    let State { theta, learned, .. } = state;
-                    spreads.push(Spread { share, theta, learned, covariance: found.covariance });
-                    variances.push(own);
-                }
-                None => status = Status::NotConverged,
-            }
-        }
-    } else {
+    let has_time = run.has_time_for(likely.len());
+    if !has_time {
         let message = "no time was left for error bars; give a larger budget".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
     }
+    let bars = Bars::of(&mut solver, if has_time { likely } else { Vec::new() }, &place.state.theta)?;
+    if bars.is_open {
+        status = Status::NotConverged;
+    }
+    let mut roots = Vec::new();
     if status == Status::Converged
         && solver.heads.len() <= MANY
         && let Some(best) = place.best()
@@ -228,11 +211,7 @@ pub(crate) fn solve(
     let course = place.best().map(|best| KINDS[best.kind].course);
     let State { theta, learned, step: iterations, .. } = place.state;
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
-    let mut kept = KeptSplines { heads, theta, learned, spreads };
-    // What the cells cannot hold tells no source from none.
-    let told =
-        course.map(|course| told::told(&kept, course, (&along[..sources], &open), &variances)).unwrap_or_default();
-    kept.spreads.iter_mut().zip(&unresolved).for_each(|(spread, own)| spread.covariance.widen(own));
+    let (kept, told) = bars.keep((heads, theta, learned), course);
     let answer = Answer {
         facts,
         between: None,

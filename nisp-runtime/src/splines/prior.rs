@@ -222,6 +222,25 @@ mod tests {
         }
     }
 
+    /// The spectrum summed up from a wave of four cells on, octave by octave (trapezoids in the logarithm of the frequency).
+    #[test]
+    fn what_is_unresolved_is_the_rest_of_the_spectrum() {
+        let places: Vec<f64> = (0..=40).map(|at| 0.25 * f64::from(at)).collect();
+        for (order, roughness) in [(1, 0.7), (2, 0.3), (3, 2.0)] {
+            let prior = Prior::new(&Basis::new(5, &places), Smoothness { order, course: Course::Steady });
+            let lowest = PI / (2.0 * 0.25);
+            let density = |octave: f64| {
+                let frequency = lowest * octave.exp2();
+                frequency * std::f64::consts::LN_2 * roughness * roughness * frequency.powi(-2 * order as i32) / PI
+            };
+            let sum: f64 = (0..30_000).map(|i| 1e-3 * density(1e-3 * (f64::from(i) + 0.5))).sum();
+            let found = prior.unresolved(20, roughness, 1e6);
+            assert!((found / sum - 1.0).abs() < 1e-5, "order {order}: {found} {sum}");
+            // A source without long waves has no more in short ones.
+            assert!(prior.unresolved(20, 1e9, 0.1) <= 0.01 / (PI / lowest) + 1e-12);
+        }
+    }
+
     /// Logarithm of the determinant and inverse of a positive matrix, by Gauss and Jordan.
     fn inverted(mut a: Vec<f64>, n: usize) -> (f64, Vec<f64>) {
         let mut inverse: Vec<f64> = (0..n * n).map(|at| f64::from(at / n == at % n)).collect();
