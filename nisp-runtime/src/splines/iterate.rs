@@ -12,7 +12,7 @@ pub(super) struct State {
     pub(super) classes: Vec<Class>,
     /// By source and function, how rough the source is there beside its mean; empty where it is as rough all along.
     pub(super) uneven: Vec<f64>,
-    /// Logarithm of how much less likely that is beforehand than one roughness all along.
+    /// What the logarithm of the evidence loses for that: one roughness all along is likelier before any measurement.
     pub(super) doubt: f64,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,

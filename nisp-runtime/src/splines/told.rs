@@ -72,8 +72,8 @@ fn places(heads: &Heads, course: Course) -> Vec<f64> {
     (0..=PARTS).map(|at| first + length * course.passed(at as f64 / PARTS as f64)).collect()
 }
 
-/// How much is told of sources whose course is known, with the variances along them of every kind of smoothness, and the share that
-/// is left of those of their means; nothing without deviations.
+/// How much is told of sources along a course; nothing without deviations. `variances` are those along every source, by kind of
+/// smoothness. `open` is the share that the data leave of the variance of each source's mean.
 pub(super) fn told(
     kept: &KeptSplines,
     course: Course,

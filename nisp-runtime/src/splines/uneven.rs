@@ -86,8 +86,8 @@ impl Solver<'_> {
     }
 }
 
-/// Functions, and of each the row of a prior that is about it: rows are about the middle of the functions that they are a
-/// difference of.
+/// Every function with the number of the prior's row that is centred on it. A row is a difference of neighbouring functions, and is
+/// centred on the middle one.
 fn rows(functions: usize, rows: usize) -> impl Iterator<Item = (usize, usize)> {
     let ahead = (functions - rows) / 2;
     (0..functions).map(move |function| (function, function.saturating_sub(ahead).min(rows - 1)))
