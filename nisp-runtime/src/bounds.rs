@@ -1,13 +1,13 @@
-//! Heads with one bound, for carriers that are linear in their coefficients: they carry how far a head is from its bound.
+//! Heads with bounds, for carriers that are linear in their coefficients: they carry a head's value itself.
 //!
-//! Programs read a number without bounds, `bound + sign * scale * softplus(number)`, which a network needs. It has no inverse at the
-//! bound itself, where sources that are often zero are.
+//! Programs read a number without bounds, which a network needs: `bound + sign * scale * softplus(number)`, or between two bounds
+//! `lower + (upper - lower) * sigmoid(number)`. It has no inverse at a bound itself, where sources that are often zero are.
 
 use crate::functions::{sigmoid, softplus};
-use crate::problem::UnitSystem;
+use crate::problem::{Bound, UnitSystem};
 use crate::schema;
 
-/// Values closer to the bound than this share of the scale are read as linear.
+/// Values closer to a bound than this share of the scale, or of the width between two, are read as linear.
 const CLOSEST: f64 = 1e-6;
 /// How stiff a value is held at its head's bound, how far beyond it a value may be, both over the head's scale, and how many sets of
 /// held ones are tried in a step.
@@ -17,7 +17,14 @@ const MOST_SETS: u32 = 60;
 /// How often all numbers on the wrong side are turned though they do not get fewer.
 const PATIENCE: u32 = 3;
 
-/// A bound in the engine's units.
+/// The bounds of a head, in the engine's units: one or two.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Limits {
+    lower: Option<f64>,
+    upper: Option<f64>,
+}
+
+/// One of them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limit {
     /// +1 for a lower, -1 for an upper bound.
@@ -37,25 +44,30 @@ pub(crate) struct Raw {
     pub(crate) rest: f64,
 }
 
-/// The bounds of a scene's heads; nothing for heads without, or between two.
-pub(crate) fn limits(schema: &schema::Scene, system: &UnitSystem) -> Vec<Option<Limit>> {
-    let limit = |head: &schema::Head| {
-        let size = system.size(&head.unit);
-        match (head.lower, head.upper) {
-            (Some(lower), None) => Some(Limit { sign: 1.0, value: lower / size }),
-            (None, Some(upper)) => Some(Limit { sign: -1.0, value: upper / size }),
-            _ => None,
-        }
+/// The bounds of a scene's heads; nothing for heads without.
+pub(crate) fn limits(schema: &schema::Scene, system: &UnitSystem) -> Vec<Option<Limits>> {
+    let limits = |head: &schema::Head| {
+        let inward = |bound: f64| bound / system.size(&head.unit);
+        let limits = Limits { lower: head.lower.map(inward), upper: head.upper.map(inward) };
+        head.transformed.then_some(limits)
     };
-    schema.heads.iter().map(limit).collect()
+    schema.heads.iter().map(limits).collect()
+}
+
+/// Offsets and scales of a problem's heads with these bounds.
+pub(crate) fn sizes(bound: &Bound, limits: &[Option<Limits>]) -> (Vec<f64>, Vec<f64>) {
+    let own = bound.scaling.offset.iter().enumerate().map(|(head, &offset)| (offset, bound.head_scale(head)));
+    let sized = |((offset, scale), limits): ((f64, f64), &Option<Limits>)| {
+        limits.map_or((offset, scale), |limits| (limits.offset(), limits.scale(scale)))
+    };
+    own.zip(limits).map(sized).unzip()
 }
 
 /// What of bounded heads is asked for that such carriers cannot give; nothing if they can.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
-    let one_sided = |head: &schema::Head| head.lower.is_some() != head.upper.is_some();
     let derived = |jet: &schema::Jet| schema.heads[jet.head].transformed && jet.degree.iter().any(|&n| n > 0);
-    if schema.heads.iter().any(|head| head.hard || (head.transformed && !one_sided(head))) {
-        return Some("heads between two bounds or with hard conditions");
+    if schema.heads.iter().any(|head| head.hard) {
+        return Some("heads with hard conditions");
     }
     schema.groups.iter().flat_map(|group| group.jets).any(derived).then_some("derivatives of bounded heads")
 }
@@ -96,19 +108,108 @@ pub(crate) fn within<S>(
     found.unwrap_or(step)
 }
 
-impl Limit {
-    /// A head's value within the bound, `away` from it.
-    pub(crate) fn within(self, away: f64) -> f64 {
-        self.value + self.sign * (self.sign * away).max(0.0)
+impl Limits {
+    /// Where a head that says nothing is: at zero, or at the bound that is nearest to it.
+    pub(crate) fn offset(self) -> f64 {
+        self.within(0.0)
     }
 
-    /// What a program reads of a head of some scale that is `away` from its bound.
-    pub(crate) fn raw(self, scale: f64, away: f64) -> Raw {
-        let distance = self.sign * away / scale;
+    /// The size of a head: half of the width between two bounds, or else what equations and data say.
+    pub(crate) fn scale(self, found: f64) -> f64 {
+        self.lower.zip(self.upper).map_or(found, |(lower, upper)| (upper - lower) / 2.0)
+    }
+
+    /// The lower bound first.
+    pub(crate) fn each(self) -> impl Iterator<Item = Limit> {
+        let limit = |sign| move |value| Limit { sign, value };
+        self.lower.map(limit(1.0)).into_iter().chain(self.upper.map(limit(-1.0)))
+    }
+
+    /// True if a head can be below a value, and not above.
+    pub(crate) fn is_below(self, value: f64) -> bool {
+        self.upper == Some(value)
+    }
+
+    /// A value within the bounds.
+    pub(crate) fn within(self, value: f64) -> f64 {
+        self.each().fold(value, |value, limit| if limit.inside(value) < 0.0 { limit.value } else { value })
+    }
+
+    /// What a program reads of a head of some scale that has a value.
+    pub(crate) fn raw(self, scale: f64, value: f64) -> Raw {
+        match (self.lower, self.upper) {
+            (Some(lower), Some(upper)) => {
+                let (width, share) = (upper - lower, (value - lower) / (upper - lower));
+                let inside = share.clamp(CLOSEST, 1.0 - CLOSEST);
+                // sigmoid(number) = inside
+                let slope = 1.0 / (width * inside * (1.0 - inside));
+                Raw { number: (inside / (1.0 - inside)).ln(), slope, rest: (share - inside) * width }
+            }
+            _ => {
+                self.each().next().map_or(Raw { number: value, slope: 1.0, rest: 0.0 }, |limit| limit.raw(scale, value))
+            }
+        }
+    }
+}
+
+impl Limit {
+    /// How far a value is inside of the bound.
+    pub(crate) fn inside(self, value: f64) -> f64 {
+        self.sign * (value - self.value)
+    }
+
+    /// What a program reads of a head with this bound alone.
+    fn raw(self, scale: f64, value: f64) -> Raw {
+        let distance = self.inside(value) / scale;
         let inside = distance.max(CLOSEST);
         // softplus(number) = inside
         let number = if inside > 30.0 { inside } else { inside.exp_m1().ln() };
         debug_assert!((softplus(number) - inside).abs() <= 1e-9 * inside.max(1.0));
         Raw { number, slope: self.sign / (scale * sigmoid(number)), rest: (distance - inside) * scale * self.sign }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn limits(lower: Option<f64>, upper: Option<f64>) -> Limits {
+        Limits { lower, upper }
+    }
+
+    /// What programs make of a number, as `pde!` writes it down.
+    fn passed(limits: Limits, scale: f64, number: f64) -> f64 {
+        match (limits.lower, limits.upper) {
+            (Some(lower), Some(upper)) => lower + (upper - lower) * sigmoid(number),
+            (Some(lower), None) => lower + scale * softplus(number),
+            (_, upper) => upper.unwrap() - scale * softplus(number),
+        }
+    }
+
+    #[test]
+    fn programs_read_the_value_that_a_head_has() {
+        for limits in [limits(Some(-1.0), Some(3.0)), limits(Some(-1.0), None), limits(None, Some(3.0))] {
+            for value in [-0.999, 0.0, 0.5, 2.9] {
+                let (raw, step) = (limits.raw(0.7, value), 1e-6);
+                assert!((passed(limits, 0.7, raw.number) + raw.rest - value).abs() < 1e-12, "{limits:?} {value}");
+                let moved = passed(limits, 0.7, raw.number + step * raw.slope);
+                assert!((moved - value - step).abs() < 1e-8, "{limits:?} {value}");
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_beyond_a_bound_is_left_over() {
+        let raw = limits(Some(-1.0), Some(3.0)).raw(0.7, 3.5);
+        assert!((raw.rest - 0.5).abs() < 1e-5, "{raw:?}");
+        let raw = limits(Some(-1.0), None).raw(0.7, -2.0);
+        assert!((raw.rest + 1.0).abs() < 1e-5, "{raw:?}");
+    }
+
+    #[test]
+    fn heads_say_zero_or_the_nearest_bound_at_first() {
+        assert_eq!(limits(Some(-1.0), Some(3.0)).offset(), 0.0);
+        assert_eq!(limits(Some(2.0), Some(3.0)).offset(), 2.0);
+        assert_eq!(limits(None, Some(-3.0)).offset(), -3.0);
     }
 }

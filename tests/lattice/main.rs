@@ -57,6 +57,19 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// The same basins behind gates that let through no more than a half.
+    pub mod gates {
+        units: off;
+        coordinates: x, t;
+        fields: level;
+        sources: inflow in 0 .. 0.5;
+        on filling { balance: (1 + x) * d(level, t) == inflow; }
+        on samples { observe level; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
     /// Sound of one frequency in a room whose walls give way.
     pub mod sound {
         units: off;
@@ -379,6 +392,37 @@ fn a_resumed_run_has_the_bits_of_one_that_did_not_stop() {
     let mut resumed = resume(&problem, &settings, &kept.unwrap(), &mut |_| Flow::Continue).unwrap();
     let places = grid([5, 5], [1.0, 1.0], false);
     assert_eq!(values(&mut whole, "a", &places).0, values(&mut resumed, "a", &places).0);
+}
+
+#[test]
+fn a_source_between_two_bounds_stays_at_both() {
+    // The inflow is sin t between nothing and a half, for a turn and a half.
+    let inflow = |[_, t]: [f64; 2]| t.sin().clamp(0.0, 0.5);
+    let (open, closed) = (PI / 6.0, 5.0 * PI / 6.0);
+    let rising = |t: f64| 1.0 - t.min(open).cos();
+    let filled =
+        |t: f64| rising(t) + 0.5 * (t.clamp(open, closed) - open) + rising(open) - rising(PI - t.clamp(closed, PI));
+    let level = |[x, t]: [f64; 2]| (filled(PI) * (t / (2.0 * PI)).floor() + filled(t % (2.0 * PI))) / (1.0 + x);
+    let mut normal = normals(12);
+    let samples = grid([12, 60], [1.0, 3.0 * PI], true);
+    let measured = pairs(&samples).map(|at| level(at) + 0.01 * normal()).collect();
+    let mut problem = Problem::new(scene::<gates::recover::Scene>());
+    problem.set_group("filling", samples.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", samples.into(), vec![measured]).unwrap();
+    let mut solution = solve(&problem);
+    assert_eq!(
+        (solution.carrier, solution.status),
+        ("splines on a lattice", Status::Converged),
+        "{:?}",
+        solution.verdict
+    );
+    let inside = grid([7, 90], [1.0, 3.0 * PI], false);
+    let (found, _) = values(&mut solution, "inflow", &inside);
+    assert!(found.iter().all(|q| (0.0..=0.5).contains(q)));
+    let exact: Vec<f64> = pairs(&inside).map(inflow).collect();
+    let off = root_mean_square(found.iter().zip(&exact).map(|(q, exact)| q - exact));
+    let size = root_mean_square(exact.iter().copied());
+    assert!(off < 0.15 * size, "{off} of {size}");
 }
 
 #[test]

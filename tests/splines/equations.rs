@@ -135,6 +135,19 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// The same tank behind a gate that lets through no more than a half.
+    mod gate {
+        units: off;
+        coordinates: t;
+        fields: level;
+        sources: inflow in 0 .. 0.5;
+        on filling { balance: d(level, t) == inflow; }
+        on samples { observe level; }
+        scene filled { }
+    }
+}
+
 /// Twenty-five rows good to a thousandth: steps of Runge and Kutta's method are exact to many digits more.
 #[test]
 fn coefficients_of_lorenz_are_found_with_bars_that_cover() {
@@ -279,6 +292,46 @@ fn an_equation_of_one_vanishing_quantity_holds() {
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
     let found = &solution.evaluate(&inside)[0].values;
     assert!(found.iter().zip(&inside).all(|(w, x)| (w - 1.0 - x).abs() < 1e-6), "{found:?}");
+}
+
+/// What a gate lets through of [`filling`], and the level behind it.
+fn gated(t: f64) -> (f64, f64) {
+    use std::f64::consts::{PI, TAU};
+    let (open, closed) = (PI / 6.0, 5.0 * PI / 6.0);
+    let turn = t % TAU;
+    let rising = |t: f64| 1.0 - t.min(open).cos();
+    let level =
+        rising(turn) + 0.5 * (turn.clamp(open, closed) - open) + rising(open) - rising(PI - turn.clamp(closed, PI));
+    let whole = 2.0 * rising(open) + 0.5 * (closed - open);
+    (t.sin().clamp(0.0, 0.5), whole * (t / TAU).floor() + level)
+}
+
+#[test]
+fn a_source_between_two_bounds_stays_at_both() {
+    let mut normal = normals(5);
+    let times: Vec<f64> = (0..500).map(|i| f64::from(i) * 0.04).collect();
+    let levels = times.iter().map(|&t| gated(t).1 + 0.01 * normal()).collect();
+    let mut problem = Problem::new(scene::<gate::filled::Scene>());
+    problem.set_group("filling", times.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", times.clone().into(), vec![levels]).unwrap();
+    let mut solution = solve(&problem, Carrier::Auto);
+    assert_eq!((solution.carrier, solution.status), ("splines", Status::Converged), "{:?}", solution.verdict);
+    let inflow = of(&solution.evaluate_with_errors(&times), "inflow").clone();
+    assert!(inflow.values.iter().all(|q| (0.0..=0.5).contains(q)));
+    let off: Vec<f64> = times.iter().zip(&inflow.values).map(|(&t, q)| (q - gated(t).0).abs()).collect();
+    let size = times.iter().map(|&t| gated(t).0).sum::<f64>() / times.len() as f64;
+    let error = off.iter().sum::<f64>() / off.len() as f64;
+    assert!(error < 0.1 * size, "{error} of {size}");
+    let bars = inflow.deviations.unwrap();
+    let beyond = off.iter().zip(&bars).filter(|(off, bar)| **off > 4.0 * **bar).count();
+    assert!(20 * beyond < off.len(), "{beyond} of {}", off.len());
+    // It is known to be shut where it is shut, and open where it is open.
+    let at = |is_there: &dyn Fn(f64) -> bool| {
+        let there: Vec<f64> = times.iter().zip(&off).filter(|(t, _)| is_there(t.sin())).map(|(_, off)| *off).collect();
+        there.iter().sum::<f64>() / there.len() as f64
+    };
+    let (shut, open) = (at(&|sine| sine < -0.5), at(&|sine| sine > 0.8));
+    assert!(shut < 0.01 * size && open < 0.02 * size, "{shut} and {open} of {size}");
 }
 
 /// Inflow of a tank that is filled for a half of each turn, and its level.

@@ -185,7 +185,8 @@ impl Solver {
 fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, noise: f64) -> Option<Sparse<'a>> {
     let declared = &bound.problem.scene().schema.heads[head];
     let prior = settings.patches.filter(|_| declared.source)?;
-    let sign = heads.bound[head].map_or(1.0, |limit| limit.sign);
+    let is_below = heads.limits[head].is_some_and(|limits| limits.is_below(heads.offset[head]));
+    let sign = if is_below { -1.0 } else { 1.0 };
     let level = prior.level * bound.system.inward(&declared.unit) / heads.scale[head] * sign;
     Some(Sparse {
         heads,

@@ -32,14 +32,14 @@ impl Group {
                     let along = splines.factors(p, exponents, &mut across);
                     coefficient * contracted(cell, &lines, &across, along)
                 };
-                let value = heads.scale[jet.head] * operator.iter().map(term).sum::<f64>();
-                *out = match heads.bound[jet.head].filter(|_| is_value) {
-                    Some(limit) => {
-                        let raw = limit.raw(heads.scale[jet.head], value);
+                let offset = if is_value { heads.offset[jet.head] } else { 0.0 };
+                let value = offset + heads.scale[jet.head] * operator.iter().map(term).sum::<f64>();
+                *out = match heads.limits[jet.head].filter(|_| is_value) {
+                    Some(limits) => {
+                        let raw = limits.raw(heads.scale[jet.head], value);
                         bounded.push(raw);
                         raw.number
                     }
-                    None if is_value => heads.offset[jet.head] + value,
                     None => value,
                 };
             }

@@ -5,8 +5,7 @@ use rayon::prelude::*;
 use super::block::Block;
 use super::lattice::{Exponents, Lattice, NONE, Span, contracted};
 use super::tabled::Splines;
-use crate::bounds::{Limit, limits};
-use crate::engine::Scaling;
+use crate::bounds::{Limits, limits, sizes};
 use crate::problem::Bound;
 use crate::schema::Scene;
 use crate::solve::vector::root_mean_square;
@@ -19,8 +18,8 @@ pub(super) struct Heads {
     pub(super) first: Vec<usize>,
     pub(super) offset: Vec<f64>,
     pub(super) scale: Vec<f64>,
-    /// Bounds of heads that have one.
-    pub(super) bound: Vec<Option<Limit>>,
+    /// Bounds of heads that have them.
+    pub(super) limits: Vec<Option<Limits>>,
 }
 
 /// Points whose values are computed together.
@@ -39,20 +38,18 @@ impl Heads {
 
     pub(super) fn new(bound: &Bound, lattices: Vec<Lattice>) -> Self {
         let schema = bound.problem.scene().schema;
-        let Scaling { offset, .. } = &bound.scaling;
         let limits = limits(schema, &bound.system);
-        let scale = (0..schema.heads.len()).map(|head| bound.head_scale(head)).collect();
-        let offset = offset.iter().zip(&limits).map(|(&o, limit)| limit.map_or(o, |limit| limit.value)).collect();
+        let (offset, scale) = sizes(bound, &limits);
         Self::over(lattices, offset, scale, limits)
     }
 
     /// Heads on lattices, with these offsets, scales and bounds.
-    pub(super) fn over(lattices: Vec<Lattice>, offset: Vec<f64>, scale: Vec<f64>, bound: Vec<Option<Limit>>) -> Self {
+    pub(super) fn over(lattices: Vec<Lattice>, offset: Vec<f64>, scale: Vec<f64>, limits: Vec<Option<Limits>>) -> Self {
         let mut first = vec![0];
         for lattice in &lattices {
             first.push(first[first.len() - 1] + lattice.len());
         }
-        Self { lattices, first, offset, scale, bound }
+        Self { lattices, first, offset, scale, limits }
     }
 
     /// Number of coefficients.
@@ -110,20 +107,18 @@ impl Heads {
         }
     }
 
-    /// Value of a head, within its bound.
+    /// Value of a head, within its bounds.
     pub(super) fn value(&self, head: usize, point: &[f64], theta: &[f64]) -> f64 {
         self.bounded(head, self.sum(head, point, theta))
     }
 
-    /// A head's value from the sum of its functions: within its bound, with its offset.
-    fn bounded(&self, head: usize, value: f64) -> f64 {
-        match self.bound[head] {
-            Some(limit) => limit.within(value),
-            None => self.offset[head] + value,
-        }
+    /// A head's value from the sum of its functions: with its offset, within its bounds.
+    fn bounded(&self, head: usize, sum: f64) -> f64 {
+        let value = self.offset[head] + sum;
+        self.limits[head].map_or(value, |limits| limits.within(value))
     }
 
-    /// Values of a head at points given flat, within its bound.
+    /// Values of a head at points given flat, within its bounds.
     pub(super) fn values(&self, head: usize, points: &[f64], theta: &[f64]) -> Vec<f64> {
         let (lattice, coefficients) = (&self.lattices[head], self.spread(head, theta));
         let (inputs, lines) = (lattice.inputs(), lattice.lines());

@@ -33,6 +33,15 @@ pub(super) struct Normal {
     pub(super) draws: Option<Draws>,
 }
 
+/// What rows were summed up to.
+pub(super) struct Sums {
+    values: Vec<f64>,
+    gradient: Vec<f64>,
+    border: Vec<Vec<f64>>,
+    corner: DMatrix<f64>,
+    border_gradient: Vec<f64>,
+}
+
 /// The factorised normal matrix.
 pub(super) struct Factor {
     factor: Llt<usize, f64>,
@@ -80,6 +89,26 @@ impl Normal {
             learned,
             draws: None,
         })
+    }
+
+    /// What the rows so far were summed up to.
+    pub(super) fn sums(&self) -> Sums {
+        Sums {
+            values: self.values.clone(),
+            gradient: self.gradient.clone(),
+            border: self.border.clone(),
+            corner: self.corner.clone(),
+            border_gradient: self.border_gradient.clone(),
+        }
+    }
+
+    /// Forgets the rows that came after these.
+    pub(super) fn go_back(&mut self, sums: &Sums) {
+        self.values.clone_from(&sums.values);
+        self.gradient.clone_from(&sums.gradient);
+        self.border.clone_from(&sums.border);
+        self.corner.clone_from(&sums.corner);
+        self.border_gradient.clone_from(&sums.border_gradient);
     }
 
     /// Forgets all rows.

@@ -1,21 +1,49 @@
-//! Steps after which no head is beyond its bound where its functions are centred.
+//! Steps after which no head is beyond its bounds where its functions are centred.
 
 use super::iterate::State;
-use super::rows::Rows;
+use super::rows::{Rows, Walk};
 use super::solver::Solver;
-use super::triangle::Row;
-use crate::bounds::{WALL, within};
+use super::triangle::{Row, Source};
+use crate::bounds::{Limit, WALL, within};
 
-/// A value of a bounded head: the first coefficient that it depends on, and its derivatives, over the head's scale and with the
-/// sign that makes it positive inside.
-struct Value {
+/// A row that holds a head at a bound where one of its functions is centred, positive inside: its value where all coefficients are
+/// zero, and its derivatives by them from the first that it depends on.
+struct Wall {
+    away: f64,
     first: usize,
     slopes: Vec<f64>,
 }
 
-impl Value {
-    fn of(&self, coefficients: &[f64]) -> f64 {
+impl Wall {
+    fn change(&self, coefficients: &[f64]) -> f64 {
         self.slopes.iter().zip(&coefficients[self.first..]).map(|(slope, x)| slope * x).sum()
+    }
+
+    fn value(&self, coefficients: &[f64]) -> f64 {
+        self.away + self.change(coefficients)
+    }
+}
+
+/// The rows of a step about some coefficients and the walls that are held, in the order of their first unknowns.
+struct Held<'a> {
+    rows: Walk<'a>,
+    walls: &'a [&'a Wall],
+    theta: &'a [f64],
+    /// A wall's derivatives by learned parameters.
+    none: &'a [f64],
+}
+
+impl Source for Held<'_> {
+    #[inline(always)]
+    fn next(&mut self) -> Option<Row<'_>> {
+        match self.walls.split_first() {
+            Some((wall, others)) if self.rows.first().is_none_or(|first| wall.first <= first) => {
+                self.walls = others;
+                let value = wall.value(self.theta);
+                Some(Row { first: wall.first, slopes: &wall.slopes, shared: self.none, value })
+            }
+            _ => self.rows.next(),
+        }
     }
 }
 
@@ -28,35 +56,35 @@ impl Solver<'_> {
         rows: &Rows,
         step: (Vec<f64>, Vec<f64>),
     ) -> (Vec<f64>, Vec<f64>) {
-        let values = self.bounded_values();
+        let (walls, theta) = (self.walls(), &state.theta);
         let none = vec![0.0; step.1.len()];
-        let inside = |step: &(Vec<f64>, Vec<f64>), at: usize| values[at].of(&state.theta) + values[at].of(&step.0);
-        let is_at_bound = |at: &usize| values[*at].of(&state.theta) <= 0.0;
-        let at_bound = (0..values.len()).filter(is_at_bound).collect();
-        within(values.len(), step, at_bound, inside, |held| {
+        let inside =
+            |step: &(Vec<f64>, Vec<f64>), at: usize| (walls[at].value(theta) + walls[at].change(&step.0)) / WALL;
+        let at_bound = (0..walls.len()).filter(|&at| walls[at].value(theta) <= 0.0).collect();
+        within(walls.len(), step, at_bound, inside, |held| {
+            let walls: Vec<&Wall> = held.iter().map(|&at| &walls[at]).collect();
             self.triangle.clear();
-            self.triangle.add_all(rows.walk());
-            for value in held.iter().map(|&at| &values[at]) {
-                let slopes: Vec<f64> = value.slopes.iter().map(|slope| WALL * slope).collect();
-                let row =
-                    Row { first: value.first, slopes: &slopes, shared: &none, value: WALL * value.of(&state.theta) };
-                self.triangle.add(row);
-            }
+            self.triangle.add_all(Held { rows: rows.walk(), walls: &walls, theta, none: &none });
             self.triangle.solve()
         })
     }
 
-    /// Values of bounded heads, one where each of their functions is centred.
-    fn bounded_values(&self) -> Vec<Value> {
+    /// The walls of bounded heads, one for each of their bounds where each of their functions is centred, in the order of their first
+    /// unknowns.
+    fn walls(&self) -> Vec<Wall> {
         let heads = &self.heads;
-        let of = |head: usize, sign: f64| {
-            let basis = &heads.bases[head];
+        let of = |head: usize, limit: Limit| {
+            let (basis, factor) = (&heads.bases[head], limit.sign * WALL / heads.scale[head]);
             (0..basis.len()).map(move |function| {
                 let (first, slopes) = heads.value_row(head, basis.centre(function));
-                Value { first, slopes: slopes.iter().map(|slope| sign * slope / heads.scale[head]).collect() }
+                let away = WALL * limit.inside(heads.offset[head]) / heads.scale[head];
+                Wall { away, first, slopes: slopes.iter().map(|slope| factor * slope).collect() }
             })
         };
-        let limits = heads.limits.iter().enumerate();
-        limits.filter_map(|(head, limit)| limit.map(|limit| of(head, limit.sign))).flatten().collect()
+        let limits = heads.limits.iter().enumerate().filter_map(|(head, limits)| Some((head, (*limits)?)));
+        let mut walls: Vec<Wall> =
+            limits.flat_map(|(head, limits)| limits.each().flat_map(move |limit| of(head, limit))).collect();
+        walls.sort_by_key(|wall| wall.first);
+        walls
     }
 }

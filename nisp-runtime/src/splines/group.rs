@@ -120,10 +120,10 @@ impl Group {
                     *out += offset + factor * sum;
                 }
             }
-            let limit = heads.limits[jet.head].filter(|_| jet.degree.iter().all(|&n| n == 0));
-            if let Some(limit) = limit {
+            let limits = heads.limits[jet.head].filter(|_| jet.degree.iter().all(|&n| n == 0));
+            if let Some(limits) = limits {
                 for out in &mut out[..self.cells.len()] {
-                    let raw = limit.raw(heads.scale[jet.head], *out - limit.value);
+                    let raw = limits.raw(heads.scale[jet.head], *out);
                     *out = raw.number;
                     bounded.push(raw);
                 }

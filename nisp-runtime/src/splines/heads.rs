@@ -1,7 +1,7 @@
 //! All heads of a scene as splines over the same cells, and how their coefficients are ordered.
 
 use super::basis::Basis;
-use crate::bounds::{Limit, limits};
+use crate::bounds::{Limits, limits, sizes};
 use crate::problem::Bound;
 
 /// Heads as functions of one vector of coefficients, each `offset + scale * sum(coefficient * spline)`. Coefficients of all
@@ -13,8 +13,8 @@ pub(super) struct Heads {
     numbers: Vec<Vec<usize>>,
     pub(super) offset: Vec<f64>,
     pub(super) scale: Vec<f64>,
-    /// Bounds of heads that have one, which are their offsets.
-    pub(super) limits: Vec<Option<Limit>>,
+    /// Bounds of heads that have them.
+    pub(super) limits: Vec<Option<Limits>>,
     /// Numbers from the first to the last of a cell's functions, at most.
     pub(super) band: usize,
 }
@@ -22,10 +22,8 @@ pub(super) struct Heads {
 impl Heads {
     /// The heads of a problem, of these degrees, over the cells between breakpoints.
     pub(super) fn new(bound: &Bound, degrees: &[usize], breakpoints: &[f64]) -> Self {
-        let scale = (0..degrees.len()).map(|head| bound.head_scale(head)).collect();
         let limits = limits(bound.problem.scene().schema, &bound.system);
-        let offset = bound.scaling.offset.iter().zip(&limits);
-        let offset = offset.map(|(offset, limit)| limit.map_or(*offset, |limit| limit.value)).collect();
+        let (offset, scale) = sizes(bound, &limits);
         Self::over(breakpoints, degrees, (offset, scale, limits))
     }
 
@@ -33,7 +31,7 @@ impl Heads {
     pub(super) fn over(
         breakpoints: &[f64],
         degrees: &[usize],
-        (offset, scale, limits): (Vec<f64>, Vec<f64>, Vec<Option<Limit>>),
+        (offset, scale, limits): (Vec<f64>, Vec<f64>, Vec<Option<Limits>>),
     ) -> Self {
         let bases: Vec<Basis> = degrees.iter().map(|&degree| Basis::new(degree, breakpoints)).collect();
         let functions = bases.iter().enumerate();
@@ -93,10 +91,10 @@ impl Heads {
         offset + self.scale[head] * sum
     }
 
-    /// A head's value at a place, within its bound.
+    /// A head's value at a place, within its bounds.
     pub(super) fn value(&self, head: usize, at: f64, theta: &[f64]) -> f64 {
         let value = self.derivative(head, (self.cell(at), at), 0, theta);
-        self.limits[head].map_or(value, |limit| limit.within(value - limit.value))
+        self.limits[head].map_or(value, |limits| limits.within(value))
     }
 
     /// What a head's value at a place is by the coefficients: the first of them, and the value's derivatives.

@@ -95,6 +95,12 @@ pub(super) struct Walk<'a> {
 }
 
 impl Walk<'_> {
+    /// First unknown of the next row.
+    #[inline(always)]
+    pub(super) fn first(&self) -> Option<usize> {
+        self.rows.kept.get(self.at).map(|kept| kept.first)
+    }
+
     /// The next row.
     #[inline(always)]
     pub(super) fn step(&mut self) -> Option<Counted<'_>> {

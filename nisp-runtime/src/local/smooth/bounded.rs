@@ -1,45 +1,42 @@
-//! Steps after which no head is beyond its bound, at as many places as it has functions.
+//! Steps after which no head is beyond its bounds, at as many places as it has functions.
 
 use super::solver::Solver;
 use super::state::State;
-use crate::bounds::{WALL, within};
+use crate::bounds::{Limit, WALL, within};
 use crate::local::block::Block;
 
 impl Solver<'_> {
-    /// A step of coefficients and of learned parameters within all bounds, where `blocks` are the rows of the groups. It goes last,
-    /// since the normal equations are made anew. Noise, roughness and error bars are those without bounds, so that a source at its
-    /// bound has bars.
-    pub(super) fn within_bounds(
-        &mut self,
-        state: &State,
-        blocks: &[(usize, Vec<Block>)],
-        step: (Vec<f64>, Vec<f64>),
-    ) -> (Vec<f64>, Vec<f64>) {
+    /// A step of coefficients and of learned parameters within all bounds, from the one that the normal equations ask for. It goes
+    /// last, since walls are added to them. Noise, roughness and error bars are those without bounds, so that a source at its bound
+    /// has bars.
+    pub(super) fn within_bounds(&mut self, state: &State, step: (Vec<f64>, Vec<f64>)) -> (Vec<f64>, Vec<f64>) {
         let walls = self.walls(state);
         let inside = |step: &(Vec<f64>, Vec<f64>), at: usize| walls[at].after(0, &step.0, &step.1) / WALL;
         let at_bound = (0..walls.len()).filter(|&at| walls[at].misfits[0] <= 0.0).collect();
+        let free = self.normal.sums();
         within(walls.len(), step, at_bound, inside, |held| {
-            self.add_all(state, blocks);
+            self.normal.go_back(&free);
             let held: Vec<Block> = held.iter().map(|&at| walls[at].clone()).collect();
             self.normal.add_all(&held);
             self.normal.step(&self.normal.factor()?)
         })
     }
 
-    /// Rows that hold bounded heads at their bounds, one for each of their functions; positive inside.
+    /// Rows that hold bounded heads at each of their bounds, one for each of their functions; positive inside.
     fn walls(&self, state: &State) -> Vec<Block> {
         let heads = &self.heads;
-        let of = |head: usize, sign: f64| {
+        let of = |head: usize, limit: Limit| {
             (0..heads.lattices[head].len()).map(move |function| {
                 let parts = heads.parts(head, &heads.lattices[head].site(function)).into_iter();
-                let factor = sign * WALL / heads.scale[head];
+                let factor = limit.sign * WALL / heads.scale[head];
                 let (dofs, slopes): (Vec<u32>, Vec<f64>) = parts.map(|(at, value)| (at as u32, factor * value)).unzip();
-                let misfit = dofs.iter().zip(&slopes).map(|(&at, slope)| slope * state.theta[at as usize]).sum();
+                let change: f64 = dofs.iter().zip(&slopes).map(|(&at, slope)| slope * state.theta[at as usize]).sum();
+                let misfit = WALL * limit.inside(heads.offset[head]) / heads.scale[head] + change;
                 let by_learned = vec![0.0; state.learned.len()];
                 Block { misfits: vec![misfit], by_learned, dofs, slopes, excess: 0.0 }
             })
         };
-        let limits = heads.bound.iter().enumerate();
-        limits.filter_map(|(head, limit)| limit.map(|limit| of(head, limit.sign))).flatten().collect()
+        let limits = heads.limits.iter().enumerate().filter_map(|(head, limits)| Some((head, (*limits)?)));
+        limits.flat_map(|(head, limits)| limits.each().flat_map(move |limit| of(head, limit))).collect()
     }
 }

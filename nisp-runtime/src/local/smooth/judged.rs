@@ -17,9 +17,9 @@ const TENSE: f64 = 0.2;
 /// What may be left of an equation between the points that it was asked at, over its size.
 const BETWEEN: f64 = 0.03;
 /// Noise that is found, beside what neighbouring measurements say, from which on these are missed.
-const MISSED: f64 = 1.3;
+pub(super) const MISSED: f64 = 1.3;
 /// The same ratio above which the cells are taken to be too coarse for what is measured.
-const FAR: f64 = 4.0;
+pub(super) const FAR: f64 = 4.0;
 /// Steps to an answer under another belief.
 pub(super) const DOUBTS: u64 = 4;
 
@@ -83,20 +83,17 @@ impl Solver<'_> {
             let equations = group.schema.terms.iter().filter(is_equation);
             equations.flat_map(|term| term.first..term.first + term.rows).map(of_row).fold(0.0, f64::max)
         };
-        let missed = |found: &ObservationNoise| {
-            let size = state.classes[self.classes[found.group][found.term]].size;
-            if found.is_exact() { 0.0 } else { size / found.deviation / MISSED }
-        };
         let asked = self.groups.iter().map(|group| left(group, &|row| TENSE * group.sigma[row]));
         let between = others(&self.bound)
             .map_or(0.0, |(at, bound)| left(&groups(&bound, &self.heads)[at], &|row| BETWEEN * self.sizes[at][row]));
-        asked.chain([between]).chain(noise.observations.iter().map(missed)).fold(0.0, f64::max)
+        asked.chain([between, self.missed(state, noise) / MISSED]).fold(0.0, f64::max)
     }
 
-    /// Whether measurements are missed by far more than their noise.
-    pub(super) fn is_missed(&self, state: &State, noise: &Noise) -> bool {
+    /// How much larger the measurements' noise is, as found here, than that which neighbouring ones say, at most.
+    pub(super) fn missed(&self, state: &State, noise: &Noise) -> f64 {
         let size = |found: &ObservationNoise| state.classes[self.classes[found.group][found.term]].size;
-        noise.observations.iter().any(|found| !found.is_exact() && size(found) > FAR * found.deviation)
+        let inexact = noise.observations.iter().filter(|found| !found.is_exact());
+        inexact.map(|found| size(found) / found.deviation).fold(0.0, f64::max)
     }
 
     /// Cells of the lattice along the coordinate that has most.

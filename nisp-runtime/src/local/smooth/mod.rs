@@ -20,6 +20,8 @@ mod unmeasured;
 
 use std::time::Instant;
 
+use judged::{FAR, MISSED};
+
 use super::{KeptLattices, LocalError, LocalSolution};
 use crate::bounds;
 use crate::carrier::Progress;
@@ -84,8 +86,9 @@ pub(crate) fn solve(
     let (mut strain, mut idle) = (f64::INFINITY, 0);
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
-        let is_missed = solver.is_missed(&run.state, noise);
-        // Where the measurements count as noise, one finer lattice may be too coarse as well.
+        let missed = solver.missed(&run.state, noise);
+        let is_missed = missed > MISSED;
+        // Where cells miss measurements, which then count as noise, one finer lattice may be too coarse as well.
         let patience = if is_missed { PATIENCE } else { 1 };
         idle = if strain > EASED * before { idle + 1 } else { 0 };
         if strain < 1.0 || idle >= patience {
@@ -93,7 +96,7 @@ pub(crate) fn solve(
         }
         let bars = BARS * run.longest;
         let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + bars);
-        let factors: &[usize] = if is_missed { &[MORE * MORE, MORE] } else { &[MORE] };
+        let factors: &[usize] = if missed > FAR { &[MORE * MORE, MORE] } else { &[MORE] };
         let Some(more) = factors.iter().find(|times| has_time(times)).map(|times| times * points) else {
             run.status = Status::Budget;
             break;

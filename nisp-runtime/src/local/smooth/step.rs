@@ -145,7 +145,7 @@ impl Solver<'_> {
         let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
         let tallies =
             self.tallies(state, &blocks, (&step, &shared), (&factor, &unmeasured)).ok_or(LocalError::Factorisation)?;
-        let (step, shared) = self.within_bounds(state, &blocks, (step, shared));
+        let (step, shared) = self.within_bounds(state, (step, shared));
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
         let mut next = state.clone();
         next.unmeasured = unmeasured;
