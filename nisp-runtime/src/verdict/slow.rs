@@ -1,6 +1,7 @@
 //! Whether what is left of a record has a slow course: noise has none, and a fit takes away from what chance makes of it.
 
-use rustdct::DctPlanner;
+use rustfft::FftPlannerScalar;
+use rustfft::num_complex::Complex;
 
 /// Modes from here on, as a share of all, are taken for noise.
 const FAST: f64 = 0.5;
@@ -27,14 +28,21 @@ pub(super) fn excess(misfits: &[f64]) -> (f64, f64) {
 }
 
 /// Squares of the coefficients of cosines with 0, 1, 2, ... half waves (discrete cosine transform, orthonormal): of noise, each
-/// has the noise's variance for its mean.
+/// has the noise's variance for its mean. By a Fourier transform of every other value from the first on, then of those between
+/// them from the last back (Makhoul 1980).
 fn powers(values: &[f64]) -> Vec<f64> {
     if values.is_empty() {
         return Vec::new();
     }
-    let mut waves = values.to_vec();
-    DctPlanner::new().plan_dct2(values.len()).process_dct2(&mut waves);
-    let power = |(mode, wave): (usize, f64)| wave * wave * if mode == 0 { 1.0 } else { 2.0 } / values.len() as f64;
+    let count = values.len();
+    let there = values.iter().step_by(2);
+    let back = values.iter().skip(1).step_by(2).rev();
+    let mut waves: Vec<Complex<f64>> = there.chain(back).map(|&value| value.into()).collect();
+    FftPlannerScalar::new().plan_fft_forward(count).process(&mut waves);
+    let power = |(mode, wave): (usize, Complex<f64>)| {
+        let turn = Complex::cis(-std::f64::consts::PI * mode as f64 / (2 * count) as f64);
+        (turn * wave).re.powi(2) * if mode == 0 { 1.0 } else { 2.0 } / count as f64
+    };
     waves.into_iter().enumerate().map(power).collect()
 }
 
