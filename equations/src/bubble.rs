@@ -1,6 +1,6 @@
 //! An inflated rubber surface whose strains and slopes are large, pressed by an unknown object: a soft-bubble sensor.
 
-use nisp::scene_in_both_precisions as scene;
+use nisp::scene;
 
 use crate::bodies;
 use crate::entry::{Binding, Entry};

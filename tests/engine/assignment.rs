@@ -9,7 +9,7 @@ use nisp::solve::method::{Method, Verdict};
 use nisp::solve::objective::{LeastSquares, Objective};
 use nisp::{Points, Problem, SceneRef, scene};
 
-use crate::reference::engine;
+use nisp_references::reference::engine;
 
 nisp::pde! {
     mod line {

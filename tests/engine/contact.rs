@@ -4,7 +4,7 @@ use nisp::network::Architecture;
 use nisp::solve::objective::LeastSquares;
 use nisp::{Problem, scene};
 
-use crate::reference::engine;
+use nisp_references::reference::engine;
 
 nisp::pde! {
     mod sheet {

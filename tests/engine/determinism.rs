@@ -4,8 +4,9 @@ use nisp::network::Architecture;
 use nisp::simd::Isa;
 use nisp::{Precision, Problem};
 
-use crate::models::{Heat, Karman, Sponge, Triharmonic, each_model};
-use crate::reference::{Model, Reference};
+use nisp_references::each_model;
+use nisp_references::models::{Heat, Karman, Sponge, Triharmonic};
+use nisp_references::reference::{Model, Reference};
 
 /// Loss and gradient on `threads` threads.
 fn evaluate<E: Precision>(

@@ -2,10 +2,10 @@
 
 use nisp::network::Architecture;
 
-use crate::models::each_model;
-use crate::number::Dual;
-use crate::reference::{Model, Reference, architectures, engine};
 use crate::values::in_single_precision;
+use nisp_references::each_model;
+use nisp_references::number::Dual;
+use nisp_references::reference::{Model, Reference, architectures, engine};
 
 fn direction(len: usize, seed: usize) -> Vec<f64> {
     (0..len).map(|i| ((i * (seed + 3)) as f64 * 0.37 + seed as f64).sin()).collect()

@@ -4,11 +4,11 @@ use nisp::Precision;
 use nisp::network::Architecture;
 use nisp::simd::Isa;
 
-use crate::models::each_model;
-use crate::reference::{Model, Reference, architectures};
+use nisp_references::each_model;
+use nisp_references::reference::{Model, Reference, architectures};
 
 /// The file of the models, whose texts are read here once more.
-const MODELS: &str = include_str!("models.rs");
+const MODELS: &str = include_str!("../references/src/models.rs");
 
 /// A model's scene, interpreted: from the braces of the `pde!` that declares its module.
 fn interpreted(scene: nisp::SceneRef) -> nisp::SceneRef {
@@ -30,8 +30,8 @@ fn schemas_agree<M: Model>(model: &M) {
 fn a_text_has_the_schema_that_the_macro_emits() {
     each_model!(schemas_agree);
     // Groups in every portion of domains of every kind.
-    let everywhere = nisp::scene::<crate::models::poisson::everywhere::Scene>();
-    for compiled in [everywhere, nisp::scene::<crate::models::solids::solve::Scene>()] {
+    let everywhere = nisp::scene::<nisp_references::models::poisson::everywhere::Scene>();
+    for compiled in [everywhere, nisp::scene::<nisp_references::models::solids::solve::Scene>()] {
         assert_eq!(format!("{:#?}", interpreted(compiled).schema), format!("{:#?}", compiled.schema));
     }
 }

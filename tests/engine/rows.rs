@@ -3,8 +3,8 @@
 use nisp::network::{Architecture, Fourier, Inputs};
 use nisp::solve::objective::LeastSquares;
 
-use crate::models::each_model;
-use crate::reference::{Model, Reference, engine};
+use nisp_references::each_model;
+use nisp_references::reference::{Model, Reference, engine};
 
 fn rows_are_consistent<M: Model>(model: &M) {
     let name = model.scene().schema.module;

@@ -3,8 +3,9 @@
 use nisp::Precision;
 use nisp::network::{Activation, Architecture};
 
-use crate::models::{Heat, Karman, Triharmonic, each_model};
-use crate::reference::{Model, Reference, architectures, engine};
+use nisp_references::each_model;
+use nisp_references::models::{Heat, Karman, Triharmonic};
+use nisp_references::reference::{Model, Reference, architectures, engine};
 
 /// What rounding to single precision may come to in this network, given what it may in one of tanh: sines hand it on at full
 /// slope, layer after layer.

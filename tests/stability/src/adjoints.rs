@@ -3,11 +3,11 @@
 use nisp::network::Architecture;
 use num_complex::Complex64;
 
-use crate::dot_products::dot_product_error;
-use crate::models::each_model;
-use crate::reference::{Model, Reference, architectures, engine};
 use crate::row::{Extent, Row};
-use crate::tangents::STEP;
+use nisp_references::adjoint::dot_product_error;
+use nisp_references::each_model;
+use nisp_references::reference::{Model, Reference, architectures, engine};
+use nisp_references::tangents::STEP;
 
 /// Difference of the gradient along a direction and the complex step, over the magnitudes that make it up.
 fn complex_step_error<M: Model>(model: &M, architecture: Architecture) -> f64 {

@@ -9,9 +9,9 @@ use nisp::scene_in_both_precisions as scene;
 
 use crate::double_double::Dd;
 use crate::line;
-use crate::number::Number;
-use crate::reference::{Data, Model, Point, Reference, engine};
 use crate::row::{Extent, Row};
+use nisp_references::number::Number;
+use nisp_references::reference::{Data, Model, Point, Reference, engine};
 
 nisp::pde! {
     mod ladder {
@@ -93,7 +93,7 @@ fn errors<E: Precision>(architecture: Architecture, factor: f64, count: usize) -
     let wide: Vec<Dd> = theta.iter().map(|&x| x.into()).collect();
     let narrow: Vec<E> = theta.iter().map(|&x| E::from_f64(x)).collect();
     let mut engine = engine::<E>(&reference.problem, architecture);
-    let mut double = crate::reference::engine::<f64>(&reference.problem, architecture);
+    let mut double = nisp_references::reference::engine::<f64>(&reference.problem, architecture);
     let unrounded = weights::<f64>(&reference, factor);
     let groups = model.groups();
     std::array::from_fn(|order| {

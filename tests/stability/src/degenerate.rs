@@ -13,8 +13,8 @@ use nisp::solve::objective::LeastSquares;
 use nisp::solve::prior::WeightPrior;
 use nisp::{Problem, scene};
 
-use crate::reference::engine;
 use crate::row::{Extent, Row};
+use nisp_references::reference::engine;
 
 nisp::pde! {
     mod film {

@@ -5,10 +5,10 @@ use nisp::network::Architecture;
 use nisp::simd::Isa;
 use nisp::{Precision, Problem};
 
-use crate::models::each_model;
-use crate::reference::{Model, Reference};
 use crate::row::{Extent, Row};
 use crate::stopping;
+use nisp_references::each_model;
+use nisp_references::reference::{Model, Reference};
 
 /// Loss, then gradient.
 fn evaluate<E: Precision>(

@@ -18,8 +18,8 @@ use nisp::solve::state::State;
 use nisp::{Checkpoint, Settings, recover};
 use nisp_equations::{Prepared, Request, catalogue};
 
-use crate::reference::engine;
 use crate::row::{Extent, Row};
+use nisp_references::reference::engine;
 
 /// An engine some of whose evaluations end with a fault, and with what they should have written full of NaN.
 struct Poisoned {

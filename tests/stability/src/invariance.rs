@@ -5,8 +5,8 @@
 use nisp::network::Architecture;
 use nisp::{Points, Problem, scene};
 
-use crate::reference::engine;
 use crate::row::{Extent, Row};
+use nisp_references::reference::engine;
 
 nisp::pde! {
     mod isotropic {

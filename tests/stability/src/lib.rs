@@ -22,22 +22,11 @@ mod scaling;
 mod single;
 mod soak;
 mod stopping;
-mod tangents;
 mod tanh;
 mod wide;
 
-#[path = "../../engine/dense_jet.rs"]
-mod dense_jet;
-#[path = "../../engine/adjoint.rs"]
-mod dot_products;
 #[path = "../../../nisp-runtime/tests/double_double/mod.rs"]
 mod double_double;
-#[path = "../../engine/models.rs"]
-mod models;
-#[path = "../../engine/number.rs"]
-mod number;
-#[path = "../../engine/reference.rs"]
-mod reference;
 #[path = "../../../nisp-runtime/tests/tanh_errors/mod.rs"]
 mod tanh_errors;
 

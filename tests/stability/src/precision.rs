@@ -2,10 +2,10 @@
 
 use nisp::network::Architecture;
 
-use crate::models::each_model;
 use crate::promotion;
-use crate::reference::{Model, Reference, architectures, engine};
 use crate::row::{Extent, Row};
+use nisp_references::each_model;
+use nisp_references::reference::{Model, Reference, architectures, engine};
 
 /// One minus the cosine between the gradients at the same weights, from the difference of the unit vectors, so that it is not
 /// lost in rounding.

@@ -3,9 +3,9 @@
 use nisp::Precision;
 use nisp::network::Architecture;
 
-use crate::models::each_model;
-use crate::reference::{Model, Reference, engine};
 use crate::row::{Extent, Row};
+use nisp_references::each_model;
+use nisp_references::reference::{Model, Reference, engine};
 
 /// What of rows, loss and gradient is not finite, and of how many numbers.
 fn not_finite<E: Precision, M: Model>(model: &M, architecture: Architecture, bias: f64) -> (usize, usize) {

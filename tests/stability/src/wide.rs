@@ -1,7 +1,7 @@
 //! Twice the precision, for what the reference computes with.
 
 use crate::double_double::{Dd, exponential};
-use crate::number::Number;
+use nisp_references::number::Number;
 
 impl Number for Dd {
     fn of(x: f64) -> Self {

@@ -3,7 +3,7 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
 /// What the reference computes with.
-pub(crate) trait Number:
+pub trait Number:
     Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> + Neg<Output = Self>
 {
     /// A constant.
@@ -13,18 +13,23 @@ pub(crate) trait Number:
     /// `f(x)`, given value and derivative of `f`.
     fn chain(self, value: f64, slope: f64) -> Self;
 
+    /// Its exponential.
     fn exp(self) -> Self {
         self.chain(self.value().exp(), self.value().exp())
     }
+    /// Its sine.
     fn sin(self) -> Self {
         self.chain(self.value().sin(), self.value().cos())
     }
+    /// Its cosine.
     fn cos(self) -> Self {
         self.chain(self.value().cos(), -self.value().sin())
     }
+    /// Its square root.
     fn sqrt(self) -> Self {
         self.chain(self.value().sqrt(), 0.5 / self.value().sqrt())
     }
+    /// Its hyperbolic tangent.
     fn tanh(self) -> Self {
         self.chain(self.value().tanh(), 1.0 / self.value().cosh().powi(2))
     }
@@ -44,9 +49,11 @@ impl Number for f64 {
 
 /// `value + slope * epsilon` with `epsilon^2 = 0`
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Dual {
-    pub(crate) value: f64,
-    pub(crate) slope: f64,
+pub struct Dual {
+    /// The number itself.
+    pub value: f64,
+    /// Its derivative.
+    pub slope: f64,
 }
 
 impl Number for Dual {

@@ -26,7 +26,7 @@ nisp::pde! {
 }
 
 nisp::pde! {
-    pub(crate) mod poisson {
+    pub mod poisson {
         units: off;
         coordinates: x, y;
         fields: u;
@@ -174,7 +174,7 @@ nisp::pde! {
 }
 
 nisp::pde! {
-    pub(crate) mod solids {
+    pub mod solids {
         units: off;
         coordinates: x, y, z;
         fields: u;
@@ -200,7 +200,8 @@ fn group(name: &'static str, points: Vec<f64>) -> Data {
     Data { name, points, ..Data::default() }
 }
 
-pub(crate) struct Cart;
+/// A pendulum on a cart, two equations of the second order that are linked.
+pub struct Cart;
 
 impl Model for Cart {
     const ORDER: usize = 2;
@@ -226,7 +227,8 @@ impl Model for Cart {
     }
 }
 
-pub(crate) struct Poisson;
+/// Poisson's equation, and conditions in domains of every kind.
+pub struct Poisson;
 
 impl Model for Poisson {
     const ORDER: usize = 2;
@@ -244,7 +246,8 @@ impl Model for Poisson {
     }
 }
 
-pub(crate) struct Karman;
+/// Von Karman's plate: three fields, products of their derivatives.
+pub struct Karman;
 
 impl Model for Karman {
     const ORDER: usize = 4;
@@ -278,7 +281,8 @@ impl Model for Karman {
     }
 }
 
-pub(crate) struct Sponge;
+/// An elastic body in space: vectors, tensors, learned moduli.
+pub struct Sponge;
 
 impl Model for Sponge {
     const ORDER: usize = 2;
@@ -325,7 +329,8 @@ impl Model for Sponge {
     }
 }
 
-pub(crate) struct Triharmonic;
+/// Derivatives of the sixth order, pairs of points, an integral.
+pub struct Triharmonic;
 
 impl Model for Triharmonic {
     const ORDER: usize = 6;
@@ -353,7 +358,8 @@ impl Model for Triharmonic {
     }
 }
 
-pub(crate) struct Heat;
+/// A conductivity that goes with the temperature, a robust loss, a learned factor.
+pub struct Heat;
 
 impl Model for Heat {
     const ORDER: usize = 2;
@@ -390,7 +396,8 @@ impl Model for Heat {
     }
 }
 
-pub(crate) struct Shape;
+/// A surface and its cloud.
+pub struct Shape;
 
 impl Model for Shape {
     const ORDER: usize = 2;
@@ -414,7 +421,8 @@ impl Model for Shape {
     }
 }
 
-pub(crate) struct Ring;
+/// Points in pairs, whose equations read both.
+pub struct Ring;
 
 impl Model for Ring {
     const ORDER: usize = 2;
@@ -445,7 +453,8 @@ impl Model for Ring {
     }
 }
 
-pub(crate) struct Held;
+/// A field that is what it has to be on a boundary.
+pub struct Held;
 
 impl Model for Held {
     const ORDER: usize = 2;
@@ -470,7 +479,8 @@ impl Model for Held {
     }
 }
 
-pub(crate) struct Partial;
+/// Fields and sources of some of the coordinates.
+pub struct Partial;
 
 impl Model for Partial {
     const ORDER: usize = 2;
@@ -503,31 +513,30 @@ impl Model for Partial {
 }
 
 /// Runs a generic check on every model.
+#[macro_export]
 macro_rules! each_model {
     ($check:ident!) => {
-        $check!(&crate::models::Cart);
-        $check!(&crate::models::Poisson);
-        $check!(&crate::models::Karman);
-        $check!(&crate::models::Sponge);
-        $check!(&crate::models::Triharmonic);
-        $check!(&crate::models::Heat);
-        $check!(&crate::models::Shape);
-        $check!(&crate::models::Ring);
-        $check!(&crate::models::Held);
-        $check!(&crate::models::Partial);
+        $check!(&$crate::models::Cart);
+        $check!(&$crate::models::Poisson);
+        $check!(&$crate::models::Karman);
+        $check!(&$crate::models::Sponge);
+        $check!(&$crate::models::Triharmonic);
+        $check!(&$crate::models::Heat);
+        $check!(&$crate::models::Shape);
+        $check!(&$crate::models::Ring);
+        $check!(&$crate::models::Held);
+        $check!(&$crate::models::Partial);
     };
     ($check:ident) => {
-        $check(&crate::models::Cart);
-        $check(&crate::models::Poisson);
-        $check(&crate::models::Karman);
-        $check(&crate::models::Sponge);
-        $check(&crate::models::Triharmonic);
-        $check(&crate::models::Heat);
-        $check(&crate::models::Shape);
-        $check(&crate::models::Ring);
-        $check(&crate::models::Held);
-        $check(&crate::models::Partial);
+        $check(&$crate::models::Cart);
+        $check(&$crate::models::Poisson);
+        $check(&$crate::models::Karman);
+        $check(&$crate::models::Sponge);
+        $check(&$crate::models::Triharmonic);
+        $check(&$crate::models::Heat);
+        $check(&$crate::models::Shape);
+        $check(&$crate::models::Ring);
+        $check(&$crate::models::Held);
+        $check(&$crate::models::Partial);
     };
 }
-
-pub(crate) use each_model;

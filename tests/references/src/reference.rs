@@ -11,7 +11,7 @@ use crate::dense_jet::{Jet, Space};
 use crate::number::Number;
 
 /// A scene together with its equations written by hand.
-pub(crate) trait Model {
+pub trait Model {
     /// Highest derivative in the equations.
     const ORDER: usize;
     /// The scene, bound.
@@ -47,48 +47,62 @@ pub(crate) trait Model {
 
 /// What is bound to a group.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Data {
-    pub(crate) name: &'static str,
-    pub(crate) points: Vec<f64>,
-    pub(crate) columns: Vec<Vec<f64>>,
-    pub(crate) weights: Vec<f64>,
-    pub(crate) partners: Vec<f64>,
+pub struct Data {
+    /// The group.
+    pub name: &'static str,
+    /// Coordinates of its points, flat.
+    pub points: Vec<f64>,
+    /// Its columns, point by point.
+    pub columns: Vec<Vec<f64>>,
+    /// Quadrature weights of its points; empty if it has none.
+    pub weights: Vec<f64>,
+    /// Coordinates of the points' partners, flat; empty if they have none.
+    pub partners: Vec<f64>,
     /// Of the group's term `cloud`.
-    pub(crate) cloud: Vec<f64>,
+    pub cloud: Vec<f64>,
 }
 
 /// What equations read at a point.
-pub(crate) struct Point<'a, 's, T> {
-    pub(crate) x: &'a [f64],
-    pub(crate) heads: &'a [Jet<'s, T>],
+pub struct Point<'a, 's, T> {
+    /// Its coordinates.
+    pub x: &'a [f64],
+    /// Fields and sources, by head.
+    pub heads: &'a [Jet<'s, T>],
     /// At the point's partner; empty if it has none.
-    pub(crate) partner: &'a [Jet<'s, T>],
-    pub(crate) columns: &'a [f64],
-    pub(crate) learned: &'a [T],
+    pub partner: &'a [Jet<'s, T>],
+    /// What the columns say there.
+    pub columns: &'a [f64],
+    /// Learned scalars.
+    pub learned: &'a [T],
 }
 
 impl<T: Number> Point<'_, '_, T> {
     /// A derivative of a head.
-    pub(crate) fn d(&self, head: usize, orders: &[usize]) -> T {
+    pub fn d(&self, head: usize, orders: &[usize]) -> T {
         self.heads[head].derivative(orders)
     }
 }
 
 /// A model with a network of some shape.
-pub(crate) struct Reference<'m, M> {
-    pub(crate) model: &'m M,
-    pub(crate) problem: Problem,
-    pub(crate) layout: Layout,
-    pub(crate) scaling: Scaling,
+pub struct Reference<'m, M> {
+    /// Equations by hand.
+    pub model: &'m M,
+    /// The same as a bound problem.
+    pub problem: Problem,
+    /// Where weights and learned scalars are.
+    pub layout: Layout,
+    /// How coordinates and heads are scaled.
+    pub scaling: Scaling,
     /// Natural size of each term's rows.
-    pub(crate) sizes: Vec<f64>,
+    pub sizes: Vec<f64>,
     /// The powers of the learned scalars that these go with, by term.
     powers: Vec<Vec<f64>>,
     space: Space,
 }
 
 impl<'m, M: Model> Reference<'m, M> {
-    pub(crate) fn new(model: &'m M, architecture: Architecture) -> Self {
+    /// The model with a network of this shape.
+    pub fn new(model: &'m M, architecture: Architecture) -> Self {
         let problem = model.problem();
         let engine = engine::<f64>(&problem, architecture);
         let scaling = problem.scaling(architecture.inputs).expect("a bound problem");
@@ -104,7 +118,7 @@ impl<'m, M: Model> Reference<'m, M> {
     }
 
     /// Ordinary weights with biases, and learned scalars away from their start.
-    pub(crate) fn theta(&self, seed: u64) -> Vec<f64> {
+    pub fn theta(&self, seed: u64) -> Vec<f64> {
         let mut theta = initialise(&self.layout, seed);
         let biases: Vec<usize> = self.layout.matrices().flat_map(|m| m.bias..m.bias + m.rows).collect();
         for at in biases.into_iter().chain(self.layout.learned.clone()) {
@@ -114,7 +128,7 @@ impl<'m, M: Model> Reference<'m, M> {
     }
 
     /// Size of a term's rows where learned scalars are not at their start.
-    pub(crate) fn size<T: Number>(&self, term: usize, theta: &[T]) -> T {
+    pub fn size<T: Number>(&self, term: usize, theta: &[T]) -> T {
         let theta = &theta[self.layout.learned.clone()];
         let (values, starts) = (self.model.learned(theta), self.model.learned(&vec![0.0; theta.len()]));
         let pairs = values.into_iter().zip(starts).zip(&self.powers[term]);
@@ -173,7 +187,7 @@ impl<'m, M: Model> Reference<'m, M> {
     }
 
     /// Rows of a group before any weighting, `[point][row]`.
-    pub(crate) fn rows<T: Number>(&self, theta: &[T], data: &Data) -> Vec<Vec<T>> {
+    pub fn rows<T: Number>(&self, theta: &[T], data: &Data) -> Vec<Vec<T>> {
         let learned = self.model.learned(&theta[self.layout.learned.clone()]);
         let at = |(p, x): (usize, &[f64])| {
             let columns: Vec<f64> = data.columns.iter().map(|column| column[p]).collect();
@@ -186,7 +200,7 @@ impl<'m, M: Model> Reference<'m, M> {
     }
 
     /// The loss by definition.
-    pub(crate) fn loss<T: Number>(&self, theta: &[T]) -> T {
+    pub fn loss<T: Number>(&self, theta: &[T]) -> T {
         let learned = self.model.learned(&theta[self.layout.learned.clone()]);
         let mut sizes = (0..self.sizes.len()).map(|term| self.size(term, theta));
         let mut loss = T::of(0.0);
@@ -330,13 +344,13 @@ fn activate<'s, T: Number>(activation: Activation, arguments: Vec<Jet<'s, T>>) -
 }
 
 /// The engine of a problem, on this machine's best vectors.
-pub(crate) fn engine<E: nisp::Precision>(problem: &Problem, architecture: Architecture) -> Engine<E> {
+pub fn engine<E: nisp::Precision>(problem: &Problem, architecture: Architecture) -> Engine<E> {
     problem.engine(Isa::detect(), architecture).expect("a bound problem")
 }
 
 /// Shapes of networks that are tried: every depth, both kinds, plain and factorised weights, all inputs, widths that
 /// need padding; and for some of them sine beside tanh.
-pub(crate) fn architectures() -> Vec<Architecture> {
+pub fn architectures() -> Vec<Architecture> {
     (1..=5)
         .flat_map(|layers| {
             let width = 9 + layers;

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 use crate::number::Number;
 
 /// Imaginary part of what is moved. Its square is lost beside any number.
-pub(crate) const STEP: f64 = 1e-40;
+pub const STEP: f64 = 1e-40;
 
 impl Number for Complex64 {
     fn of(x: f64) -> Self {

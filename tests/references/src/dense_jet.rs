@@ -6,7 +6,7 @@ use crate::number::Number;
 
 /// The monomials of a series, and which products of two stay within the order.
 #[derive(Debug)]
-pub(crate) struct Space {
+pub struct Space {
     order: usize,
     exponents: Vec<Vec<usize>>,
     /// `(left, right, product)`
@@ -15,7 +15,7 @@ pub(crate) struct Space {
 
 impl Space {
     /// All monomials of `dimension` variables up to `order`.
-    pub(crate) fn new(dimension: usize, order: usize) -> Self {
+    pub fn new(dimension: usize, order: usize) -> Self {
         let mut exponents = vec![Vec::new()];
         for _ in 0..dimension {
             let extended = exponents.into_iter().flat_map(|e: Vec<usize>| {
@@ -39,21 +39,21 @@ impl Space {
 
 /// A series, about some point.
 #[derive(Clone, Debug)]
-pub(crate) struct Jet<'s, T> {
+pub struct Jet<'s, T> {
     space: &'s Space,
     coefficients: Vec<T>,
 }
 
 impl<'s, T: Number> Jet<'s, T> {
     /// A constant.
-    pub(crate) fn constant(space: &'s Space, value: T) -> Self {
+    pub fn constant(space: &'s Space, value: T) -> Self {
         let mut coefficients = vec![T::of(0.0); space.exponents.len()];
         coefficients[0] = value;
         Self { space, coefficients }
     }
 
     /// `value + slope * (variable - its value)`
-    pub(crate) fn variable(space: &'s Space, variable: usize, value: f64, slope: f64) -> Self {
+    pub fn variable(space: &'s Space, variable: usize, value: f64, slope: f64) -> Self {
         let mut jet = Self::constant(space, T::of(value));
         let at = space.exponents.iter().position(|e| e.iter().sum::<usize>() == 1 && e[variable] == 1);
         if let Some(at) = at {
@@ -63,13 +63,13 @@ impl<'s, T: Number> Jet<'s, T> {
     }
 
     /// Times a number.
-    pub(crate) fn scale(mut self, factor: T) -> Self {
+    pub fn scale(mut self, factor: T) -> Self {
         self.coefficients.iter_mut().for_each(|c| *c = *c * factor);
         self
     }
 
     /// Plus a number.
-    pub(crate) fn shift(mut self, by: T) -> Self {
+    pub fn shift(mut self, by: T) -> Self {
         self.coefficients[0] = self.coefficients[0] + by;
         self
     }
@@ -92,7 +92,7 @@ impl<'s, T: Number> Jet<'s, T> {
     }
 
     /// Hyperbolic tangent: with `t' = 1 - t^2`, every derivative is a polynomial in `t`.
-    pub(crate) fn tanh(&self) -> Self {
+    pub fn tanh(&self) -> Self {
         let t = self.coefficients[0].tanh();
         let mut polynomial = vec![0.0, 1.0];
         let derivatives: Vec<T> = (0..=self.space.order)
@@ -111,7 +111,7 @@ impl<'s, T: Number> Jet<'s, T> {
     }
 
     /// Sine and cosine.
-    pub(crate) fn sin_cos(&self) -> (Self, Self) {
+    pub fn sin_cos(&self) -> (Self, Self) {
         let (sin, cos) = (self.coefficients[0].sin(), self.coefficients[0].cos());
         let turn = [sin, cos, -sin, -cos];
         let series = |quarter: usize| (0..=self.space.order).map(|n| turn[(n + quarter) % 4]).collect::<Vec<T>>();
@@ -119,7 +119,7 @@ impl<'s, T: Number> Jet<'s, T> {
     }
 
     /// Natural logarithm.
-    pub(crate) fn ln(&self) -> Self {
+    pub fn ln(&self) -> Self {
         let a = self.coefficients[0];
         let value = a.chain(a.value().ln(), 1.0 / a.value());
         // Derivative n is (-1)^(n - 1) (n - 1)! / a^n.
@@ -130,19 +130,19 @@ impl<'s, T: Number> Jet<'s, T> {
     }
 
     /// The value.
-    pub(crate) fn value(&self) -> T {
+    pub fn value(&self) -> T {
         self.coefficients[0]
     }
 
     /// The partial derivative of these orders.
-    pub(crate) fn derivative(&self, orders: &[usize]) -> T {
+    pub fn derivative(&self, orders: &[usize]) -> T {
         let at = self.space.exponents.iter().position(|e| e == orders).expect("an order within the space");
         let factorials: f64 = orders.iter().flat_map(|&n| 1..=n).map(|n| n as f64).product();
         self.coefficients[at] * T::of(factorials)
     }
 
     /// The series of the partial derivative by a variable, good to one order less.
-    pub(crate) fn by(&self, variable: usize) -> Self {
+    pub fn by(&self, variable: usize) -> Self {
         let mut result = Self::constant(self.space, T::of(0.0));
         for (at, exponents) in self.space.exponents.iter().enumerate().filter(|(_, e)| e[variable] > 0) {
             let mut lower = exponents.clone();
@@ -154,7 +154,7 @@ impl<'s, T: Number> Jet<'s, T> {
     }
 
     /// Sum of the second derivatives by the first `variables` variables.
-    pub(crate) fn laplacian(&self, variables: usize) -> Self {
+    pub fn laplacian(&self, variables: usize) -> Self {
         let parts = (0..variables).map(|i| self.by(i).by(i));
         parts.reduce(|a, b| a + b).expect("at least one variable")
     }
