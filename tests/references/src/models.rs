@@ -1,4 +1,5 @@
-//! Scenes, each beside its equations written by hand.
+//! Scenes, each beside its equations written by hand. Their kernels are built here, since `scene` is inlined nowhere: crates that
+//! inlined it would each build them again.
 
 // In two of them nothing is measured, which the macro warns of: they are differentiated here, and not solved.
 #![allow(deprecated)]
@@ -205,6 +206,7 @@ pub struct Cart;
 
 impl Model for Cart {
     const ORDER: usize = 2;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<cart::recover::Scene>()
     }
@@ -232,6 +234,7 @@ pub struct Poisson;
 
 impl Model for Poisson {
     const ORDER: usize = 2;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<poisson::solve::Scene>()
     }
@@ -251,6 +254,7 @@ pub struct Karman;
 
 impl Model for Karman {
     const ORDER: usize = 4;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<karman::contact::Scene>()
     }
@@ -286,6 +290,7 @@ pub struct Sponge;
 
 impl Model for Sponge {
     const ORDER: usize = 2;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<sponge::identify::Scene>()
     }
@@ -334,6 +339,7 @@ pub struct Triharmonic;
 
 impl Model for Triharmonic {
     const ORDER: usize = 6;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<triharmonic::solve::Scene>()
     }
@@ -363,6 +369,7 @@ pub struct Heat;
 
 impl Model for Heat {
     const ORDER: usize = 2;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<heat::recover::Scene>()
     }
@@ -401,6 +408,7 @@ pub struct Shape;
 
 impl Model for Shape {
     const ORDER: usize = 2;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<shape::fit::Scene>()
     }
@@ -426,6 +434,7 @@ pub struct Ring;
 
 impl Model for Ring {
     const ORDER: usize = 2;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<ring::wrap::Scene>()
     }
@@ -458,6 +467,7 @@ pub struct Held;
 
 impl Model for Held {
     const ORDER: usize = 2;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<held::solve::Scene>()
     }
@@ -484,6 +494,7 @@ pub struct Partial;
 
 impl Model for Partial {
     const ORDER: usize = 2;
+    #[inline(never)]
     fn scene(&self) -> nisp::SceneRef {
         scene::<partial::solve::Scene>()
     }
