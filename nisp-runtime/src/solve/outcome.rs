@@ -84,6 +84,14 @@ pub struct Warning {
     pub message: String,
 }
 
+impl Warning {
+    /// No error bars, since the budget went before they were found.
+    pub(crate) fn no_bars() -> Self {
+        let message = "no time was left for error bars; give a larger budget".into();
+        Self { kind: WarningKind::OutOfTime, message }
+    }
+}
+
 impl std::fmt::Display for Warning {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(&self.message)

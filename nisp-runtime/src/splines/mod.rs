@@ -181,11 +181,11 @@ pub(crate) fn solve(
         ahead = None;
     }
     // Only a minimum has error bars.
-    let likely = if status == Status::Converged && noise.is_there(schema) { place.likely() } else { Vec::new() };
-    let has_time = run.has_time_for(likely.len());
-    if !has_time {
-        let message = "no time was left for error bars; give a larger budget".into();
-        warnings.push(Warning { kind: WarningKind::OutOfTime, message });
+    let is_noisy = noise.is_there(schema);
+    let likely = if status == Status::Converged && is_noisy { place.likely() } else { Vec::new() };
+    let has_time = status != Status::Budget && run.has_time_for(likely.len());
+    if is_noisy && !has_time {
+        warnings.push(Warning::no_bars());
     }
     let bars = Bars::of(&mut solver, if has_time { likely } else { Vec::new() }, &place.state.theta)?;
     if bars.is_open {

@@ -139,16 +139,15 @@ fn finish(
 ) -> Result<LocalSolution, LocalError> {
     let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
     let mut warnings = Vec::new();
-    let wants_bars = status == Status::Converged && noise.is_there(bound.problem.scene().schema);
-    let (draws, beyond) = if !wants_bars {
-        Default::default()
-    } else if clock.has_time(BARS * longest) {
-        solver.doubted(&state).unwrap_or_default()
-    } else {
-        let message = "no time was left for error bars; give a larger budget".into();
-        warnings.push(Warning { kind: WarningKind::OutOfTime, message });
-        Default::default()
-    };
+    let is_noisy = noise.is_there(bound.problem.scene().schema);
+    // Only a minimum has error bars.
+    let wants_bars = status == Status::Converged && is_noisy;
+    let has_time = status != Status::Budget && clock.has_time(BARS * longest);
+    if is_noisy && !has_time {
+        warnings.push(Warning::no_bars());
+    }
+    let (draws, beyond) =
+        if wants_bars && has_time { solver.doubted(&state).unwrap_or_default() } else { Default::default() };
     if status == Status::Budget && solver.strain(&state, noise) > 1.0 {
         let message = "the lattice may be too coarse for these equations; a larger --budget makes it finer".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
