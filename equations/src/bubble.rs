@@ -19,6 +19,7 @@ pub(crate) fn entry() -> Entry {
             scene::<bubble::calibrate_rubber::Scene>(),
         ],
         data: "data/membrane_large/large_sphere_d35.toml",
+        sizes: bodies::SEMI_AXES,
         binding: Binding::Cloud(bodies::prepare_bubble),
     }
 }

@@ -23,8 +23,21 @@ pub struct Entry {
     pub scenes: Vec<SceneRef>,
     /// Path of the example's data in the repository; empty if there are none.
     pub data: &'static str,
+    /// Sizes of the body, for `--set`.
+    pub sizes: &'static [Size],
     /// How it is bound.
     pub binding: Binding,
+}
+
+/// A length of a body, which no equation names: in metres.
+#[derive(Clone, Copy, Debug)]
+pub struct Size {
+    /// Its name for `--set`.
+    pub name: &'static str,
+    /// Its value where nobody says otherwise.
+    pub usual: f64,
+    /// What it is.
+    pub about: &'static str,
 }
 
 /// How an entry's scenes are bound to what a user asks for.
@@ -71,7 +84,7 @@ impl Entry {
     pub fn own(scenes: Vec<SceneRef>) -> Option<Self> {
         let schema = scenes.first()?.schema;
         let about = schema.docs.lines().next().unwrap_or_default();
-        Some(Self { name: schema.module, about, scenes, data: "", binding: Binding::Tables(Path::new("")) })
+        Some(Self { name: schema.module, about, scenes, data: "", sizes: &[], binding: Binding::Tables(Path::new("")) })
     }
 
     /// The scene of a name, or the default.

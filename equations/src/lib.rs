@@ -42,7 +42,7 @@ pub use camera::camera;
 pub use catalogue::catalogue;
 pub use contact::Contact;
 pub use copies::noisy_copy;
-pub use entry::{Binding, Entry, Series};
+pub use entry::{Binding, Entry, Series, Size};
 pub use error::PrepareError;
 pub use frames::Frames;
 pub use prepared::{Assumed, Measured, Prepared};

@@ -20,6 +20,7 @@ pub(crate) fn entry() -> Entry {
             scene::<membrane::identify_unknown_pressure::Scene>(),
         ],
         data: "data/membrane/y_shape_1.toml",
+        sizes: bodies::SEMI_AXES,
         binding: Binding::Cloud(bodies::prepare_membrane),
     }
 }

@@ -13,6 +13,7 @@ pub(crate) fn entry() -> Entry {
         about: "the force on a cart with two links, from noisy positions and angles",
         scenes: vec![scene::<pendulum::recover::Scene>()],
         data: "data/pendulum/run_07_obs.csv",
+        sizes: &[],
         binding: Binding::Series(SERIES),
     }
 }

@@ -22,6 +22,7 @@ pub(crate) fn entry() -> Entry {
         about: "the deflection of a clamped circular plate under pressure: a forward problem",
         scenes: vec![scene::<plate::clamped::Scene>(), scene::<plate::edge_only::Scene>()],
         data: "data/plate/plate.toml",
+        sizes: &[],
         binding: Binding::Own(prepare),
     }
 }

@@ -15,6 +15,7 @@ pub(crate) fn entry() -> Entry {
         about: "the voltage that drives a circuit, from the voltage that answers",
         scenes: vec![scene::<rlc::recover::Scene>(), scene::<rlc::free::Scene>()],
         data: "data/rlc/rlc_exponential.csv",
+        sizes: &[],
         binding: Binding::Series(SERIES),
     }
 }

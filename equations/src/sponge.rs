@@ -16,6 +16,7 @@ pub(crate) fn entry() -> Entry {
             scene::<sponge::displacement::Scene>(),
         ],
         data: "data/sponge/plane_1.toml",
+        sizes: bodies::SIDE,
         binding: Binding::Cloud(bodies::prepare_sponge),
     }
 }

@@ -16,6 +16,9 @@ pub(crate) fn explain(entry: &Entry, scene: Option<&str>, architecture: Architec
         let _ = writeln!(text, "{}", content.trim_end());
     };
     unknowns(schema).into_iter().for_each(&mut line);
+    for size in entry.sizes {
+        line(format!("  {:10} {:5} {:9} {}  {}", "size", size.name, "[m]", size.usual, size.about));
+    }
     line(format!("in a network of {} layers of {} units, with gates:", architecture.layers, architecture.width));
     for group in schema.groups {
         line(format!("group {}", group.name));

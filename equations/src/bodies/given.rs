@@ -6,6 +6,7 @@ use nisp::schema::{Origin, Scalar, Scene};
 use nisp::{BindError, Problem, SceneRef};
 
 use crate::PrepareError;
+use crate::entry::Size;
 use crate::prepared::Assumed;
 use crate::request::Request;
 
@@ -17,14 +18,6 @@ pub(super) struct Number {
     pub(super) key: &'static str,
     /// Its value, if the file has it.
     pub(super) value: Option<f64>,
-}
-
-/// A size of the body, which no equation names: in metres.
-pub(super) struct Size {
-    /// Its name for `--set`.
-    pub(super) name: &'static str,
-    /// Its value where nobody says otherwise.
-    pub(super) usual: f64,
 }
 
 /// All that is said of parameters.

@@ -5,11 +5,11 @@ use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use serde::Deserialize;
 
-use super::given::{Given, Number, Positive, Size};
+use super::given::{Given, Number, Positive};
 use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
 use crate::contact::{CALIBRATES, Calibration, Contact, ContactRival, Face, Load, Membrane, References, Rule, Surface};
-use crate::entry::Entry;
+use crate::entry::{Entry, Size};
 use crate::frames::{Frames, bind_cloud};
 use crate::prepared::Prepared;
 use crate::request::Request;
@@ -43,8 +43,11 @@ struct Tables {
     membrane: Membrane,
 }
 
-/// Semi-axes of the paper's membrane.
-const SIZES: [Size; 2] = [Size { name: "a", usual: 0.06 }, Size { name: "b", usual: 0.04 }];
+/// Semi-axes; those of the paper's membrane where nothing else is said.
+pub(crate) const SEMI_AXES: &[Size] = &[
+    Size { name: "a", usual: 0.06, about: "Semi-axis of the rim along x." },
+    Size { name: "b", usual: 0.04, about: "Semi-axis of the rim along y." },
+];
 
 const POSITIVE: &Positive =
     &[("p", "nothing inflates the membrane without pressure from below: give the gauge pressure with --set p=VALUE")];
@@ -85,7 +88,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     let mut observed = if calibrates { Observed::all(request)? } else { Observed::read(entry, request, example)? };
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
-    let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
+    let given = Given { scene, request, sample: sample.transpose()?, sizes: entry.sizes };
     let mut problem = given.problem(POSITIVE)?;
     let assumed = given.assumed()?;
     let (a, b) = (given.size("a")?, given.size("b")?);

@@ -12,5 +12,7 @@ mod observed;
 mod sponge;
 
 pub(crate) use bubble::prepare as prepare_bubble;
+pub(crate) use inflated::SEMI_AXES;
 pub(crate) use membrane::prepare as prepare_membrane;
+pub(crate) use sponge::SIDE;
 pub(crate) use sponge::prepare as prepare_sponge;

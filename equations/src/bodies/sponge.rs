@@ -4,11 +4,11 @@ use nisp::local::{Local, Patches};
 use nisp_data::domain::{Domain, Points, Sampling};
 use serde::Deserialize;
 
-use super::given::{Given, Number, Positive, Size};
+use super::given::{Given, Number, Positive};
 use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
 use crate::contact::{Contact, ContactRival, Face, Load, Rule, Surface};
-use crate::entry::Entry;
+use crate::entry::{Entry, Size};
 use crate::frames::{Frames, bind_cloud};
 use crate::prepared::Prepared;
 use crate::request::Request;
@@ -54,7 +54,8 @@ const GRAVITY: [&str; 3] = ["g_x", "g_y", "g_z"];
 const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
 const TORQUE: [&str; 3] = ["torque_x", "torque_y", "torque_z"];
 
-const SIZES: [Size; 1] = [Size { name: "side", usual: 0.046 }];
+/// The side of a cube; that of the paper's sponge where nothing else is said.
+pub(crate) const SIDE: &[Size] = &[Size { name: "side", usual: 0.046, about: "Side of the sponge, which is a cube." }];
 
 const POSITIVE: &Positive = &[
     ("nu", "the equations divide by it: give Poisson's ratio with --set nu=VALUE"),
@@ -105,7 +106,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let mut observed = Observed::read(entry, request, &EXAMPLE)?;
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
-    let given = Given { scene, request, sample: sample.transpose()?, sizes: &SIZES };
+    let given = Given { scene, request, sample: sample.transpose()?, sizes: entry.sizes };
     let mut problem = given.problem(POSITIVE)?;
     let assumed = given.assumed()?;
     let side = given.size("side")?;

@@ -192,6 +192,9 @@ fn lists_and_explains() {
     let explained = place.run("explain pendulum --width 10").stdout;
     assert!(explained.contains("matrix products        600       1200"), "{explained}");
     assert!(place.run("explain rlc --scene free").stdout.contains("scene free"));
+    assert!(
+        place.run("explain bubble").stdout.contains("size       a     [m]       0.06  Semi-axis of the rim along x.")
+    );
     assert!(place.names().is_empty());
 }
 
