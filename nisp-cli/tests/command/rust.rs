@@ -13,8 +13,9 @@ fn run(folder: &Path, line: &str) -> Output {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let target = Path::new(env!("CARGO_BIN_EXE_nisp")).ancestors().nth(2).unwrap();
     let mut cargo = Command::new(env!("CARGO"));
-    // The workspace's profile, so that what is built already is built no more.
+    // The workspace's profile, so that what is built already is built no more; the runtime, which is not, by both cores.
     cargo.arg("--config").arg(root.join("Cargo.toml"));
+    cargo.args(["--config", "profile.release.package.nisp-runtime.codegen-units=16"]);
     cargo.args(["run", "--quiet"]).args(if cfg!(debug_assertions) { None } else { Some("--release") });
     cargo.env("CARGO_TARGET_DIR", target).current_dir(folder);
     if !folder.join("Cargo.lock").exists() {
