@@ -98,7 +98,8 @@ pub(crate) fn solve(
         let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + bars);
         let factors: &[usize] = if missed > FAR { &[MORE * MORE, MORE] } else { &[MORE] };
         let Some(more) = factors.iter().find(|times| has_time(times)).map(|times| times * points) else {
-            run.status = Status::Budget;
+            // Where the last one did not help, the next is a hope, and this is an answer.
+            run.status = if idle == 0 { Status::Budget } else { Status::Converged };
             break;
         };
         // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
