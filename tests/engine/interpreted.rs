@@ -5,16 +5,14 @@ use nisp::network::Architecture;
 use nisp::simd::Isa;
 
 use nisp_references::each_model;
+use nisp_references::models::TEXTS;
 use nisp_references::reference::{Model, Reference, architectures};
-
-/// The file of the models, whose texts are read here once more.
-const MODELS: &str = include_str!("../references/src/models.rs");
 
 /// A model's scene, interpreted: from the braces of the `pde!` that declares its module.
 fn interpreted(scene: nisp::SceneRef) -> nisp::SceneRef {
     let module = format!("mod {} {{", scene.schema.module);
-    let (_, text) = MODELS.split_once("pde! {").expect("models");
-    let text = text.split("pde! {").find(|text| text.contains(&module)).expect("the model's text");
+    let file = TEXTS.iter().find(|text| text.contains(&module)).expect("the model's file");
+    let (_, text) = file.split_once("pde! {").expect("the model's text");
     let (text, _) = text.split_once("\n}\n").expect("the end of the text");
     let equation = nisp_interpreter::read(text, "unnamed").unwrap_or_else(|mistakes| panic!("{mistakes}"));
     assert_eq!(equation.name, scene.schema.module);
@@ -30,8 +28,8 @@ fn schemas_agree<M: Model>(model: &M) {
 fn a_text_has_the_schema_that_the_macro_emits() {
     each_model!(schemas_agree);
     // Groups in every portion of domains of every kind.
-    let everywhere = nisp::scene::<nisp_references::models::poisson::everywhere::Scene>();
-    for compiled in [everywhere, nisp::scene::<nisp_references::models::solids::solve::Scene>()] {
+    let everywhere = nisp::scene::<nisp_references::models::poisson::poisson::everywhere::Scene>();
+    for compiled in [everywhere, nisp::scene::<nisp_references::models::solids::solids::solve::Scene>()] {
         assert_eq!(format!("{:#?}", interpreted(compiled).schema), format!("{:#?}", compiled.schema));
     }
 }

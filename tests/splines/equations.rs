@@ -1,7 +1,7 @@
 //! Other equations over one coordinate: coefficients, rates, beliefs, boundary values, bounds, and what is refused.
 
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Carrier, Problem, SceneRef, Settings, recover, scene};
+use nisp::{Carrier, Problem, SceneRef, Settings, Solution, recover, scene};
 
 use crate::{normals, of, settings, solve};
 
@@ -306,16 +306,22 @@ fn gated(t: f64) -> (f64, f64) {
     (t.sin().clamp(0.0, 0.5), whole * (t / TAU).floor() + level)
 }
 
-#[test]
-fn a_source_between_two_bounds_stays_at_both() {
-    let mut normal = normals(5);
+/// Times, and the answer to a tank's noisy levels there.
+fn tank_from(scene: SceneRef, level: impl Fn(f64) -> f64, seed: u64) -> (Vec<f64>, Solution) {
+    let mut normal = normals(seed);
     let times: Vec<f64> = (0..500).map(|i| f64::from(i) * 0.04).collect();
-    let levels = times.iter().map(|&t| gated(t).1 + 0.01 * normal()).collect();
-    let mut problem = Problem::new(scene::<gate::filled::Scene>());
+    let levels = times.iter().map(|&t| level(t) + 0.01 * normal()).collect();
+    let mut problem = Problem::new(scene);
     problem.set_group("filling", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.clone().into(), vec![levels]).unwrap();
-    let mut solution = solve(&problem, Carrier::Auto);
+    let solution = solve(&problem, Carrier::Auto);
     assert_eq!((solution.carrier, solution.status), ("splines", Status::Converged), "{:?}", solution.verdict);
+    (times, solution)
+}
+
+#[test]
+fn a_source_between_two_bounds_stays_at_both() {
+    let (times, mut solution) = tank_from(scene::<gate::filled::Scene>(), |t| gated(t).1, 5);
     let inflow = of(&solution.evaluate_with_errors(&times), "inflow").clone();
     assert!(inflow.values.iter().all(|q| (0.0..=0.5).contains(q)));
     let off: Vec<f64> = times.iter().zip(&inflow.values).map(|(&t, q)| (q - gated(t).0).abs()).collect();
@@ -343,14 +349,7 @@ fn filling(t: f64) -> (f64, f64) {
 
 #[test]
 fn a_source_with_a_bound_stays_at_it() {
-    let mut normal = normals(3);
-    let times: Vec<f64> = (0..500).map(|i| f64::from(i) * 0.04).collect();
-    let levels = times.iter().map(|&t| filling(t).1 + 0.01 * normal()).collect();
-    let mut problem = Problem::new(scene::<tank::filled::Scene>());
-    problem.set_group("filling", times.clone().into(), vec![]).unwrap();
-    problem.set_group("samples", times.clone().into(), vec![levels]).unwrap();
-    let solution = solve(&problem, Carrier::Auto);
-    assert_eq!((solution.carrier, solution.status), ("splines", Status::Converged), "{:?}", solution.verdict);
+    let (times, solution) = tank_from(scene::<tank::filled::Scene>(), |t| filling(t).1, 3);
     let inflow = of(&solution.evaluate(&times), "inflow").values.clone();
     assert!(inflow.iter().all(|&q| q >= 0.0));
     let error = times.iter().zip(&inflow).map(|(&t, q)| (q - filling(t).0).abs()).sum::<f64>() / times.len() as f64;
