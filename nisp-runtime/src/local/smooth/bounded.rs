@@ -13,9 +13,10 @@ impl Solver<'_> {
         let walls = self.walls(state);
         let inside = |step: &(Vec<f64>, Vec<f64>), at: usize| walls[at].after(0, &step.0, &step.1) / WALL;
         let at_bound = (0..walls.len()).filter(|&at| walls[at].misfits[0] <= 0.0).collect();
-        let free = self.normal.sums();
+        // Kept only where a wall is in the way.
+        let mut free = None;
         within(walls.len(), step, at_bound, inside, |held| {
-            self.normal.go_back(&free);
+            self.normal.go_back(free.get_or_insert_with(|| self.normal.sums()));
             let held: Vec<Block> = held.iter().map(|&at| walls[at].clone()).collect();
             self.normal.add_all(&held);
             self.normal.step(&self.normal.factor()?)

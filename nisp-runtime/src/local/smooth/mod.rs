@@ -98,8 +98,10 @@ pub(crate) fn solve(
         let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + bars);
         let factors: &[usize] = if missed > FAR { &[MORE * MORE, MORE] } else { &[MORE] };
         let Some(more) = factors.iter().find(|times| has_time(times)).map(|times| times * points) else {
-            // Where the last one did not help, the next is a hope, and this is an answer.
-            run.status = if idle == 0 { Status::Budget } else { Status::Converged };
+            // If the last lattice did not help, this one's answer does not wait for the next.
+            if idle == 0 {
+                run.status = Status::Budget;
+            }
             break;
         };
         // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
@@ -143,12 +145,14 @@ fn finish(
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     // Only a minimum has error bars.
     let wants_bars = status == Status::Converged && is_noisy;
-    let has_time = status != Status::Budget && clock.has_time(BARS * longest);
-    if is_noisy && !has_time {
-        warnings.push(Warning::no_bars());
-    }
-    let (draws, beyond) =
-        if wants_bars && has_time { solver.doubted(&state).unwrap_or_default() } else { Default::default() };
+    let (draws, beyond) = if wants_bars && clock.has_time(BARS * longest) {
+        solver.doubted(&state).unwrap_or_default()
+    } else {
+        if is_noisy && matches!(status, Status::Converged | Status::Budget) {
+            warnings.push(Warning::no_bars());
+        }
+        Default::default()
+    };
     if status == Status::Budget && solver.strain(&state, noise) > 1.0 {
         let message = "the lattice may be too coarse for these equations; a larger --budget makes it finer".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });
