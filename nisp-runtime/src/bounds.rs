@@ -24,7 +24,7 @@ pub(crate) struct Limits {
     upper: Option<f64>,
 }
 
-/// One of them.
+/// One bound of a head, in the engine's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limit {
     /// +1 for a lower, -1 for an upper bound.
@@ -52,6 +52,12 @@ pub(crate) fn limits(schema: &schema::Scene, system: &UnitSystem) -> Vec<Option<
         head.transformed.then_some(limits)
     };
     schema.heads.iter().map(limits).collect()
+}
+
+/// The bounds of all heads one by one, each with its head.
+pub(crate) fn each(limits: &[Option<Limits>]) -> impl Iterator<Item = (usize, Limit)> {
+    let bounded = limits.iter().enumerate().filter_map(|(head, limits)| Some((head, (*limits)?)));
+    bounded.flat_map(|(head, limits)| limits.each().map(move |limit| (head, limit)))
 }
 
 /// Offsets and scales of a problem's heads with these bounds.

@@ -4,7 +4,7 @@ use super::iterate::State;
 use super::rows::{Rows, Walk};
 use super::solver::Solver;
 use super::triangle::{Row, Source};
-use crate::bounds::{Limit, WALL, within};
+use crate::bounds::{Limit, WALL, each, within};
 
 /// A row that holds a head at a bound where one of its functions is centred, positive inside: its value where all coefficients are
 /// zero, and its derivatives by them from the first that it depends on.
@@ -81,9 +81,7 @@ impl Solver<'_> {
                 Wall { away, first, slopes: slopes.iter().map(|slope| factor * slope).collect() }
             })
         };
-        let limits = heads.limits.iter().enumerate().filter_map(|(head, limits)| Some((head, (*limits)?)));
-        let mut walls: Vec<Wall> =
-            limits.flat_map(|(head, limits)| limits.each().flat_map(move |limit| of(head, limit))).collect();
+        let mut walls: Vec<Wall> = each(&heads.limits).flat_map(|(head, limit)| of(head, limit)).collect();
         walls.sort_by_key(|wall| wall.first);
         walls
     }

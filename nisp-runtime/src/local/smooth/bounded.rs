@@ -2,7 +2,7 @@
 
 use super::solver::Solver;
 use super::state::State;
-use crate::bounds::{Limit, WALL, within};
+use crate::bounds::{Limit, WALL, each, within};
 use crate::local::block::Block;
 
 impl Solver<'_> {
@@ -37,7 +37,6 @@ impl Solver<'_> {
                 Block { misfits: vec![misfit], by_learned, dofs, slopes, excess: 0.0 }
             })
         };
-        let limits = heads.limits.iter().enumerate().filter_map(|(head, limits)| Some((head, (*limits)?)));
-        limits.flat_map(|(head, limits)| limits.each().flat_map(move |limit| of(head, limit))).collect()
+        each(&heads.limits).flat_map(|(head, limit)| of(head, limit)).collect()
     }
 }
