@@ -20,6 +20,8 @@ use crate::solve::fault::Fault;
 /// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
 const RIDGE: f64 = 1e-6;
 const STIFFNESS: f64 = 1e-3;
+/// Stiffness with which outermost functions go on from the next ones: little for what is seen, and all for what is not.
+const CONTINUED: f64 = 1e4;
 /// Length over which the first step, which only regresses the data, smooths them, in cells: noise cannot crease the state.
 const SMOOTHED: f64 = 2.0;
 /// Random vectors for the trace of the influence matrix (Hutchinson).
@@ -90,7 +92,7 @@ impl Solver {
             let stiffness = if matches!(phase, Phase::Regress | Phase::Convex { held: true }) { HELD } else { 1e-2 };
             self.normal.add_learned(at, stiffness, 1e-2 * parameter);
         }
-        self.add_priors(theta, noise, regress, phase == Phase::Concave);
+        self.add_priors(state, noise, regress, phase == Phase::Concave);
         for at in 0..theta.len() {
             self.normal.add_stiffness(at, RIDGE);
         }
@@ -98,10 +100,14 @@ impl Solver {
     }
 
     /// Priors of sources, or of all heads' roughness while only data are regressed.
-    fn add_priors(&mut self, theta: &[f64], noise: f64, regress: bool, concave: bool) {
+    fn add_priors(&mut self, state: &State, noise: f64, regress: bool, concave: bool) {
+        let theta = &state.theta;
         let schema = self.bound.problem.scene().schema;
         for (head, declared) in schema.heads.iter().enumerate() {
             let first = self.heads.first[head];
+            if !regress {
+                self.normal.add_all(&self.heads.continued(head, &self.outer[head], CONTINUED, state));
+            }
             let stiffness = if regress {
                 let seen = self.normal.typical(first..self.heads.first[head + 1]);
                 (SMOOTHED * SMOOTHED * seen).max(STIFFNESS)
@@ -177,12 +183,20 @@ impl Solver {
         let assembled = self.assemble(state, state.noise, Phase::Concave);
         let draws = self.normal.draws.take()?;
         assembled.ok()?;
+        // What was not seen is free to be more than none.
+        let mut free = state.free.clone();
+        for head in 0..self.heads.lattices.len() {
+            let Some(unseen) = self.unseen(head) else { continue };
+            let own = &mut free[self.heads.first[head]..self.heads.first[head + 1]];
+            own.iter_mut().zip(&unseen.functions).for_each(|(free, is_unseen)| *free |= is_unseen);
+        }
+        self.normal.set_free(Some(&free))?;
         self.normal.factor()?.deviations(&draws)
     }
 }
 
 /// The prior of a head where the clouds are off by `noise` cells; none of a field, or where nothing is known.
-fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, noise: f64) -> Option<Sparse<'a>> {
+pub(super) fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, noise: f64) -> Option<Sparse<'a>> {
     let declared = &bound.problem.scene().schema.heads[head];
     let prior = settings.patches.filter(|_| declared.source)?;
     let is_below = heads.limits[head].is_some_and(|limits| limits.is_below(heads.offset[head]));

@@ -28,10 +28,10 @@ pub(super) const ASKED: f64 = 2.0;
 /// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
 const MOST_OFF: f64 = 5.0;
 /// Relative change of the coefficients at which the answer counts as converged.
-const CONVERGED: f64 = 2e-2;
+const CONVERGED: f64 = 5e-3;
 /// Change of the logarithm of the probability, by rows, at which a lattice's answer counts as converged too if learned scalars
 /// rest: a pressure that the data hardly determine may wander for long.
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 2e-4;
 /// Change of the parameters of learned scalars that rest.
 const RESTING: f64 = 1e-3;
 /// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
@@ -41,8 +41,11 @@ const COARSE_STEPS: u64 = 4;
 const MOST_DAMPING: f64 = 1e4;
 /// What damping is multiplied by when a step fails, and divided by when one does not.
 const STRONGER: f64 = 10.0;
-/// How often larger a step may leave the sum of squares: through a narrow valley the way to the minimum leads uphill at first.
-const UPHILL: f64 = 10.0;
+/// How often larger than the least so far a step may leave the sum of squares: through a narrow valley the way to the minimum
+/// leads uphill at first.
+const UPHILL: f64 = 2.0;
+/// Shares of a step that are tried before it is taken again with more damping.
+const SHARES: [f64; 3] = [1.0, 0.25, 0.0625];
 /// Share of a step that is tried where the whole led to numbers that are not finite.
 const RETREAT: f64 = 0.25;
 
@@ -98,7 +101,9 @@ impl Solver {
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
         let (theta, _) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
         // Who comes with a state needs no regression, and few steps before the penalty may end at its level.
-        Ok(Place { skipped: CONVEX_STEPS - WARM_STEPS, ..self.place(&State { theta, ..state.clone() }, 0) })
+        let state = State { theta, lowest: f64::INFINITY, free: Vec::new(), ..state.clone() };
+        let free = self.free_at_first(&state);
+        Ok(Place { skipped: CONVEX_STEPS - WARM_STEPS, ..self.place(&State { free, ..state }, 0) })
     }
 
     /// Where a saved run stood on this lattice.
@@ -208,24 +213,41 @@ impl Solver {
         let phase = Phase::of(iteration, coarse);
         let (loss, rows, probes) = self.assemble(state, noise, phase)?;
         let before = loss + self.penalty(state, noise, phase == Phase::Concave);
+        let is_first = regress || Phase::of(iteration - 1, coarse) != phase;
+        let lowest = if is_first { before } else { before.min(state.lowest) };
         let fields: Vec<usize> = self.fields().flatten().collect();
+        self.normal.set_free(Some(&state.free)).ok_or(LocalError::Memory)?;
+        let to_rest = |(free, at): (&bool, &f64)| if *free { 0.0 } else { -at };
+        let held: Vec<f64> = state.free.iter().zip(&state.theta).map(to_rest).collect();
         let (mut damping, mut wanted) = (0.0, state.damping);
         let (next, after, factor, scores) = loop {
             fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
             damping = wanted;
             let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
             let used: f64 = probes.iter().map(|probe| factor.inner(probe)).sum::<f64>() / probes.len() as f64;
-            let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
+            let (step, shared) = self.normal.step_with(&factor, &held).ok_or(LocalError::Factorisation)?;
             // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
             let largest = fields.iter().map(|&at| step[at].abs()).fold(0.0, f64::max);
-            let share = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
+            let all = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
             let calmer = (damping / STRONGER).max(LEAST_DAMPING);
-            let mut next = State { noise, used, damping: calmer, ..state.clone() };
-            next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
-            next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
             let scores = self.scores_of(asked, &State { noise, ..state.clone() }, &factor);
-            let after = self.loss(&next, noise) + self.penalty(&next, noise, phase == Phase::Concave);
-            if regress || after <= UPHILL * before || damping >= MOST_DAMPING {
+            let mut taken = None;
+            for share in SHARES.map(|share| share * all) {
+                let mut next = State { noise, used, damping: calmer, lowest, ..state.clone() };
+                next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
+                next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
+                let after = self.loss(&next, noise) + self.penalty(&next, noise, phase == Phase::Concave);
+                let is_near = regress || after <= UPHILL * lowest;
+                taken = Some((next, after, is_near));
+                if is_near {
+                    break;
+                }
+            }
+            let (mut next, after, is_near) = taken.ok_or(LocalError::Factorisation)?;
+            if is_near || damping >= MOST_DAMPING {
+                if !regress {
+                    next.free = self.free_after(&next, &self.normal.slopes_after(&step, &shared));
+                }
                 break (next, after, factor, scores);
             }
             wanted *= STRONGER;

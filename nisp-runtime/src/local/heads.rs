@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::block::Block;
 use super::lattice::{Exponents, Lattice, NONE, Span, contracted};
+use super::place::State;
 use super::tabled::Splines;
 use crate::bounds::{Limits, limits, sizes};
 use crate::problem::Bound;
@@ -26,6 +27,23 @@ pub(super) struct Heads {
 const TOGETHER: usize = 1024;
 
 impl Heads {
+    /// Rows that let a head's outermost functions, of which little is seen, go on from the next ones as a polynomial does (a ghost
+    /// penalty, Burman 2010): the highest difference of the coefficients of each line, with this stiffness.
+    pub(super) fn continued(&self, head: usize, lines: &[Vec<u32>], stiffness: f64, state: &State) -> Vec<Block> {
+        let (first, degree) = (self.first[head] as u32, self.lattices[head].degree);
+        let mut slopes = vec![stiffness.sqrt()];
+        for at in 0..degree {
+            slopes.push(-slopes[at] * (degree - at) as f64 / (at + 1) as f64);
+        }
+        let row = |line: &Vec<u32>| {
+            let dofs: Vec<u32> = line.iter().map(|number| first + number).collect();
+            let misfit = dofs.iter().zip(&slopes).map(|(&dof, slope)| slope * state.theta[dof as usize]).sum();
+            let by_learned = vec![0.0; state.learned.len()];
+            Block { misfits: vec![misfit], by_learned, dofs, slopes: slopes.clone(), excess: 0.0 }
+        };
+        lines.iter().map(row).collect()
+    }
+
     /// How far a step moves a source, over its size, at most; nothing without one.
     pub(super) fn moved(&self, schema: &Scene, before: &[f64], after: &[f64]) -> f64 {
         let of = |head: usize| {

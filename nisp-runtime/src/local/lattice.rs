@@ -95,8 +95,9 @@ impl Lattice {
         Self::new(degree, self.low.clone(), spacing, self.cells.iter().map(|n| n * times).collect())
     }
 
-    /// Keeps the functions that the points see: those whose sum over them is at least `share` of the largest.
-    pub(super) fn keep(&mut self, points: impl Iterator<Item = Place>, share: f64) {
+    /// Keeps the functions that the points see: those whose sum over them is at least `share` of the largest. Returns how much is
+    /// seen of each, beside the largest.
+    pub(super) fn keep(&mut self, points: impl Iterator<Item = Place>, share: f64) -> Vec<f64> {
         let mut seen = vec![0.0; self.full_len()];
         let mut values = vec![0.0; self.per_cell()];
         for place in points {
@@ -105,12 +106,13 @@ impl Lattice {
                 seen[at] += value;
             }
         }
-        let least = share * seen.iter().copied().fold(0.0, f64::max);
-        self.full = (0..seen.len()).filter(|&at| seen[at] > least).collect();
+        let most = seen.iter().copied().fold(0.0, f64::max);
+        self.full = (0..seen.len()).filter(|&at| seen[at] > share * most).collect();
         self.kept = vec![NONE; seen.len()];
         for (number, &at) in self.full.iter().enumerate() {
             self.kept[at] = number as u32;
         }
+        self.full.iter().map(|&at| seen[at] / most).collect()
     }
 
     pub(super) fn dimensions(&self) -> usize {
@@ -255,12 +257,30 @@ impl Lattice {
 
     /// Pairs of kept neighbours along a coordinate: the number of a function, and that of the next.
     pub(super) fn neighbours(&self, axis: usize) -> impl Iterator<Item = (u32, u32)> + '_ {
+        (0..self.full.len()).filter_map(move |number| {
+            let next = self.beside(number, axis, 1)?;
+            Some((number as u32, next))
+        })
+    }
+
+    /// The kept function that is so many further than another along a coordinate, if there is one.
+    fn beside(&self, number: usize, axis: usize, further: isize) -> Option<u32> {
         let stride: usize = (0..axis).map(|a| self.cells[a] + self.degree).product();
         let along = self.cells[axis] + self.degree;
-        self.full.iter().enumerate().filter_map(move |(number, &at)| {
-            let is_last = (at / stride) % along + 1 == along;
-            let next = if is_last { NONE } else { self.kept[at + stride] };
-            (next != NONE).then_some((number as u32, next))
+        let at = self.full[number];
+        let is_inside = ((at / stride) % along).checked_add_signed(further).is_some_and(|place| place < along);
+        let next = is_inside.then(|| self.kept[at.wrapping_add_signed(further * stride as isize)])?;
+        (next != NONE).then_some(next)
+    }
+
+    /// The functions of a cell along every coordinate, from each that has no neighbour on its other side inwards.
+    pub(super) fn ends(&self) -> impl Iterator<Item = Vec<u32>> + '_ {
+        let ways = (0..self.dimensions()).flat_map(|axis| [(axis, -1), (axis, 1)]);
+        ways.flat_map(move |(axis, inwards)| {
+            let outermost = (0..self.full.len()).filter(move |&number| self.beside(number, axis, -inwards).is_none());
+            outermost.filter_map(move |number| {
+                (0..=self.degree as isize).map(|further| self.beside(number, axis, further * inwards)).collect()
+            })
         })
     }
 }

@@ -1,16 +1,17 @@
 //! Normal equations of sparse rows, bordered by the few unknowns that all rows share.
 
 use std::ops::Range;
+use std::sync::Arc;
 
+use faer::Mat;
 use faer::prelude::Solve;
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Mat, Side};
+use faer::sparse::linalg::solvers::Llt;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 use super::block::Block;
 use super::draws::{Deviations, Draws};
+use super::pattern::{Part, Pattern};
 use super::sorted::Sorted;
 use crate::simd::Isa;
 use crate::solve::vector;
@@ -20,8 +21,9 @@ const PIECES: usize = 32;
 
 /// The normal matrix's lower triangle with its pattern, its gradient and its border.
 pub(super) struct Normal {
-    pattern: SymbolicSparseColMat<usize>,
-    symbolic: SymbolicLlt<usize>,
+    pattern: Pattern,
+    /// The unknowns that are free, where not all are.
+    part: Option<Arc<Part>>,
     values: Vec<f64>,
     pub(super) gradient: Vec<f64>,
     /// Rows that all coefficients share: learned scalars first, then integrals.
@@ -45,6 +47,7 @@ pub(super) struct Sums {
 /// The factorised normal matrix.
 pub(super) struct Factor {
     factor: Llt<usize, f64>,
+    part: Option<Arc<Part>>,
     /// `H^-1` times the border.
     solved: Vec<Vec<f64>>,
     border: Vec<Vec<f64>>,
@@ -67,21 +70,15 @@ impl Normal {
                 }
             }
         }
-        let mut starts = vec![0];
-        let mut rows = Vec::new();
         for column in &mut columns {
             column.sort_unstable();
             column.dedup();
-            rows.extend_from_slice(column);
-            starts.push(rows.len());
         }
-        let count = rows.len();
-        let pattern = SymbolicSparseColMat::new_checked(len, len, starts, None, rows);
-        let symbolic = SymbolicLlt::try_new(pattern.as_ref(), Side::Lower).ok()?;
+        let pattern = Pattern::new(&columns)?;
         Some(Self {
+            values: vec![0.0; pattern.rows().len()],
             pattern,
-            symbolic,
-            values: vec![0.0; count],
+            part: None,
             gradient: vec![0.0; len],
             border: vec![vec![0.0; len]; learned],
             corner: DMatrix::zeros(learned, learned),
@@ -89,6 +86,18 @@ impl Normal {
             learned,
             draws: None,
         })
+    }
+
+    /// From now on these unknowns alone are solved for; all of them for none. Nothing without memory.
+    pub(super) fn set_free(&mut self, free: Option<&[bool]>) -> Option<()> {
+        let Some(free) = free.filter(|free| free.contains(&false)) else {
+            self.part = None;
+            return Some(());
+        };
+        if self.part.as_ref().is_none_or(|part| part.free != free) {
+            self.part = Some(Arc::new(self.pattern.part(free)?));
+        }
+        Some(())
     }
 
     /// What the rows so far were summed up to.
@@ -136,7 +145,7 @@ impl Normal {
 
     /// Adds the products of the rows' slopes, piece by piece of the matrix: every entry is summed up in the order of the blocks.
     fn add_products(&mut self, blocks: &[Sorted]) {
-        let (starts, indices) = (self.pattern.col_ptr(), self.pattern.row_idx());
+        let (starts, indices) = (self.pattern.starts(), self.pattern.rows());
         let columns = self.gradient.len();
         let mut pieces = Vec::new();
         let (mut rest, mut first) = (self.values.as_mut_slice(), 0);
@@ -211,7 +220,7 @@ impl Normal {
     /// How stiff the rows hold a coefficient of a range: the median of those that they see, zero if they see none.
     pub(super) fn typical(&self, range: Range<usize>) -> f64 {
         // A column of the lower triangle begins with its diagonal.
-        let starts = self.pattern.col_ptr();
+        let starts = self.pattern.starts();
         let mut seen: Vec<f64> = range.map(|at| self.values[starts[at]]).filter(|&value| value > 0.0).collect();
         seen.sort_by(f64::total_cmp);
         seen.get(seen.len() / 2).copied().unwrap_or(0.0)
@@ -219,7 +228,7 @@ impl Normal {
 
     /// Adds to an entry, `row >= column`.
     fn add_entry(&mut self, row: usize, column: usize, value: f64) {
-        let (starts, indices) = (self.pattern.col_ptr(), self.pattern.row_idx());
+        let (starts, indices) = (self.pattern.starts(), self.pattern.rows());
         let range = starts[column]..starts[column + 1];
         if let Ok(at) = indices[range.clone()].binary_search(&row) {
             self.values[range.start + at] += value;
@@ -249,58 +258,71 @@ impl Normal {
 
     /// Factorises; nothing if the matrix is not positive definite.
     pub(super) fn factor(&self) -> Option<Factor> {
-        let factor = self.llt()?;
-        let solved: Vec<Vec<f64>> = self.border.iter().map(|column| solve(&factor, column)).collect();
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        let schur = DMatrix::from_fn(self.border.len(), self.border.len(), |i, j| {
-            self.corner[(i, j)] - dot(&self.border[i], &solved[j])
-        });
-        Some(Factor { factor, solved, border: self.border.clone(), schur, learned: self.learned })
-    }
-
-    /// Of the matrix, or where rounding spoils its definiteness, with some more on the diagonal.
-    fn llt(&self) -> Option<Llt<usize, f64>> {
-        let try_with = |values: &[f64]| {
-            let matrix = SparseColMatRef::new(self.pattern.as_ref(), values);
-            Llt::try_new_with_symbolic(self.symbolic.clone(), matrix, Side::Lower).ok()
+        let part = self.part.clone();
+        let factor = match &part {
+            Some(part) => part.factor(&self.values),
+            None => self.pattern.factor(&self.values),
+        }?;
+        let mut found = Factor {
+            factor,
+            part,
+            solved: Vec::new(),
+            border: self.border.clone(),
+            schur: self.corner.clone(),
+            learned: self.learned,
         };
-        if !self.values.iter().all(|value| value.is_finite()) {
-            return None;
+        found.solved = self.border.iter().map(|column| found.solve_free(column)).collect();
+        for i in 0..self.border.len() {
+            for j in 0..self.border.len() {
+                found.schur[(i, j)] -= vector::dot(&self.border[i], &found.solved[j]);
+            }
         }
-        try_with(&self.values).or_else(|| {
-            (-12..=-4).step_by(2).find_map(|exponent| {
-                let mut values = self.values.clone();
-                // The diagonal is the first entry of every column of a lower triangle.
-                for &diagonal in &self.pattern.col_ptr()[..self.gradient.len()] {
-                    values[diagonal] *= 1.0 + 10f64.powi(exponent);
-                }
-                try_with(&values)
-            })
-        })
+        Some(found)
     }
 
     /// The step to the minimum of the quadratic model: of the coefficients, and of the learned scalars.
     pub(super) fn step(&self, factor: &Factor) -> Option<(Vec<f64>, Vec<f64>)> {
-        let right: Vec<f64> = self.gradient.iter().map(|g| -g).collect();
-        let below: Vec<f64> = self.border_gradient.iter().map(|g| -g).collect();
-        factor.solve(&right, &below)
+        self.step_with(factor, &vec![0.0; self.gradient.len()])
+    }
+
+    /// The same where unknowns that are not free go along these steps, and free ones are zero in them.
+    pub(super) fn step_with(&self, factor: &Factor, held: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let slopes = self.slopes_after(held, &[]);
+        let right: Vec<f64> = slopes.iter().map(|g| -g).collect();
+        let along = self.border.iter().map(|column| vector::dot(column, held));
+        let below: Vec<f64> = self.border_gradient.iter().zip(along).map(|(g, along)| -g - along).collect();
+        let (mut step, shared) = factor.solve(&right, &below)?;
+        step.iter_mut().zip(held).for_each(|(step, held)| *step += held);
+        Some((step, shared))
+    }
+
+    /// The model's gradient after a step of the coefficients and of the border's unknowns.
+    pub(super) fn slopes_after(&self, step: &[f64], shared: &[f64]) -> Vec<f64> {
+        let mut slopes = self.gradient.clone();
+        if step.iter().any(|step| *step != 0.0) {
+            let product = self.pattern.times(&self.values, step);
+            slopes.iter_mut().zip(product).for_each(|(slope, product)| *slope += product);
+        }
+        for (column, shared) in self.border.iter().zip(shared) {
+            slopes.iter_mut().zip(column).for_each(|(slope, entry)| *slope += entry * shared);
+        }
+        slopes
     }
 }
 
 impl Factor {
     /// Solves the bordered system: the coefficients, then the learned scalars and the multipliers of integrals.
     pub(super) fn solve(&self, right: &[f64], below: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let mut step = solve(&self.factor, right);
+        let mut step = self.solve_free(right);
         let shared = self.share(&mut step, below)?;
         Some((step, shared))
     }
 
     /// From a solution without the border to one with it; returns the unknowns of the border.
     fn share(&self, step: &mut [f64], below: &[f64]) -> Option<Vec<f64>> {
-        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let rest = DVector::from_iterator(
             self.border.len(),
-            self.border.iter().zip(below).map(|(column, b)| b - dot(column, step)),
+            self.border.iter().zip(below).map(|(column, b)| b - vector::dot(column, step)),
         );
         let shared = if rest.is_empty() { rest } else { self.schur.clone().lu().solve(&rest)? };
         for (solved, shared) in self.solved.iter().zip(shared.iter()) {
@@ -311,7 +333,7 @@ impl Factor {
 
     /// Solutions for all right-hand sides, drawn from the posterior.
     pub(super) fn deviations(&self, draws: &Draws) -> Option<Deviations> {
-        let solutions = self.factor.solve(draws.matrix());
+        let solutions = self.solutions(&draws.matrix());
         let mut deviations = Deviations::default();
         for draw in 0..solutions.ncols() {
             let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
@@ -327,12 +349,12 @@ impl Factor {
 
     /// `vector . H^-1 vector`, of the coefficients alone.
     pub(super) fn inner(&self, vector: &[f64]) -> f64 {
-        solve(&self.factor, vector).iter().zip(vector).map(|(a, b)| a * b).sum()
+        vector::dot(&self.solve_free(vector), vector)
     }
 
     /// Solutions of the bordered system for the columns of a matrix, without anything on the right of the border.
     pub(super) fn solve_all(&self, right: &Mat<f64>) -> Option<Mat<f64>> {
-        let mut solutions = self.factor.solve(right);
+        let mut solutions = self.solutions(right);
         let below = vec![0.0; self.border.len()];
         for column in 0..if below.is_empty() { 0 } else { solutions.ncols() } {
             let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
@@ -352,10 +374,18 @@ impl Factor {
     pub(super) fn learned_variance(&self, at: usize) -> Option<f64> {
         self.schur.clone().try_inverse().map(|inverse| inverse[(at, at)])
     }
-}
 
-fn solve(factor: &Llt<usize, f64>, right: &[f64]) -> Vec<f64> {
-    let right = Mat::from_fn(right.len(), 1, |i, _| right[i]);
-    let solution = factor.solve(&right);
-    (0..solution.nrows()).map(|i| solution[(i, 0)]).collect()
+    /// Solutions without the border, for the columns of a matrix.
+    fn solutions(&self, right: &Mat<f64>) -> Mat<f64> {
+        match &self.part {
+            Some(part) => part.solve(&self.factor, right),
+            None => self.factor.solve(right),
+        }
+    }
+
+    /// The solution without the border.
+    fn solve_free(&self, right: &[f64]) -> Vec<f64> {
+        let solution = self.solutions(&Mat::from_fn(right.len(), 1, |i, _| right[i]));
+        (0..solution.nrows()).map(|i| solution[(i, 0)]).collect()
+    }
 }

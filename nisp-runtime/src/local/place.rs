@@ -15,6 +15,10 @@ pub(super) struct State {
     pub(super) used: f64,
     /// Stiffness against the next step.
     pub(super) damping: f64,
+    /// The least sum of squares in this phase; what a step may lead up to is measured by it.
+    pub(super) lowest: f64,
+    /// Which coefficients the next step may move.
+    pub(super) free: Vec<bool>,
 }
 
 impl State {
@@ -46,7 +50,8 @@ impl Place {
         let mut saved = state::State::new(METHOD)
             .with("theta", &self.state.theta)
             .with("learned", &self.state.learned)
-            .with("noise", &[self.state.noise, self.state.used, self.state.damping])
+            .with("noise", &[self.state.noise, self.state.used, self.state.damping, self.state.lowest])
+            .with("free", &self.state.free.iter().map(|free| f64::from(u8::from(*free))).collect::<Vec<f64>>())
             .with_counter("lattice", lattice)
             .with_counter("before", before)
             .with_counter("step", self.step)
@@ -60,10 +65,12 @@ impl Place {
 
     /// Takes over what [`Place::save`] gave, on a lattice of the same size.
     pub(super) fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
-        let State { theta, learned, noise, used, damping } = &mut self.state;
+        let State { theta, learned, noise, used, damping, lowest, free } = &mut self.state;
         *theta = saved.sized("theta", theta.len())?;
         *learned = saved.sized("learned", learned.len())?;
-        [*noise, *used, *damping] = saved.scalars("noise")?;
+        [*noise, *used, *damping, *lowest] = saved.scalars("noise")?;
+        let marks: Vec<f64> = saved.sized("free", free.len())?;
+        *free = marks.iter().map(|&mark| mark != 0.0).collect();
         self.step = saved.counter("step")?;
         for (at, feet) in self.feet.iter_mut().enumerate() {
             let nearest: Vec<f64> = saved.sized(&format!("nearest {at}"), feet.nearest.len())?;

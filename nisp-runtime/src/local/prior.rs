@@ -110,6 +110,11 @@ impl Sparse<'_> {
         edges * length * self.steepness(&heights).iter().sum::<f64>() + area * areas.sum::<f64>()
     }
 
+    /// What the edge of a square patch of one level costs, so many nodes along each coordinate, by node.
+    pub(super) fn edge_of_square(&self, nodes: f64) -> f64 {
+        self.penalties().0 * self.measures().1 * 2.0 * self.lattice().dimensions() as f64 / nodes
+    }
+
     /// Penalties of an edge and of a patch at this noise.
     fn penalties(&self) -> (f64, f64) {
         let per_length = self.noise.max(FINEST).powf(FALL);

@@ -53,6 +53,7 @@ impl Solver {
     pub(super) fn scores(&mut self, state: &State) -> Option<Vec<Option<Score>>> {
         self.find_feet(&state.theta, &state.learned);
         self.assemble(state, state.noise, Phase::Concave).ok()?;
+        self.normal.set_free(Some(&state.free))?;
         let factor = self.normal.factor()?;
         Some(self.scores_of(&self.known(), state, &factor))
     }

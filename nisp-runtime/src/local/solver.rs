@@ -27,6 +27,8 @@ pub(super) struct Solver {
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
     pub(super) surfaces: Vec<Surface>,
+    /// By head, lines of functions from outermost ones inwards of which little is seen.
+    pub(super) outer: Vec<Vec<Vec<u32>>>,
     pub(super) normal: Normal,
     pub(super) scalars: Vec<f64>,
     /// Size of the base lattice's cells, the largest.
@@ -34,6 +36,9 @@ pub(super) struct Solver {
     /// Coefficients and learned parameters whose feet are found for good.
     settled: Option<(Vec<f64>, Vec<f64>)>,
 }
+
+/// Share of the most that is seen of a field's function below which it goes on from others.
+const FAINT: f64 = 1e-2;
 
 impl Solver {
     pub(super) fn new(bound: &Bound, settings: &Local, cells: usize) -> Result<Self, LocalError> {
@@ -43,11 +48,15 @@ impl Solver {
         let base = base(bound, cells, settings.tests);
         let mut lattices: Vec<Lattice> =
             (0..schema.heads.len()).map(|head| lattice(bound, settings, &base, head)).collect();
+        let mut outer = Vec::new();
         for (head, lattice) in lattices.iter_mut().enumerate() {
             let seen = schema.groups.iter().enumerate().filter(|(_, g)| g.jets.iter().any(|jet| jet.head == head));
             let points = seen.flat_map(|(at, _)| bound.coordinates[at].chunks_exact(inputs));
             let places: Vec<_> = points.map(|point| lattice.place(point)).collect();
-            lattice.keep(places.into_iter(), if schema.heads[head].source { 2e-2 } else { 1e-4 });
+            let is_source = schema.heads[head].source;
+            let seen = lattice.keep(places.into_iter(), if is_source { 2e-2 } else { 1e-4 });
+            let is_faint = |line: &Vec<u32>| !is_source && seen[line[0] as usize] < FAINT;
+            outer.push(lattice.ends().filter(is_faint).collect());
         }
         let heads = Heads::new(bound, lattices);
         let kernels = bound.problem.scene().double();
@@ -77,7 +86,7 @@ impl Solver {
         let scalars = bound.scalars.clone();
         let learned = vec![0.0; bound.learned.len()];
         let (bound, settings) = (bound.clone(), *settings);
-        let mut solver = Self { bound, settings, heads, groups, surfaces, normal, scalars, cell, settled: None };
+        let mut solver = Self { bound, settings, heads, outer, groups, surfaces, normal, scalars, cell, settled: None };
         solver.set_learned(&learned);
         Ok(solver)
     }
@@ -100,6 +109,8 @@ impl Solver {
             noise: self.cell,
             used: 0.0,
             damping: LEAST_DAMPING,
+            lowest: f64::INFINITY,
+            free: vec![true; self.heads.len()],
         };
         self.place(&state, 0)
     }

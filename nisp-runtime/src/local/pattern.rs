@@ -1,0 +1,137 @@
+//! Where a sparse symmetric matrix has entries, of all unknowns or of some, and its Cholesky factors.
+
+use faer::prelude::Solve;
+use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use faer::{Mat, Side};
+
+/// Entries of the lower triangle, and how factors fill it.
+pub(super) struct Pattern {
+    entries: SymbolicSparseColMat<usize>,
+    symbolic: SymbolicLlt<usize>,
+}
+
+/// The unknowns that are free, while the others stay where they are.
+pub(super) struct Part {
+    /// By unknown.
+    pub(super) free: Vec<bool>,
+    /// Numbers of the free ones.
+    numbers: Vec<usize>,
+    pattern: Pattern,
+    /// Where its entries are among those of the whole.
+    places: Vec<usize>,
+}
+
+impl Pattern {
+    /// Of a matrix whose columns have entries in these rows, each on and below the diagonal and in order; nothing without memory.
+    pub(super) fn new(columns: &[Vec<usize>]) -> Option<Self> {
+        let mut starts = vec![0];
+        starts.extend(columns.iter().scan(0, |end, column| {
+            *end += column.len();
+            Some(*end)
+        }));
+        let entries = SymbolicSparseColMat::new_checked(columns.len(), columns.len(), starts, None, columns.concat());
+        let symbolic = SymbolicLlt::try_new(entries.as_ref(), Side::Lower).ok()?;
+        Some(Self { entries, symbolic })
+    }
+
+    /// Where every column begins, and the end of the last.
+    pub(super) fn starts(&self) -> &[usize] {
+        self.entries.col_ptr()
+    }
+
+    /// Rows of all entries, column by column.
+    pub(super) fn rows(&self) -> &[usize] {
+        self.entries.row_idx()
+    }
+
+    /// The part of the free unknowns; nothing without memory.
+    pub(super) fn part(&self, free: &[bool]) -> Option<Part> {
+        let numbers: Vec<usize> = (0..free.len()).filter(|&at| free[at]).collect();
+        let mut own = vec![usize::MAX; free.len()];
+        numbers.iter().enumerate().for_each(|(at, &number)| own[number] = at);
+        let mut places = Vec::new();
+        let column = |&number: &usize| {
+            let range = self.starts()[number]..self.starts()[number + 1];
+            let kept: Vec<usize> = range.filter(|&place| free[self.rows()[place]]).collect();
+            places.extend_from_slice(&kept);
+            kept.iter().map(|&place| own[self.rows()[place]]).collect()
+        };
+        let columns: Vec<Vec<usize>> = numbers.iter().map(column).collect();
+        Some(Part { free: free.to_vec(), pattern: Self::new(&columns)?, numbers, places })
+    }
+
+    /// Cholesky factors of a matrix with these entries; where rounding spoils that it is positive definite, of one with some more
+    /// on its diagonal.
+    pub(super) fn factor(&self, values: &[f64]) -> Option<Llt<usize, f64>> {
+        let try_with = |values: &[f64]| {
+            let matrix = SparseColMatRef::new(self.entries.as_ref(), values);
+            Llt::try_new_with_symbolic(self.symbolic.clone(), matrix, Side::Lower).ok()
+        };
+        if !values.iter().all(|value| value.is_finite()) {
+            return None;
+        }
+        try_with(values).or_else(|| {
+            (-12..=-4).step_by(2).find_map(|exponent| {
+                let mut values = values.to_vec();
+                // The diagonal is the first entry of every column of a lower triangle.
+                let columns = self.starts().len() - 1;
+                self.starts()[..columns].iter().for_each(|&diagonal| values[diagonal] *= 1.0 + 10f64.powi(exponent));
+                try_with(&values)
+            })
+        })
+    }
+
+    /// The matrix with these entries times a vector.
+    pub(super) fn times(&self, values: &[f64], vector: &[f64]) -> Vec<f64> {
+        let mut product = vec![0.0; vector.len()];
+        for column in 0..vector.len() {
+            let range = self.starts()[column]..self.starts()[column + 1];
+            for (&row, value) in self.rows()[range.clone()].iter().zip(&values[range]) {
+                product[row] += value * vector[column];
+                if row != column {
+                    product[column] += value * vector[row];
+                }
+            }
+        }
+        product
+    }
+}
+
+impl Part {
+    /// Cholesky factors of its part of the whole matrix.
+    pub(super) fn factor(&self, values: &[f64]) -> Option<Llt<usize, f64>> {
+        let own: Vec<f64> = self.places.iter().map(|&place| values[place]).collect();
+        self.pattern.factor(&own)
+    }
+
+    /// Solutions by its factors for the columns of a matrix of all unknowns; zero for those that are not free.
+    pub(super) fn solve(&self, factor: &Llt<usize, f64>, right: &Mat<f64>) -> Mat<f64> {
+        let own = Mat::from_fn(self.numbers.len(), right.ncols(), |row, column| right[(self.numbers[row], column)]);
+        let own = factor.solve(&own);
+        let mut all = Mat::zeros(right.nrows(), right.ncols());
+        for column in 0..right.ncols() {
+            for (row, &number) in self.numbers.iter().enumerate() {
+                all[(number, column)] = own[(row, column)];
+            }
+        }
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// [[4, 1, 0], [1, 3, 1], [0, 1, 2]] without its second unknown is diag(4, 2).
+    #[test]
+    fn a_part_leaves_the_others_at_zero() {
+        let pattern = Pattern::new(&[vec![0, 1], vec![1, 2], vec![2]]).unwrap();
+        let values = [4.0, 1.0, 3.0, 1.0, 2.0];
+        assert_eq!(pattern.times(&values, &[1.0, 2.0, 3.0]), [6.0, 10.0, 8.0]);
+        let part = pattern.part(&[true, false, true]).unwrap();
+        let right = Mat::from_fn(3, 1, |row, _| [8.0, 5.0, 3.0][row]);
+        let solution = part.solve(&part.factor(&values).unwrap(), &right);
+        assert_eq!([0, 1, 2].map(|row| solution[(row, 0)]), [2.0, 0.0, 1.5]);
+    }
+}
