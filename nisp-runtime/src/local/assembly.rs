@@ -106,7 +106,8 @@ impl Solver {
         for (head, declared) in schema.heads.iter().enumerate() {
             let first = self.heads.first[head];
             if !regress {
-                self.normal.add_all(&self.heads.continued(head, &self.outer[head], CONTINUED, state));
+                let learned = state.learned.len();
+                self.normal.add_all(&self.heads.continued(head, &self.outer[head], CONTINUED, theta, learned));
             }
             let stiffness = if regress {
                 let seen = self.normal.typical(first..self.heads.first[head + 1]);
@@ -196,7 +197,13 @@ impl Solver {
 }
 
 /// The prior of a head where the clouds are off by `noise` cells; none of a field, or where nothing is known.
-pub(super) fn sparse<'a>(bound: &Bound, settings: &Local, heads: &'a Heads, head: usize, noise: f64) -> Option<Sparse<'a>> {
+pub(super) fn sparse<'a>(
+    bound: &Bound,
+    settings: &Local,
+    heads: &'a Heads,
+    head: usize,
+    noise: f64,
+) -> Option<Sparse<'a>> {
     let declared = &bound.problem.scene().schema.heads[head];
     let prior = settings.patches.filter(|_| declared.source)?;
     let is_below = heads.limits[head].is_some_and(|limits| limits.is_below(heads.offset[head]));

@@ -1,6 +1,5 @@
 //! Gauss-Newton: steps that are taken until they change nothing.
 
-use super::heads::Heads;
 use super::normal::Factor;
 use super::phase::{CONVEX_STEPS, Phase, WARM_STEPS};
 use super::place::{Place, State};
@@ -15,8 +14,6 @@ use crate::solve::fault::Fault;
 use crate::solve::method::FAULTS_IN_A_ROW;
 use crate::solve::state;
 
-/// The same where nothing but values is wanted.
-const NEGLIGIBLE: f64 = 1e-9;
 /// Noise that clouds are credited with at least, as a share of a cell: what splines cannot follow.
 const LEAST_NOISE: f64 = 1e-2;
 /// Largest change of a field in one step, in its natural sizes.
@@ -31,7 +28,7 @@ const MOST_OFF: f64 = 5.0;
 const CONVERGED: f64 = 5e-3;
 /// Change of the logarithm of the probability, by rows, at which a lattice's answer counts as converged too if learned scalars
 /// rest: a pressure that the data hardly determine may wander for long.
-const SETTLED: f64 = 2e-4;
+const SETTLED: f64 = 1e-3;
 /// Change of the parameters of learned scalars that rest.
 const RESTING: f64 = 1e-3;
 /// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
@@ -80,32 +77,6 @@ impl End {
 }
 
 impl Solver {
-    /// The state of another lattice on this one: its values at all points, by least squares.
-    pub(super) fn taken_over(&mut self, other: &Heads, state: &State) -> Result<Place, LocalError> {
-        let inputs = self.heads.lattices[0].inputs();
-        let learned = state.learned.len();
-        self.normal.clear();
-        let mut rows = Vec::new();
-        for (group, points) in self.bound.problem.scene().schema.groups.iter().zip(&self.bound.coordinates) {
-            for head in 0..self.heads.lattices.len() {
-                for point in points.chunks_exact(inputs).filter(|_| group.jets.iter().any(|jet| jet.head == head)) {
-                    rows.push(self.heads.difference(head, point, other, &state.theta, learned));
-                }
-            }
-        }
-        self.normal.add_all(&rows);
-        for at in 0..self.heads.len() {
-            self.normal.add_stiffness(at, NEGLIGIBLE);
-        }
-        (0..learned).for_each(|at| self.normal.add_learned(at, 1.0, 0.0));
-        let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
-        let (theta, _) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
-        // Who comes with a state needs no regression, and few steps before the penalty may end at its level.
-        let state = State { theta, lowest: f64::INFINITY, free: Vec::new(), ..state.clone() };
-        let free = self.free_at_first(&state);
-        Ok(Place { skipped: CONVEX_STEPS - WARM_STEPS, ..self.place(&State { free, ..state }, 0) })
-    }
-
     /// Where a saved run stood on this lattice.
     pub(super) fn restore(&self, saved: &state::State) -> Result<Place, Fault> {
         let mut place = self.first();
@@ -224,7 +195,7 @@ impl Solver {
             fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
             damping = wanted;
             let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
-            let used: f64 = probes.iter().map(|probe| factor.inner(probe)).sum::<f64>() / probes.len() as f64;
+            let used = if self.knows_noise() { 0.0 } else { mean(&factor.inner(&probes)) };
             let (step, shared) = self.normal.step_with(&factor, &held).ok_or(LocalError::Factorisation)?;
             // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
             let largest = fields.iter().map(|&at| step[at].abs()).fold(0.0, f64::max);
@@ -253,6 +224,11 @@ impl Solver {
             wanted *= STRONGER;
         };
         Ok((next, Found { loss, gain: before - after, rows, factor, scores }))
+    }
+
+    /// True where every cloud says how noisy it is.
+    fn knows_noise(&self) -> bool {
+        self.surfaces.iter().all(|surface| surface.within().is_some())
     }
 
     /// Standard deviation of the clouds about the surface, without outliers; the largest declared where all are.
@@ -307,6 +283,10 @@ pub(super) struct Found {
     pub(super) rows: usize,
     pub(super) factor: Factor,
     pub(super) scores: Vec<Option<Score>>,
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Largest change of a learned scalar's parameter.

@@ -4,7 +4,6 @@ use rayon::prelude::*;
 
 use super::block::Block;
 use super::lattice::{Exponents, Lattice, NONE, Span, contracted};
-use super::place::State;
 use super::tabled::Splines;
 use crate::bounds::{Limits, limits, sizes};
 use crate::problem::Bound;
@@ -29,7 +28,14 @@ const TOGETHER: usize = 1024;
 impl Heads {
     /// Rows that let a head's outermost functions, of which little is seen, go on from the next ones as a polynomial does (a ghost
     /// penalty, Burman 2010): the highest difference of the coefficients of each line, with this stiffness.
-    pub(super) fn continued(&self, head: usize, lines: &[Vec<u32>], stiffness: f64, state: &State) -> Vec<Block> {
+    pub(super) fn continued(
+        &self,
+        head: usize,
+        lines: &[Vec<u32>],
+        stiffness: f64,
+        theta: &[f64],
+        learned: usize,
+    ) -> Vec<Block> {
         let (first, degree) = (self.first[head] as u32, self.lattices[head].degree);
         let mut slopes = vec![stiffness.sqrt()];
         for at in 0..degree {
@@ -37,9 +43,8 @@ impl Heads {
         }
         let row = |line: &Vec<u32>| {
             let dofs: Vec<u32> = line.iter().map(|number| first + number).collect();
-            let misfit = dofs.iter().zip(&slopes).map(|(&dof, slope)| slope * state.theta[dof as usize]).sum();
-            let by_learned = vec![0.0; state.learned.len()];
-            Block { misfits: vec![misfit], by_learned, dofs, slopes: slopes.clone(), excess: 0.0 }
+            let misfit = dofs.iter().zip(&slopes).map(|(&dof, slope)| slope * theta[dof as usize]).sum();
+            Block { misfits: vec![misfit], by_learned: vec![0.0; learned], dofs, slopes: slopes.clone(), excess: 0.0 }
         };
         lines.iter().map(row).collect()
     }
@@ -123,6 +128,11 @@ impl Heads {
             slopes,
             excess: 0.0,
         }
+    }
+
+    /// A head at a point over its scale, without its offset.
+    pub(super) fn height(&self, head: usize, point: &[f64], theta: &[f64]) -> f64 {
+        self.sum(head, point, theta) / self.scale[head]
     }
 
     /// Value of a head, within its bounds.

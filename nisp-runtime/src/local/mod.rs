@@ -39,6 +39,7 @@ mod solver;
 mod sorted;
 mod surface;
 mod tabled;
+mod taken;
 mod testing;
 mod unseen;
 

@@ -347,9 +347,14 @@ impl Factor {
         Some(deviations)
     }
 
-    /// `vector . H^-1 vector`, of the coefficients alone.
-    pub(super) fn inner(&self, vector: &[f64]) -> f64 {
-        vector::dot(&self.solve_free(vector), vector)
+    /// `vector . H^-1 vector` of several vectors, of the coefficients alone.
+    pub(super) fn inner(&self, vectors: &[Vec<f64>]) -> Vec<f64> {
+        let len = vectors.first().map_or(0, Vec::len);
+        let solutions = self.solutions(&Mat::from_fn(len, vectors.len(), |row, column| vectors[column][row]));
+        let inner = |(column, vector): (usize, &Vec<f64>)| {
+            vector.iter().enumerate().map(|(row, x)| x * solutions[(row, column)]).sum::<f64>()
+        };
+        vectors.iter().enumerate().map(inner).collect()
     }
 
     /// Solutions of the bordered system for the columns of a matrix, without anything on the right of the border.

@@ -12,6 +12,8 @@ const NONE: f64 = 0.02;
 /// Nodes about a patch along which it may grow in a step, and about one from a coarser lattice.
 const GROWTH: usize = 2;
 const COARSE_GROWTH: usize = 4;
+/// Nodes more than that which are free where the matrix gets another pattern, so that it need not get one in every step.
+const ROOM: usize = 1;
 /// Width in nodes of the least patch that is asked whether it would pay: a node and its neighbours.
 const LEAST: f64 = 3.0;
 /// What a patch is taken to cost at most, as a share of what the prior charges: the model is not exact.
@@ -26,7 +28,8 @@ impl Solver {
         let wanted = self.free(state, Some(slopes), GROWTH);
         let count = |free: &[bool]| free.iter().filter(|free| **free).count() as f64;
         let is_within = wanted.iter().zip(&state.free).all(|(wanted, free)| !wanted || *free);
-        if is_within && count(&state.free) <= SPARE * count(&wanted) { state.free.clone() } else { wanted }
+        let is_near = is_within && count(&state.free) <= SPARE * count(&wanted);
+        if is_near { state.free.clone() } else { self.free(state, Some(slopes), GROWTH + ROOM) }
     }
 
     /// The unknowns that are free in the first step from a coarser lattice's state.
@@ -47,7 +50,7 @@ impl Solver {
                 let gains: Vec<f64> = slopes[range.clone()].iter().map(|slope| -slope * prior.level).collect();
                 let cost = CHEAP * prior.edge_of_square(LEAST);
                 let pays = means(lattice, &gains).into_iter().map(|gain| gain > cost).collect();
-                own.iter_mut().zip(grown(lattice, pays, 1)).for_each(|(own, pays)| *own |= pays);
+                own.iter_mut().zip(grown(lattice, pays, growth - 1)).for_each(|(own, pays)| *own |= pays);
             }
             free[range].copy_from_slice(&own);
         }
