@@ -20,8 +20,6 @@ use crate::solve::fault::Fault;
 /// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
 const RIDGE: f64 = 1e-6;
 const STIFFNESS: f64 = 1e-3;
-/// Stiffness with which outermost functions go on from the next ones: little for what is seen, and all for what is not.
-const CONTINUED: f64 = 1e4;
 /// Length over which the first step, which only regresses the data, smooths them, in cells: noise cannot crease the state.
 const SMOOTHED: f64 = 2.0;
 /// Random vectors for the trace of the influence matrix (Hutchinson).
@@ -107,7 +105,7 @@ impl Solver {
             let first = self.heads.first[head];
             if !regress {
                 let learned = state.learned.len();
-                self.normal.add_all(&self.heads.continued(head, &self.outer[head], CONTINUED, theta, learned));
+                self.normal.add_all(&self.heads.continued(head, &self.outer[head], theta, learned));
             }
             let stiffness = if regress {
                 let seen = self.normal.typical(first..self.heads.first[head + 1]);
@@ -184,14 +182,7 @@ impl Solver {
         let assembled = self.assemble(state, state.noise, Phase::Concave);
         let draws = self.normal.draws.take()?;
         assembled.ok()?;
-        // What was not seen is free to be more than none.
-        let mut free = state.free.clone();
-        for head in 0..self.heads.lattices.len() {
-            let Some(unseen) = self.unseen(head) else { continue };
-            let own = &mut free[self.heads.first[head]..self.heads.first[head + 1]];
-            own.iter_mut().zip(&unseen.functions).for_each(|(free, is_unseen)| *free |= is_unseen);
-        }
-        self.normal.set_free(Some(&free))?;
+        self.normal.set_free(None)?;
         self.normal.factor()?.deviations(&draws)
     }
 }

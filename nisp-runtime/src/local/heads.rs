@@ -22,22 +22,20 @@ pub(super) struct Heads {
     pub(super) limits: Vec<Option<Limits>>,
 }
 
+/// How far an outermost function may be from a polynomial, in natural sizes of a head and cells of the domain's size.
+const UNLIKE: f64 = 5e3;
 /// Points whose values are computed together.
 const TOGETHER: usize = 1024;
 
 impl Heads {
     /// Rows that let a head's outermost functions, of which little is seen, go on from the next ones as a polynomial does (a ghost
-    /// penalty, Burman 2010): the highest difference of the coefficients of each line, with this stiffness.
-    pub(super) fn continued(
-        &self,
-        head: usize,
-        lines: &[Vec<u32>],
-        stiffness: f64,
-        theta: &[f64],
-        learned: usize,
-    ) -> Vec<Block> {
-        let (first, degree) = (self.first[head] as u32, self.lattices[head].degree);
-        let mut slopes = vec![stiffness.sqrt()];
+    /// penalty, Burman 2010): the highest difference of the coefficients of each line. A polynomial is off by a power of the cells'
+    /// size, and the rows are no stiffer than that.
+    pub(super) fn continued(&self, head: usize, lines: &[Vec<u32>], theta: &[f64], learned: usize) -> Vec<Block> {
+        let (first, lattice) = (self.first[head] as u32, &self.lattices[head]);
+        let degree = lattice.degree;
+        let cells = lattice.cells.iter().max().map_or(1.0, |cells| *cells as f64);
+        let mut slopes = vec![cells.powi(degree as i32) / UNLIKE];
         for at in 0..degree {
             slopes.push(-slopes[at] * (degree - at) as f64 / (at + 1) as f64);
         }
