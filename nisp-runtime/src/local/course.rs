@@ -25,10 +25,10 @@ pub(super) const ASKED: f64 = 2.0;
 /// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
 const MOST_OFF: f64 = 5.0;
 /// Relative change of the coefficients at which the answer counts as converged.
-const CONVERGED: f64 = 5e-3;
+const CONVERGED: f64 = 2e-3;
 /// Change of the logarithm of the probability, by rows, at which a lattice's answer counts as converged too if learned scalars
 /// rest: a pressure that the data hardly determine may wander for long.
-const SETTLED: f64 = 1e-3;
+const SETTLED: f64 = 2e-4;
 /// Change of the parameters of learned scalars that rest.
 const RESTING: f64 = 1e-3;
 /// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
@@ -141,7 +141,7 @@ impl Solver {
             }
             let (steps, small) = if coarse { (COARSE_STEPS, ROUGHLY) } else { (CONVEX_STEPS + 1, CONVERGED) };
             let resting = learned_change(&before, &state) < RESTING;
-            let still = if coarse { 0.1 * SETTLED } else { SETTLED };
+            let still = if coarse { 0.5 * SETTLED } else { SETTLED };
             let settled = resting && gain.abs() < still * rows as f64;
             if iteration + skipped > steps && (change < small || settled) {
                 status = Status::Converged;
