@@ -168,8 +168,8 @@ impl Solver {
         })
     }
 
-    /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it: coefficients that
-    /// hardly any row sees stay where they are, and a step that leads far uphill is taken again with more damping.
+    /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it, so that coefficients that
+    /// hardly any row sees stay where they are. A step that leads far uphill is shortened, then taken again with more damping.
     /// Some of what is known is asked for its scores on the way.
     pub(super) fn step(
         &mut self,
@@ -202,20 +202,10 @@ impl Solver {
             let all = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
             let calmer = (damping / STRONGER).max(LEAST_DAMPING);
             let scores = self.scores_of(asked, &State { noise, ..state.clone() }, &factor);
-            let mut taken = None;
-            for share in SHARES.map(|share| share * all) {
-                let mut next = State { noise, used, damping: calmer, lowest, ..state.clone() };
-                next.theta.iter_mut().zip(&step).for_each(|(x, s)| *x += share * s);
-                next.learned.iter_mut().zip(&shared).for_each(|(x, s)| *x += share * s.clamp(-0.5, 0.5));
-                let after = self.loss(&next, noise) + self.penalty(&next, noise, phase == Phase::Concave);
-                let is_near = regress || after <= UPHILL * lowest;
-                taken = Some((next, after, is_near));
-                if is_near {
-                    break;
-                }
-            }
-            let (mut next, after, is_near) = taken.ok_or(LocalError::Factorisation)?;
-            if is_near || damping >= MOST_DAMPING {
+            let from = State { noise, used, damping: calmer, lowest, ..state.clone() };
+            let most = if regress { f64::INFINITY } else { UPHILL * lowest };
+            let (mut next, after) = self.shortened(&from, (&step, &shared), all, (phase, most));
+            if after <= most || damping >= MOST_DAMPING {
                 if !regress {
                     next.free = self.free_after(&next, &self.normal.slopes_after(&step, &shared));
                 }
@@ -224,6 +214,27 @@ impl Solver {
             wanted *= STRONGER;
         };
         Ok((next, Found { loss, gain: before - after, rows, factor, scores }))
+    }
+
+    /// The state after the longest share of a step that leaves no more than `most` as the sum of squares, or after the shortest;
+    /// and that sum.
+    fn shortened(
+        &mut self,
+        from: &State,
+        (step, shared): (&[f64], &[f64]),
+        all: f64,
+        (phase, most): (Phase, f64),
+    ) -> (State, f64) {
+        let (mut next, mut after) = (from.clone(), f64::INFINITY);
+        for share in SHARES.map(|share| share * all) {
+            next.theta = from.theta.iter().zip(step).map(|(x, s)| x + share * s).collect();
+            next.learned = from.learned.iter().zip(shared).map(|(x, s)| x + share * s.clamp(-0.5, 0.5)).collect();
+            after = self.loss(&next, from.noise) + self.penalty(&next, from.noise, phase == Phase::Concave);
+            if after <= most {
+                break;
+            }
+        }
+        (next, after)
     }
 
     /// True where every cloud says how noisy it is.

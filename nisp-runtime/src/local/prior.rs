@@ -113,7 +113,7 @@ impl Sparse<'_> {
 
     /// What the edge of a square patch of one level costs, so many nodes along each coordinate, by node.
     pub(super) fn edge_of_square(&self, nodes: f64) -> f64 {
-        self.penalties().0 * self.measures().1 * 2.0 * self.lattice().dimensions() as f64 / nodes
+        self.penalties().0 * self.measures().1 * 2.0 * self.dimensions as f64 / nodes
     }
 
     /// Penalties of an edge and of a patch at this noise.
