@@ -34,6 +34,8 @@ const RESTING: f64 = 1e-3;
 /// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
 const ROUGHLY: f64 = 0.1;
 const COARSE_STEPS: u64 = 4;
+/// Steps on a coarse lattice at most: what does not settle there may still be where the fine one starts.
+const MOST_COARSE: u64 = 20;
 /// Most stiffness against a step of every field's coefficient, in tolerances over natural sizes.
 const MOST_DAMPING: f64 = 1e4;
 /// What damping is multiplied by when a step fails, and divided by when one does not.
@@ -143,7 +145,8 @@ impl Solver {
             let resting = learned_change(&before, &state) < RESTING;
             let still = if coarse { 0.5 * SETTLED } else { SETTLED };
             let settled = resting && gain.abs() < still * rows as f64;
-            if iteration + skipped > steps && (change < small || settled) {
+            let is_start = coarse && iteration >= MOST_COARSE;
+            if is_start || iteration + skipped > steps && (change < small || settled) {
                 status = Status::Converged;
                 break;
             }
