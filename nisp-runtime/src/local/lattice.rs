@@ -273,7 +273,7 @@ impl Lattice {
         (next != NONE).then_some(next)
     }
 
-    /// The functions of a cell along every coordinate, from each that has no neighbour on its other side inwards.
+    /// Lines of functions that share a cell: along each coordinate, from every outermost function inwards.
     pub(super) fn ends(&self) -> impl Iterator<Item = Vec<u32>> + '_ {
         let ways = (0..self.dimensions()).flat_map(|axis| [(axis, -1), (axis, 1)]);
         ways.flat_map(move |(axis, inwards)| {

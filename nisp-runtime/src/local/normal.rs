@@ -88,7 +88,7 @@ impl Normal {
         })
     }
 
-    /// From now on these unknowns alone are solved for; all of them for none. Nothing without memory.
+    /// Solves for the marked unknowns alone from now on, or for all of them. Returns nothing where memory is too small.
     pub(super) fn set_free(&mut self, free: Option<&[bool]>) -> Option<()> {
         let Some(free) = free.filter(|free| free.contains(&false)) else {
             self.part = None;
@@ -285,7 +285,7 @@ impl Normal {
         self.step_with(factor, &vec![0.0; self.gradient.len()])
     }
 
-    /// The same where unknowns that are not free go along these steps, and free ones are zero in them.
+    /// The same where unknowns that are not free take the steps `held`, which is zero for those that are free.
     pub(super) fn step_with(&self, factor: &Factor, held: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let slopes = self.slopes_after(held, &[]);
         let right: Vec<f64> = slopes.iter().map(|g| -g).collect();

@@ -23,7 +23,7 @@ pub(super) struct Part {
 }
 
 impl Pattern {
-    /// Of a matrix whose columns have entries in these rows, each on and below the diagonal and in order; nothing without memory.
+    /// Of a matrix whose columns have entries in these rows, each on and below the diagonal and in order; nothing where memory is too small.
     pub(super) fn new(columns: &[Vec<usize>]) -> Option<Self> {
         let mut starts = vec![0];
         starts.extend(columns.iter().scan(0, |end, column| {
@@ -45,7 +45,7 @@ impl Pattern {
         self.entries.row_idx()
     }
 
-    /// The part of the free unknowns; nothing without memory.
+    /// The part of the free unknowns; nothing where memory is too small.
     pub(super) fn part(&self, free: &[bool]) -> Option<Part> {
         let numbers: Vec<usize> = (0..free.len()).filter(|&at| free[at]).collect();
         let mut own = vec![usize::MAX; free.len()];

@@ -87,7 +87,7 @@ impl Sparse<'_> {
         for (at, &f) in f.iter().enumerate().filter(|(at, _)| seen(*at)) {
             let slope = patch * area * if concave { small(f, self.prior.end) } else { 1.0 };
             normal.gradient[first + at] += slope / self.level;
-            // What rests at zero leans on the wall, as error bars go.
+            // For error bars the wall holds what rests at zero, too.
             if f < 0.0 || f == 0.0 && normal.draws.is_some() {
                 normal.gradient[first + at] += WALL * area * f / self.level;
                 normal.add_stiffness(first + at, WALL * area * square);

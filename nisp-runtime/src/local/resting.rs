@@ -18,12 +18,12 @@ const ROOM: usize = 1;
 const LEAST: f64 = 3.0;
 /// What a patch is taken to cost at most, as a share of what the prior charges: the model is not exact.
 const CHEAP: f64 = 0.5;
-/// How many more of them than needed may be free before the matrix gets a pattern of its own anew.
+/// How many times more unknowns than needed may be free before the matrix gets another pattern.
 const SPARE: f64 = 1.25;
 
 impl Solver {
-    /// The unknowns that are free in the next step from a state, to which a step led after which the model has these slopes; all of
-    /// them where no source has a prior that knows patches.
+    /// The unknowns that are free in the next step from a state; all of them where no source has a prior that knows patches.
+    /// `slopes` are those of the quadratic model after the step that led to this state.
     pub(super) fn free_after(&self, state: &State, slopes: &[f64]) -> Vec<bool> {
         let wanted = self.free(state, Some(slopes), GROWTH);
         let count = |free: &[bool]| free.iter().filter(|free| **free).count() as f64;
