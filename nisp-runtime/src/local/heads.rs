@@ -181,3 +181,30 @@ impl Heads {
         vectors.iter().map(move |vector| parts.iter().map(|&(at, value)| vector[at] * value).sum())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of splines of degree 3 on 4 by 2 cells, 7 by 5, each line of a coordinate has two ends.
+    #[test]
+    fn outermost_functions_go_on_as_a_polynomial_does() {
+        let lattice = Lattice::new(3, vec![0.0; 2], vec![1.0; 2], vec![4, 2]);
+        let heads = Heads::over(vec![lattice], vec![0.0], vec![1.0], vec![None]);
+        let lines: Vec<Vec<u32>> = heads.lattices[0].ends().collect();
+        assert_eq!(lines.len(), 2 * (7 + 5));
+        let misfits = |theta: Vec<f64>| -> Vec<f64> {
+            heads.continued(0, &lines, &theta, 0).iter().map(|row| row.misfits[0]).collect()
+        };
+        let place = |at: usize| ((at % 7) as f64, (at / 7) as f64);
+        let square = (0..35).map(place).map(|(i, j)| 3.0 + i - 2.0 * j + i * i - 4.0 * i * j + 0.5 * j * j);
+        assert!(misfits(square.collect()).iter().all(|misfit| misfit.abs() < 1e-12));
+        // A cube's third difference is six, up or down.
+        let stiffness = 4f64.powi(3) / UNLIKE;
+        let cube: Vec<f64> = (0..35).map(place).map(|(i, _)| i * i * i).collect();
+        for (line, misfit) in lines.iter().zip(misfits(cube)) {
+            let expected = if line[0].abs_diff(line[1]) == 1 { 6.0 * stiffness } else { 0.0 };
+            assert!((misfit.abs() - expected).abs() < 1e-12, "{line:?} {misfit}");
+        }
+    }
+}
