@@ -135,10 +135,8 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     match &frames.calibration {
         // What was taken off a point may be off by as much as it is where the surface is pressed into another shape.
         Some(calibration) => problem.set_tolerance("surface", "cloud", calibration.found.misfit_m)?,
-        // The camera looks up, and its depth is what is noisy.
-        None if local.is_some() => {
-            problem.set_view("surface", if calibrates { "posed" } else { "cloud" }, [0.0, 0.0, 1.0])?;
-        }
+        // The camera looks up.
+        None if local.is_some() && !calibrates => problem.set_view("surface", "cloud", [0.0, 0.0, 1.0])?,
         None => {}
     }
 

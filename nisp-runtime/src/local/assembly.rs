@@ -169,7 +169,7 @@ impl Solver {
 
     /// Half the sum of squares of all rows.
     pub(super) fn loss(&mut self, state: &State, noise: f64) -> f64 {
-        self.find_feet(&state.theta, &state.learned);
+        self.find_feet(state);
         let groups = self.groups.iter().map(|group| group.loss(&self.heads, &state.theta, &self.scalars));
         groups.sum::<f64>() + self.surfaces.iter().map(|surface| surface.loss(surface.sigma(noise))).sum::<f64>()
     }
@@ -177,7 +177,7 @@ impl Solver {
     /// Deviations of all unknowns, drawn from the posterior about a state. The patch is taken as it is: what the prior
     /// holds at zero stays there, where it was seen.
     pub(super) fn deviations(&mut self, state: &State) -> Option<Deviations> {
-        self.find_feet(&state.theta, &state.learned);
+        self.find_feet(state);
         self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
         let assembled = self.assemble(state, state.noise, Phase::Concave);
         let draws = self.normal.draws.take()?;

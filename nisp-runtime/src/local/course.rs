@@ -4,11 +4,11 @@ use super::normal::Factor;
 use super::phase::{CONVEX_STEPS, Phase, WARM_STEPS};
 use super::place::{Place, State};
 use super::solver::{LEAST_DAMPING, Solver};
-use super::surface::Surface;
+use super::surface::{EDGE_ON, Surface};
 use super::{LocalError, Stage};
 use crate::carrier::Progress;
 use crate::facts::{Known, Score};
-use crate::loss::deviation_of_clean;
+use crate::loss::{Loss, deviation_of_clean};
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::method::FAULTS_IN_A_ROW;
@@ -182,8 +182,9 @@ impl Solver {
         asked: &[Known],
     ) -> Result<(State, Found), LocalError> {
         let regress = iteration == 0;
-        self.find_feet(&state.theta, &state.learned);
+        self.find_feet(state);
         let noise = if regress { state.noise } else { self.noise(state.used) };
+        let across = if regress { state.across } else { self.noise_across(state.used) };
         let phase = Phase::of(iteration, coarse);
         let (loss, rows, probes) = self.assemble(state, noise, phase)?;
         let before = loss + self.penalty(state, noise, phase == Phase::Concave);
@@ -209,6 +210,7 @@ impl Solver {
             let most = if regress { f64::INFINITY } else { UPHILL * lowest };
             let (mut next, after) = self.shortened(&from, (&step, &shared), all, (phase, most));
             if after <= most || damping >= MOST_DAMPING {
+                next.across = across;
                 if !regress {
                     next.free = self.free_after(&next, &self.normal.slopes_after(&step, &shared));
                 }
@@ -252,6 +254,30 @@ impl Solver {
         let declared = || self.surfaces.iter().filter_map(Surface::within).fold(0.0, f64::max);
         let found = if misfits.is_empty() { declared() } else { deviation_of_clean(misfits, used) };
         found.max(LEAST_NOISE * self.cell)
+    }
+
+    /// The noise in other directions than a cloud's view, as a share of that along it: the likeliest by how much more points are off
+    /// where the surface is seen from the front than where it is steep.
+    fn noise_across(&self, used: f64) -> f64 {
+        /// Shares that are tried, from none to all.
+        const SHARES: usize = 20;
+        /// Points that are far off say nothing, but cost more than a surface seen edge on can gain.
+        const CLEAN: Loss = Loss::Tukey(5.0);
+        let seen: Vec<(f64, f64)> = self.surfaces.iter().flat_map(Surface::facing).collect();
+        if seen.is_empty() {
+            return 0.0;
+        }
+        let unlikeliness = |share: f64| {
+            let spread = |facing: f64| (facing + share * share * (1.0 - facing)).sqrt().max(EDGE_ON);
+            let sigma = deviation_of_clean(seen.iter().map(|(misfit, facing)| misfit / spread(*facing)).collect(), used);
+            let of_point = |&(misfit, facing): &(f64, f64)| {
+                let own = sigma * spread(facing);
+                own.ln() + CLEAN.rho(misfit / own)
+            };
+            seen.iter().map(of_point).sum::<f64>()
+        };
+        let all = (0..=SHARES).map(|at| at as f64 / SHARES as f64).map(|share| (unlikeliness(share), share));
+        all.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, share)| share)
     }
 
     /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.

@@ -10,7 +10,7 @@ const UNRESOLVED: f64 = 0.03;
 impl Solver {
     /// What a state says.
     pub(super) fn answer(&mut self, state: &State) -> Answer {
-        self.find_feet(&state.theta, &state.learned);
+        self.find_feet(state);
         let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta));
         let clouds = self.surfaces.iter().map(|surface| CloudFacts {
             group: surface.group,

@@ -11,7 +11,7 @@ impl Solver {
     /// Misfits of all terms, by group: of a cloud's points from the surface, of an integral from its target, of everything
     /// else at every point, or in the mean over every test.
     pub(super) fn misfits(&mut self, state: &State) -> Vec<Vec<Misfits>> {
-        self.find_feet(&state.theta, &state.learned);
+        self.find_feet(state);
         (0..self.groups.len()).map(|at| self.misfits_of(at, state)).collect()
     }
 

@@ -11,6 +11,8 @@ pub(super) struct State {
     pub(super) theta: Vec<f64>,
     pub(super) learned: Vec<f64>,
     pub(super) noise: f64,
+    /// The noise in other directions than a cloud's view, as a share of that along it.
+    pub(super) across: f64,
     /// Numbers of the clouds that the answer has used up: the trace of its influence matrix.
     pub(super) used: f64,
     /// Stiffness against the next step.
@@ -50,7 +52,7 @@ impl Place {
         let mut saved = state::State::new(METHOD)
             .with("theta", &self.state.theta)
             .with("learned", &self.state.learned)
-            .with("noise", &[self.state.noise, self.state.used, self.state.damping, self.state.lowest])
+            .with("noise", &[self.state.noise, self.state.across, self.state.used, self.state.damping, self.state.lowest])
             .with("free", &self.state.free.iter().map(|free| f64::from(u8::from(*free))).collect::<Vec<f64>>())
             .with_counter("lattice", lattice)
             .with_counter("before", before)
@@ -65,10 +67,10 @@ impl Place {
 
     /// Takes over what [`Place::save`] gave, on a lattice of the same size.
     pub(super) fn restore(&mut self, saved: &state::State) -> Result<(), Fault> {
-        let State { theta, learned, noise, used, damping, lowest, free } = &mut self.state;
+        let State { theta, learned, noise, across, used, damping, lowest, free } = &mut self.state;
         *theta = saved.sized("theta", theta.len())?;
         *learned = saved.sized("learned", learned.len())?;
-        [*noise, *used, *damping, *lowest] = saved.scalars("noise")?;
+        [*noise, *across, *used, *damping, *lowest] = saved.scalars("noise")?;
         let marks: Vec<f64> = saved.sized("free", free.len())?;
         *free = marks.iter().map(|&mark| mark != 0.0).collect();
         self.step = saved.counter("step")?;

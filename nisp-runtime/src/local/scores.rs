@@ -51,7 +51,7 @@ impl Sums {
 impl Solver {
     /// Scores of all that is [known](Solver::known); none where the matrix cannot be factorised.
     pub(super) fn scores(&mut self, state: &State) -> Option<Vec<Option<Score>>> {
-        self.find_feet(&state.theta, &state.learned);
+        self.find_feet(state);
         self.assemble(state, state.noise, Phase::Concave).ok()?;
         self.normal.set_free(Some(&state.free))?;
         let factor = self.normal.factor()?;

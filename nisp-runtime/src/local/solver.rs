@@ -33,8 +33,8 @@ pub(super) struct Solver {
     pub(super) scalars: Vec<f64>,
     /// Size of the base lattice's cells, the largest.
     pub(super) cell: f64,
-    /// Coefficients and learned parameters whose feet are found for good.
-    settled: Option<(Vec<f64>, Vec<f64>)>,
+    /// Coefficients, learned parameters and [`State::across`] whose feet are found for good.
+    settled: Option<(Vec<f64>, Vec<f64>, f64)>,
 }
 
 /// Share of the most that is seen of a field's function below which it goes on from others.
@@ -107,6 +107,7 @@ impl Solver {
             theta: vec![0.0; self.heads.len()],
             learned: vec![0.0; self.bound.learned.len()],
             noise: self.cell,
+            across: 0.0,
             used: 0.0,
             damping: LEAST_DAMPING,
             lowest: f64::INFINITY,
@@ -121,18 +122,22 @@ impl Solver {
         Place { state: state.clone(), step, skipped: 0, feet }
     }
 
-    /// Finds the feet of all clouds on the present surface.
-    pub(super) fn find_feet(&mut self, theta: &[f64], learned: &[f64]) {
+    /// Finds the feet of all clouds on the surface of a state.
+    pub(super) fn find_feet(&mut self, state: &State) {
+        let State { theta, learned, across, .. } = state;
         self.set_learned(learned);
-        let is_known = self.settled.as_ref().is_some_and(|(own, parameters)| own == theta && parameters == learned);
-        if is_known {
+        let is_known = |(own, parameters, share): &(Vec<f64>, Vec<f64>, f64)| {
+            own == theta && parameters == learned && share == across
+        };
+        if self.settled.as_ref().is_some_and(is_known) {
             return;
         }
         let mut settled = true;
         for surface in &mut self.surfaces {
+            surface.set_across(*across);
             settled &= surface.find(&self.groups[surface.group], &self.heads, theta, &self.scalars);
         }
-        self.settled = settled.then(|| (theta.to_vec(), learned.to_vec()));
+        self.settled = settled.then(|| (theta.clone(), learned.clone(), *across));
     }
 
     pub(super) fn set_feet(&mut self, feet: Vec<Feet>) {

@@ -1,7 +1,9 @@
-//! Rows of a cloud: how far each of its points is from the surface, along a known direction of view or across the surface.
+//! Rows of a cloud: how far each of its points is from the surface, across it, beside the noise in that direction.
 //!
-//! A point's foot is the place at rest whose image it is compared with: where the line through the point, along the
-//! direction, meets the surface. Feet are found by Newton's method before every step and held during it.
+//! A camera's points are off along its view `v` by a standard deviation `sigma`, and by a share `across` of it in the other
+//! directions: their covariance is `sigma^2 S` with `S = v v^T + across^2 (I - v v^T)`. A point's foot is the place at rest whose
+//! image it most likely is. From there to the point is the direction `S n` with the surface's normal `n`, and the distance along
+//! `n` has the variance `sigma^2 n^T S n`. Feet are found by Newton's method before every step and held during it.
 //!
 //! A robust loss is minimised by weights that every step renews.
 
@@ -19,6 +21,8 @@ use crate::schema;
 
 /// Newton steps for the feet, at most.
 const STEPS: usize = 8;
+/// Standard deviation of misfits, over that along the view, below which the surface is seen edge on.
+pub(super) const EDGE_ON: f64 = 0.05;
 /// Feet nearer than this to where they belong stay, as a share of a cell.
 const STILL: f64 = 1e-6;
 
@@ -29,8 +33,10 @@ pub(super) struct Surface {
     pub(super) term: &'static str,
     first: usize,
     cloud: Vec<Vector3<f64>>,
-    /// The direction along which the cloud is off; nothing if across the surface.
+    /// The direction of view; nothing if points are off alike in all directions.
     view: Option<Vector3<f64>>,
+    /// How far points are off in the other directions, as a share of that along the view.
+    across: f64,
     inputs: usize,
     /// Places at rest that the surface is known to have, flat, and their directions along it.
     samples: Vec<f64>,
@@ -43,9 +49,11 @@ pub(super) struct Surface {
     reach: f64,
     /// False where the foot was lost.
     found: Vec<bool>,
-    /// What rows are measured along, scaled so that they are distances along the view.
+    /// Unit normals of the surface, along which misfits are measured.
     normals: Vec<Vector3<f64>>,
     misfits: Vec<f64>,
+    /// Standard deviations of the misfits over that along the view.
+    spreads: Vec<f64>,
     counting: Counting,
 }
 
@@ -102,6 +110,7 @@ impl Surface {
             first: term.first,
             cloud,
             view: view.map(|v| Vector3::from(v).normalize()),
+            across: 0.0,
             inputs,
             samples: samples.to_vec(),
             tangents,
@@ -112,6 +121,7 @@ impl Surface {
             found: vec![false; count],
             normals: vec![Vector3::zeros(); count],
             misfits: vec![0.0; count],
+            spreads: vec![1.0; count],
             counting,
         }
     }
@@ -125,6 +135,7 @@ impl Surface {
         self.found = vec![false; count];
         self.normals = vec![Vector3::zeros(); count];
         self.misfits = vec![0.0; count];
+        self.spreads = vec![1.0; count];
     }
 
     /// Where the feet are, and which samples are nearest to them: where the next search begins.
@@ -142,9 +153,23 @@ impl Surface {
         self.cloud.len()
     }
 
-    /// Misfits of the points whose feet were found.
+    /// How far points are off in other directions than the view, as a share of that along it.
+    pub(super) fn set_across(&mut self, across: f64) {
+        self.across = across;
+    }
+
+    /// Misfits of the points whose feet were found, each as it would be along the view.
     pub(super) fn misfits(&self) -> impl Iterator<Item = f64> + '_ {
-        self.misfits.iter().zip(&self.found).filter(|(_, found)| **found).map(|(misfit, _)| *misfit)
+        let all = self.misfits.iter().zip(&self.spreads).zip(&self.found);
+        all.filter(|(_, found)| **found).map(|((misfit, spread), _)| misfit / spread)
+    }
+
+    /// Misfits across the surface of the points whose feet were found, and how much of their view is across it: the square of the
+    /// cosine between both. Nothing without a view.
+    pub(super) fn facing(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        let all = self.view.into_iter().flat_map(|view| self.normals.iter().map(move |normal| normal.dot(&view).powi(2)));
+        let all = self.misfits.iter().zip(all).zip(&self.found);
+        all.filter(|(_, found)| **found).map(|((misfit, facing), _)| (*misfit, facing))
     }
 
     /// The points of the cloud.
@@ -170,11 +195,10 @@ impl Surface {
 
     /// Signed distances of all points across the surface; nothing where the foot was lost.
     pub(super) fn signed(&self) -> Vec<Option<f64>> {
-        let across = self.misfits.iter().zip(&self.normals).map(|(misfit, normal)| misfit / normal.norm());
-        across.zip(&self.found).map(|(distance, found)| found.then_some(distance)).collect()
+        self.misfits.iter().zip(&self.found).map(|(distance, found)| found.then_some(*distance)).collect()
     }
 
-    /// Standard deviation of the points: as declared, or as estimated.
+    /// Standard deviation of the points along the view: as declared, or as estimated.
     pub(super) fn sigma(&self, estimated: f64) -> f64 {
         self.counting.within.unwrap_or(estimated)
     }
@@ -205,11 +229,13 @@ impl Surface {
     /// By how much the rows of [`Surface::blocks`] change where the surface at every foot goes so far.
     pub(super) fn across(&self, moved: &[Vector3<f64>], sigma: f64) -> Vec<f64> {
         let kept = (0..self.cloud.len()).filter(|&i| self.found[i]);
-        kept.map(|i| self.normals[i].dot(&moved[i]) * self.root_weight(i, sigma) / sigma).collect()
+        kept.map(|i| self.normals[i].dot(&moved[i]) * self.root_weight(i, sigma)).collect()
     }
 
+    /// What the row of a point is multiplied by: its weight's root over its standard deviation.
     fn root_weight(&self, i: usize, sigma: f64) -> f64 {
-        (self.counting.weight * self.counting.loss.weight(self.misfits[i] / sigma)).sqrt()
+        let own = sigma * self.spreads[i];
+        (self.counting.weight * self.counting.loss.weight(self.misfits[i] / own)).sqrt() / own
     }
 
     /// Finds the feet of all points on the present surface: true where they have come to rest.
@@ -252,13 +278,14 @@ impl Surface {
                 self.found[i] = false;
                 return None;
             };
-            let view = self.view.unwrap_or(normal);
+            let share = self.across * self.across;
+            let way = self.view.map_or(normal, |view| view * (view.dot(&normal) * (1.0 - share)) + normal * share);
+            self.spreads[i] = way.dot(&normal).sqrt();
             // A surface seen edge on says nothing along the view.
-            let facing = normal.dot(&view);
-            self.found[i] = facing.abs() > 0.05;
-            self.normals[i] = normal / if self.found[i] { facing } else { 1.0 };
-            self.misfits[i] = self.normals[i].dot(&(near[0] - self.cloud[i]));
-            let inverse = Matrix3::from_columns(&[a, b, view]).try_inverse()?;
+            self.found[i] = self.spreads[i] > EDGE_ON;
+            self.normals[i] = normal;
+            self.misfits[i] = normal.dot(&(near[0] - self.cloud[i]));
+            let inverse = Matrix3::from_columns(&[a, b, way.normalize()]).try_inverse()?;
             self.found[i].then(|| (inverse * (self.cloud[i] - near[0])).xy())
         };
         moving.iter().zip(positions.chunks_exact(5)).map(way).collect()
@@ -331,7 +358,7 @@ impl Surface {
             .map(|i| {
                 let seed = |bar| (0..3).map(|c| self.normals[i][c] * evaluated.bar(self.first + c, bar, i)).sum();
                 let mut block = group.at_point(heads, (&sites, i), learned, self.misfits[i], seed);
-                block.divide(std::iter::once(sigma / self.root_weight(i, sigma)));
+                block.divide(std::iter::once(1.0 / self.root_weight(i, sigma)));
                 block
             })
             .collect()

@@ -4,6 +4,7 @@ use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::num::NonZero;
 
+use super::patterns::BELOW;
 use super::{Check, root_mean_square};
 use crate::facts::CloudFacts;
 use crate::problem::Bound;
@@ -66,7 +67,9 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     }
     let (correlation, z) = pattern(&places, &kept, &tree);
     let systematic = correlation.max(0.0).sqrt() * rms;
-    let matters = correlation > SLIGHT && systematic > tolerance.unwrap_or(cloud.resolution / 2.0);
+    // Far below the noise that is declared, it is what a fit that follows the cloud leaves.
+    let least = tolerance.unwrap_or(cloud.resolution / 2.0);
+    let matters = correlation > SLIGHT && systematic > least && within.is_none_or(|within| rms >= BELOW * within);
     let said = format!(
         "what is left of `{}` is no noise: neighbours correlate by {correlation:.2}, so the surface is off by some {:.2e}{unit} \
          over whole regions: wrong equations (large strains?), a wrong parameter or a wrong pose",

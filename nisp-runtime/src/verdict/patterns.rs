@@ -13,7 +13,7 @@ const SMOOTH: f64 = 5.0;
 /// Patterns with less than this share of the misfit's square do not matter.
 const SLIGHT: f64 = 0.05;
 /// Misfit over the noise below which it has no pattern to speak of.
-const BELOW: f64 = 0.5;
+pub(super) const BELOW: f64 = 0.5;
 /// Amplitude of a rhythm over the noise below which it does not matter.
 const FAINT: f64 = 0.1;
 /// Values that say something of a correlation, at least.
