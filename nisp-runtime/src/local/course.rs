@@ -22,6 +22,8 @@ const FARTHEST: f64 = 5.0;
 pub(super) const BARS: f64 = 2.0;
 /// Time of the score tests of what is given (`scores.rs`), in steps.
 pub(super) const ASKED: f64 = 2.0;
+/// Largest change of a learned scalar's parameter in one step.
+const BOLDEST: f64 = 0.5;
 /// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
 const MOST_OFF: f64 = 5.0;
 /// Relative change of the coefficients at which the answer counts as converged.
@@ -203,7 +205,8 @@ impl Solver {
             let (step, shared) = self.normal.step_with(&factor, &held).ok_or(LocalError::Factorisation)?;
             // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
             let largest = fields.iter().map(|&at| step[at].abs()).fold(0.0, f64::max);
-            let all = if regress { 1.0 } else { (FARTHEST / largest).min(1.0) };
+            let boldest = shared[..state.learned.len()].iter().fold(0.0f64, |most, x| most.max(x.abs()));
+            let all = if regress { 1.0 } else { (FARTHEST / largest).min(BOLDEST / boldest).min(1.0) };
             let calmer = (damping / STRONGER).max(LEAST_DAMPING);
             let scores = self.scores_of(asked, &State { noise, ..state.clone() }, &factor);
             let from = State { noise, used, damping: calmer, lowest, ..state.clone() };
@@ -233,7 +236,7 @@ impl Solver {
         let (mut next, mut after) = (from.clone(), f64::INFINITY);
         for share in SHARES.map(|share| share * all) {
             next.theta = from.theta.iter().zip(step).map(|(x, s)| x + share * s).collect();
-            next.learned = from.learned.iter().zip(shared).map(|(x, s)| x + share * s.clamp(-0.5, 0.5)).collect();
+            next.learned = from.learned.iter().zip(shared).map(|(x, s)| x + share * s).collect();
             after = self.loss(&next, from.noise) + self.penalty(&next, from.noise, phase == Phase::Concave);
             if after <= most {
                 break;

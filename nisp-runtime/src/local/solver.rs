@@ -18,7 +18,7 @@ const TOLERANCE: f64 = 1e-2;
 
 /// Least stiffness against a step of every field's coefficient, in tolerances over natural sizes: what rows tell is hardly
 /// slowed by it.
-pub(super) const LEAST_DAMPING: f64 = 0.1;
+pub(super) const LEAST_DAMPING: f64 = 1e-3;
 
 /// A problem on its lattices.
 pub(super) struct Solver {
