@@ -11,8 +11,11 @@ use crate::contact::{
 use crate::entry::Entry;
 use crate::request::Request;
 
-/// Regions along the longer axis over which a theory's error is about the same.
-const REGIONS: f64 = 12.0;
+/// Size of the regions over which a theory's error is about the same, for a rim of these semi-axes: a twelfth of the longer axis.
+pub(super) fn region(a: f64, b: f64) -> f64 {
+    2.0 * a.max(b) / 12.0
+}
+
 /// Regions with fewer than this share of the points that an even spread gives them hold strays.
 const STRAYS: f64 = 0.1;
 /// A median of sizes over this is the standard deviation of normal numbers.
@@ -40,9 +43,9 @@ impl References {
             stretch: None,
             pressure: given.of("p")?,
         };
-        let regions = std::f64::consts::PI * a * b / (2.0 * a.max(b) / REGIONS).powi(2);
+        let regions = std::f64::consts::PI * a * b / region(a, b).powi(2);
         let least = (STRAYS * cloud.points.len() as f64 / regions) as usize;
-        let thinned = cloud.one_of_each_cube(2.0 * a.max(b) / REGIONS, least);
+        let thinned = cloud.one_of_each_cube(region(a, b), least);
         let cloud = std::mem::replace(cloud, thinned);
         Ok(Self { frames: request.data.len(), cloud, given: known })
     }

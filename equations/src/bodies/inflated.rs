@@ -1,10 +1,12 @@
 //! Binds the scenes of an inflated membrane over an elliptic rim to a cloud of its surface.
 
+use nisp::Tolerance;
 use nisp::local::{Local, Patches};
 use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use serde::Deserialize;
 
+use super::calibrate::region;
 use super::given::{Given, Number, Positive};
 use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
@@ -134,7 +136,10 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     bind_cloud(&mut problem, &observed.cloud)?;
     match &frames.calibration {
         // What was taken off a point may be off by as much as it is where the surface is pressed into another shape.
-        Some(calibration) => problem.set_tolerance("surface", "cloud", calibration.found.misfit_m)?,
+        Some(calibration) => {
+            let tolerance = Tolerance { size: calibration.found.misfit_m, region: region(a, b) };
+            problem.set_tolerance("surface", "cloud", tolerance)?;
+        }
         // The camera looks up.
         None if local.is_some() && !calibrates => problem.set_view("surface", "cloud", [0.0, 0.0, 1.0])?,
         None => {}

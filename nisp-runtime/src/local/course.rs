@@ -272,7 +272,8 @@ impl Solver {
         }
         let unlikeliness = |share: f64| {
             let spread = |facing: f64| (facing + share * share * (1.0 - facing)).sqrt().max(EDGE_ON);
-            let sigma = deviation_of_clean(seen.iter().map(|(misfit, facing)| misfit / spread(*facing)).collect(), used);
+            let sigma =
+                deviation_of_clean(seen.iter().map(|(misfit, facing)| misfit / spread(*facing)).collect(), used);
             let of_point = |&(misfit, facing): &(f64, f64)| {
                 let own = sigma * spread(facing);
                 own.ln() + CLEAN.rho(misfit / own)

@@ -52,7 +52,10 @@ impl Place {
         let mut saved = state::State::new(METHOD)
             .with("theta", &self.state.theta)
             .with("learned", &self.state.learned)
-            .with("noise", &[self.state.noise, self.state.across, self.state.used, self.state.damping, self.state.lowest])
+            .with(
+                "noise",
+                &[self.state.noise, self.state.across, self.state.used, self.state.damping, self.state.lowest],
+            )
             .with("free", &self.state.free.iter().map(|free| f64::from(u8::from(*free))).collect::<Vec<f64>>())
             .with_counter("lattice", lattice)
             .with_counter("before", before)

@@ -7,6 +7,8 @@
 //!
 //! A robust loss is minimised by weights that every step renews.
 
+use std::collections::HashSet;
+
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use rayon::prelude::*;
@@ -17,6 +19,7 @@ use super::heads::Heads;
 use super::shape::{Shape, padded, tangents_at};
 use crate::facts::spread;
 use crate::loss::Loss;
+use crate::problem::Tolerance;
 use crate::schema;
 
 /// Newton steps for the feet, at most.
@@ -55,6 +58,8 @@ pub(super) struct Surface {
     /// Standard deviations of the misfits over that along the view.
     spreads: Vec<f64>,
     counting: Counting,
+    /// Points that are off alike, in the mean over the cloud.
+    alike: f64,
 }
 
 /// How the misfits of a cloud's points count.
@@ -62,20 +67,22 @@ pub(super) struct Surface {
 pub(super) struct Counting {
     /// Of a misfit over its standard deviation.
     pub(super) loss: Loss,
-    /// The standard deviation, where it is declared.
+    /// The standard deviation of a point, or of all points of a region, where it is declared.
     pub(super) within: Option<f64>,
+    /// Length over which points are off alike, where it is declared.
+    pub(super) region: Option<f64>,
     /// What the loss is multiplied by.
     pub(super) weight: f64,
 }
 
 impl Counting {
-    /// As declared; `size` is the standard deviation of a term that says `within`, `tolerance` how far the cloud may be off over
-    /// whole regions. Clouds have outliers, so that one of which nothing is said has Huber's loss.
-    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64, tolerance: Option<f64>) -> Self {
+    /// As declared; `size` is the standard deviation of a term that says `within`. Clouds have outliers, so that one of which nothing is said has Huber's loss.
+    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64, tolerance: Option<Tolerance>) -> Self {
         /// Deviations from which on a point counts as an outlier.
         const OUTLIER: f64 = 3.0;
         let loss = if declared.is_robust() { declared } else { Loss::Huber(OUTLIER) };
-        Self { loss, within: tolerance.or(term.within.map(|_| size)), weight: term.weight }
+        let within = tolerance.map(|tolerance| tolerance.size).or(term.within.map(|_| size));
+        Self { loss, within, region: tolerance.map(|tolerance| tolerance.region), weight: term.weight }
     }
 }
 
@@ -104,6 +111,7 @@ impl Surface {
         let tangents = flat.iter().zip(samples.chunks_exact(inputs));
         let tangents = tangents.map(|(at, _)| tangents_at(rest.as_ref(), &flat, at, inputs)).collect();
         let count = cloud.len();
+        let alike = alike(&cloud, counting.region);
         Self {
             group,
             term: term.name,
@@ -123,6 +131,7 @@ impl Surface {
             misfits: vec![0.0; count],
             spreads: vec![1.0; count],
             counting,
+            alike,
         }
     }
 
@@ -130,6 +139,7 @@ impl Surface {
     pub(super) fn renew(&mut self, cloud: &[f64]) {
         self.cloud = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
         let count = self.cloud.len();
+        self.alike = alike(&self.cloud, self.counting.region);
         self.feet.clear();
         self.nearest = vec![0; count];
         self.found = vec![false; count];
@@ -167,7 +177,8 @@ impl Surface {
     /// Misfits across the surface of the points whose feet were found, and how much of their view is across it: the square of the
     /// cosine between both. Nothing without a view.
     pub(super) fn facing(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let all = self.view.into_iter().flat_map(|view| self.normals.iter().map(move |normal| normal.dot(&view).powi(2)));
+        let all =
+            self.view.into_iter().flat_map(|view| self.normals.iter().map(move |normal| normal.dot(&view).powi(2)));
         let all = self.misfits.iter().zip(all).zip(&self.found);
         all.filter(|(_, found)| **found).map(|((misfit, facing), _)| (*misfit, facing))
     }
@@ -200,18 +211,19 @@ impl Surface {
 
     /// Standard deviation of the points along the view: as declared, or as estimated.
     pub(super) fn sigma(&self, estimated: f64) -> f64 {
-        self.counting.within.unwrap_or(estimated)
+        self.within().unwrap_or(estimated)
     }
 
-    /// The declared standard deviation.
+    /// The declared standard deviation. Points that are off alike are worth one of them together.
     pub(super) fn within(&self) -> Option<f64> {
-        self.counting.within
+        self.counting.within.map(|within| within * self.alike.sqrt())
     }
 
     /// Sum of the points' losses.
     pub(super) fn loss(&self, sigma: f64) -> f64 {
         let Counting { loss, weight, .. } = self.counting;
-        self.misfits().map(|misfit| weight * loss.rho(misfit / sigma)).sum()
+        let own = sigma / self.alike.sqrt();
+        self.misfits().map(|misfit| weight / self.alike * loss.rho(misfit / own)).sum()
     }
 
     /// Where the surface has the feet of all points.
@@ -234,8 +246,8 @@ impl Surface {
 
     /// What the row of a point is multiplied by: its weight's root over its standard deviation.
     fn root_weight(&self, i: usize, sigma: f64) -> f64 {
-        let own = sigma * self.spreads[i];
-        (self.counting.weight * self.counting.loss.weight(self.misfits[i] / own)).sqrt() / own
+        let own = sigma / self.alike.sqrt() * self.spreads[i];
+        (self.counting.weight / self.alike * self.counting.loss.weight(self.misfits[i] / own)).sqrt() / own
     }
 
     /// Finds the feet of all points on the present surface: true where they have come to rest.
@@ -363,4 +375,12 @@ impl Surface {
             })
             .collect()
     }
+}
+
+/// Points of a cloud in a cube of this size, the mean over all cubes that have any; one if there is no size.
+fn alike(cloud: &[Vector3<f64>], region: Option<f64>) -> f64 {
+    let Some(region) = region else { return 1.0 };
+    let cubes: HashSet<[i64; 3]> =
+        cloud.iter().map(|point| point.map(|x| (x / region).floor() as i64).into()).collect();
+    cloud.len() as f64 / cubes.len().max(1) as f64
 }

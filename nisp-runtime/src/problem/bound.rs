@@ -1,7 +1,7 @@
 //! A problem in the engine's units: what carriers read of it, and parts of it.
 
 use super::frame::inward_points;
-use super::{Frame, Problem, UnitSystem};
+use super::{Frame, Problem, Tolerance, UnitSystem};
 use crate::engine::{Learned, Powers, Scaling, is_exchangeable};
 use crate::loss::Loss;
 use crate::schema::{self, Origin};
@@ -114,9 +114,10 @@ impl Bound {
     }
 
     /// How far a term's cloud may be off over whole regions, if that is known.
-    pub(crate) fn tolerance(&self, group: usize, term: &schema::Term) -> Option<f64> {
+    pub(crate) fn tolerance(&self, group: usize, term: &schema::Term) -> Option<Tolerance> {
         let declared = self.problem.groups[group].as_ref()?.tolerance(term.name)?;
-        Some(declared * self.system.inward(&term.unit))
+        let inward = self.system.inward(&term.unit);
+        Some(Tolerance { size: inward * declared.size, region: inward * declared.region })
     }
 
     /// Points given in declared units, in the engine's.

@@ -57,6 +57,15 @@ impl From<&[f64]> for Points {
     }
 }
 
+/// How far a cloud may be off over whole regions, in the declared unit of its term.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tolerance {
+    /// Standard deviation.
+    pub size: f64,
+    /// Length over which the cloud is off by about the same.
+    pub region: f64,
+}
+
 /// What is bound to a group.
 #[derive(Clone, Debug, Default)]
 struct Binding {
@@ -67,8 +76,8 @@ struct Binding {
     clouds: Vec<(String, Vec<f64>)>,
     /// Directions along which clouds are off: term, direction.
     views: Vec<(String, [f64; 3])>,
-    /// How far clouds may be off over whole regions: term, value in the term's declared unit.
-    tolerances: Vec<(String, f64)>,
+    /// How far clouds may be off over whole regions: term, tolerance in the term's declared unit.
+    tolerances: Vec<(String, Tolerance)>,
 }
 
 impl Binding {
@@ -89,7 +98,7 @@ impl Binding {
     }
 
     /// How far a term's cloud may be off over whole regions, as bound last.
-    fn tolerance(&self, term: &str) -> Option<f64> {
+    fn tolerance(&self, term: &str) -> Option<Tolerance> {
         self.tolerances.iter().rev().find(|(name, _)| name == term).map(|(_, tolerance)| *tolerance)
     }
 }
@@ -202,12 +211,12 @@ impl Problem {
         Ok(())
     }
 
-    /// Says how far a cloud may be off over whole regions, in the term's declared unit: what a calibration of its sensor
-    /// leaves. Local functions take it for the standard deviation of every point, and the verdict for no pattern.
+    /// Says how far a cloud may be off over whole regions: what a calibration of its sensor leaves. Local functions let all points of
+    /// a region count as one, with this standard deviation; the verdict takes it for no pattern.
     ///
     /// # Errors
     /// No such group, or nothing bound to it yet.
-    pub fn set_tolerance(&mut self, group: &str, term: &str, tolerance: f64) -> Result<(), BindError> {
+    pub fn set_tolerance(&mut self, group: &str, term: &str, tolerance: Tolerance) -> Result<(), BindError> {
         let tolerances = &mut self.binding(group)?.tolerances;
         tolerances.retain(|(own, _)| own != term);
         tolerances.push((term.into(), tolerance));

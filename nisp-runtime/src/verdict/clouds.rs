@@ -51,7 +51,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let typical = middle(found.iter().map(|(.., misfit)| misfit.abs()).collect());
     let kept: Vec<f64> = found.iter().map(|(.., m)| if m.abs() > 5.0 * typical { 0.0 } else { *m }).collect();
     let rms = root_mean_square(kept.iter().copied());
-    let tolerance = bound.tolerance(cloud.group, term);
+    let tolerance = bound.tolerance(cloud.group, term).map(|tolerance| tolerance.size);
     let within = tolerance.or(term.within.map(|within| within / bound.system.size(&term.unit)));
     let rough = within.or_else(|| roughness(&points, &places, &tree)).unwrap_or(0.0).max(cloud.resolution);
     let said = format!(
