@@ -44,7 +44,8 @@ fn ctrl_c_writes_the_best_state_and_says_so() {
     let stopped = object["iterations"].as_u64().unwrap();
     let ran =
         place.run(&format!("solve pendulum --carrier network --resume nisp-out --iterations {} --json", stopped + 2));
-    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    // Two steps more may be too few for an answer that nothing says against.
+    assert!(matches!(ran.code, Some(0 | 3)), "{}", ran.stderr);
     let object: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!(object["iterations"], stopped + 2);
 }
