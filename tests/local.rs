@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use nisp::local::{Local, Patches};
 use nisp::solve::driver::{Flow, Status, WarningKind};
-use nisp::{Carrier, Points, Problem, SceneRef, Session, Settings, Solution, recover, scene};
+use nisp::{Carrier, Points, Problem, SceneRef, Session, Settings, Solution, Tolerance, recover, scene};
 
 nisp::pde! {
     /// A drumhead.
@@ -216,6 +216,29 @@ fn noise_may_be_along_the_view_or_in_all_directions() {
         assert!((1e3 * unit * found - 1.0).abs() < 0.1, "{noise:?}: {found}");
         assert_eq!(solution.status, Status::Converged, "{noise:?}");
     }
+}
+
+/// A sensor that is off by half a millimetre over regions of a centimetre shows nothing that presses, if that is known of it: its
+/// points do not say the same anew.
+#[test]
+fn points_that_are_off_alike_count_as_one() {
+    let force = |region: f64| {
+        let mut problem = Problem::new(scene::<drum::pressed::Scene>());
+        problem.set_parameter("T", T).unwrap();
+        bind(&mut problem, 0.0, 1.0, 0.0);
+        let mut cloud = seen(0.0, 1.0, ([0.0, 0.0, 0.1], 0));
+        cloud.chunks_mut(3).for_each(|c| c[2] += 0.7 * (c[0] / 4.0).sin() * (c[1] / 4.0).sin());
+        set_cloud(&mut problem, cloud);
+        let unit = 1e-3 / problem.scene().schema.groups[1].terms[0].unit.factor;
+        let tolerance = Tolerance { size: 0.5 * unit, region: region * unit };
+        problem.set_tolerance("surface", "cloud", tolerance).unwrap();
+        let solution = solve(&problem, Some(Patches { level: P, edges: 0.15, area: 0.75, end: 0.7 }), 2);
+        let area = 1e-6 * std::f64::consts::PI * R * R / 6000.0;
+        values(&solution.evaluate(&disc(6000)), "f").iter().map(|f| f * area).sum::<f64>()
+    };
+    // Regions of which none has two points.
+    let (each, together) = (force(0.1), force(10.0));
+    assert!(together < 0.02 && each > 0.1, "{together} N, and {each} N if every point counts");
 }
 
 /// A camera that shows one half: what presses on the other is anybody's guess, and the deviations say so.
