@@ -1,6 +1,6 @@
 //! Terms: what must hold at the points of a group.
 
-use proc_macro2::{Delimiter, Literal};
+use proc_macro2::Delimiter;
 
 use super::recover::{self, end_statement};
 use super::stream::{Context, Stream};
@@ -130,16 +130,12 @@ fn suffixes(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Suffi
     }
 }
 
-/// A positive number, with or without digits before its point.
+/// A positive number.
 pub(super) fn positive(stream: &mut Stream<'_>, context: &mut Context<'_>, what: &str) -> Checked<f64> {
     let place = stream.place();
-    let is_below_one = stream.take(".").is_some();
-    let Some(mut literal) = stream.take_literal() else {
+    let Some(literal) = stream.take_literal() else {
         return Err(context.errors.report(place, catalogue::expected_positive(what)));
     };
-    if is_below_one && let Ok(whole) = format!("0.{literal}").parse::<Literal>() {
-        literal = whole;
-    }
     let place = place.to(stream.previous());
     match parse_number::parse(&literal, context)?.value {
         value if value > 0.0 => Ok(value),

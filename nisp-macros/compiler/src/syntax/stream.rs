@@ -103,10 +103,17 @@ impl<'a> Stream<'a> {
         Some(Name { text: word.to_string(), span: word.span() })
     }
 
-    /// Takes a literal.
+    /// Takes a literal; a number may have no digits before its point.
     pub(super) fn take_literal(&mut self) -> Option<Literal> {
-        let (literal, rest) = self.cursor.literal()?;
-        self.advance(literal.span().into(), rest);
+        let mut ahead = *self;
+        let is_below_one = ahead.take(".").is_some();
+        let (mut literal, rest) = ahead.cursor.literal()?;
+        let span = literal.span();
+        if is_below_one {
+            literal = format!("0.{literal}").parse().ok()?;
+            literal.set_span(span);
+        }
+        self.advance(span.into(), rest);
         Some(literal)
     }
 
