@@ -4,18 +4,15 @@ use super::normal::Factor;
 use super::phase::{CONVEX_STEPS, Phase, WARM_STEPS};
 use super::place::{Place, State};
 use super::solver::{LEAST_DAMPING, Solver};
-use super::surface::{EDGE_ON, Surface};
+use super::surface::Surface;
 use super::{LocalError, Stage};
 use crate::carrier::Progress;
 use crate::facts::{Known, Score};
-use crate::loss::{Loss, deviation_of_clean};
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::method::FAULTS_IN_A_ROW;
 use crate::solve::state;
 
-/// Noise that clouds are credited with at least, as a share of a cell: what splines cannot follow.
-const LEAST_NOISE: f64 = 1e-2;
 /// Largest change of a field in one step, in its natural sizes.
 const FARTHEST: f64 = 5.0;
 /// Time of the error bars, in steps.
@@ -243,45 +240,6 @@ impl Solver {
             }
         }
         (next, after)
-    }
-
-    /// True where every cloud says how noisy it is.
-    fn knows_noise(&self) -> bool {
-        self.surfaces.iter().all(|surface| surface.within().is_some())
-    }
-
-    /// Standard deviation of the clouds about the surface, without outliers; the largest declared where all are.
-    fn noise(&self, used: f64) -> f64 {
-        let unknown = self.surfaces.iter().filter(|surface| surface.within().is_none());
-        let misfits: Vec<f64> = unknown.flat_map(Surface::misfits).collect();
-        let declared = || self.surfaces.iter().filter_map(Surface::within).fold(0.0, f64::max);
-        let found = if misfits.is_empty() { declared() } else { deviation_of_clean(misfits, used) };
-        found.max(LEAST_NOISE * self.cell)
-    }
-
-    /// The noise in other directions than a cloud's view, as a share of that along it: the likeliest by how much more points are off
-    /// where the surface is seen from the front than where it is steep.
-    fn noise_across(&self, used: f64) -> f64 {
-        /// Shares that are tried, from none to all.
-        const SHARES: usize = 20;
-        /// Points that are far off say nothing, but cost more than a surface seen edge on can gain.
-        const CLEAN: Loss = Loss::Tukey(5.0);
-        let seen: Vec<(f64, f64)> = self.surfaces.iter().flat_map(Surface::facing).collect();
-        if seen.is_empty() {
-            return 0.0;
-        }
-        let unlikeliness = |share: f64| {
-            let spread = |facing: f64| (facing + share * share * (1.0 - facing)).sqrt().max(EDGE_ON);
-            let sigma =
-                deviation_of_clean(seen.iter().map(|(misfit, facing)| misfit / spread(*facing)).collect(), used);
-            let of_point = |&(misfit, facing): &(f64, f64)| {
-                let own = sigma * spread(facing);
-                own.ln() + CLEAN.rho(misfit / own)
-            };
-            seen.iter().map(of_point).sum::<f64>()
-        };
-        let all = (0..=SHARES).map(|at| at as f64 / SHARES as f64).map(|share| (unlikeliness(share), share));
-        all.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(0.0, |(_, share)| share)
     }
 
     /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.

@@ -11,6 +11,7 @@
 mod assembly;
 mod block;
 mod bspline;
+mod counting;
 mod course;
 mod draws;
 mod evaluated;
@@ -22,6 +23,7 @@ mod lattice;
 mod live;
 mod meshes;
 mod misfits;
+mod noise;
 mod normal;
 mod pattern;
 mod phase;

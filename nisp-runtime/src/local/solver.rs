@@ -1,5 +1,6 @@
 //! A problem on its lattices: what is set up once, before any step.
 
+use super::counting::Counting;
 use super::group::Group;
 use super::heads::Heads;
 use super::lattice::Lattice;
@@ -7,7 +8,7 @@ use super::meshes::{base, lattice, together};
 use super::normal::Normal;
 use super::place::{Place, State};
 use super::refuse::refuse_what_networks_do;
-use super::surface::{Counting, Feet, Surface};
+use super::surface::{Feet, Surface};
 use super::{Local, LocalError};
 use crate::problem::Bound;
 use crate::schema::TermKind;

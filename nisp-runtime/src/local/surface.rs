@@ -7,19 +7,16 @@
 //!
 //! A robust loss is minimised by weights that every step renews.
 
-use std::collections::HashSet;
-
 use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use nalgebra::{Matrix3, Vector2, Vector3};
 use rayon::prelude::*;
 
 use super::block::Block;
+use super::counting::{Counting, alike};
 use super::group::Group;
 use super::heads::Heads;
 use super::shape::{Shape, padded, tangents_at};
 use crate::facts::spread;
-use crate::loss::Loss;
-use crate::problem::Tolerance;
 use crate::schema;
 
 /// Newton steps for the feet, at most.
@@ -60,30 +57,6 @@ pub(super) struct Surface {
     counting: Counting,
     /// Points that are off alike, in the mean over the cloud.
     alike: f64,
-}
-
-/// How the misfits of a cloud's points count.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Counting {
-    /// Of a misfit over its standard deviation.
-    pub(super) loss: Loss,
-    /// The standard deviation of a point, or of all points of a region, where it is declared.
-    pub(super) within: Option<f64>,
-    /// Length over which points are off alike, where it is declared.
-    pub(super) region: Option<f64>,
-    /// What the loss is multiplied by.
-    pub(super) weight: f64,
-}
-
-impl Counting {
-    /// As declared; `size` is the standard deviation of a term that says `within`. Clouds have outliers, so that one of which nothing is said has Huber's loss.
-    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64, tolerance: Option<Tolerance>) -> Self {
-        /// Deviations from which on a point counts as an outlier.
-        const OUTLIER: f64 = 3.0;
-        let loss = if declared.is_robust() { declared } else { Loss::Huber(OUTLIER) };
-        let within = tolerance.map(|tolerance| tolerance.size).or(term.within.map(|_| size));
-        Self { loss, within, region: tolerance.map(|tolerance| tolerance.region), weight: term.weight }
-    }
 }
 
 /// Feet of a cloud's points; none before the first search.
@@ -375,12 +348,4 @@ impl Surface {
             })
             .collect()
     }
-}
-
-/// Points of a cloud in a cube of this size, the mean over all cubes that have any; one if there is no size.
-fn alike(cloud: &[Vector3<f64>], region: Option<f64>) -> f64 {
-    let Some(region) = region else { return 1.0 };
-    let cubes: HashSet<[i64; 3]> =
-        cloud.iter().map(|point| point.map(|x| (x / region).floor() as i64).into()).collect();
-    cloud.len() as f64 / cubes.len().max(1) as f64
 }

@@ -1,0 +1,58 @@
+//! How the points of a cloud count: their loss, their declared deviation, and how many of them are off alike.
+
+use std::collections::HashSet;
+
+use nalgebra::Vector3;
+
+use crate::loss::Loss;
+use crate::problem::Tolerance;
+use crate::schema;
+
+/// How the misfits of a cloud's points count.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Counting {
+    /// Of a misfit over its standard deviation.
+    pub(super) loss: Loss,
+    /// The standard deviation of a point, or of all points of a region, where it is declared.
+    pub(super) within: Option<f64>,
+    /// Length over which points are off alike, where it is declared.
+    pub(super) region: Option<f64>,
+    /// What the loss is multiplied by.
+    pub(super) weight: f64,
+}
+
+impl Counting {
+    /// As declared; `size` is the standard deviation of a term that says `within`. Clouds have outliers, so that one of which nothing
+    /// is said has Huber's loss.
+    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64, tolerance: Option<Tolerance>) -> Self {
+        /// Deviations from which on a point counts as an outlier.
+        const OUTLIER: f64 = 3.0;
+        let loss = if declared.is_robust() { declared } else { Loss::Huber(OUTLIER) };
+        let within = tolerance.map(|tolerance| tolerance.size).or(term.within.map(|_| size));
+        Self { loss, within, region: tolerance.map(|tolerance| tolerance.region), weight: term.weight }
+    }
+}
+
+/// Points of a cloud in a cube of this size, the mean over all cubes that have any; one if there is no size.
+pub(super) fn alike(cloud: &[Vector3<f64>], region: Option<f64>) -> f64 {
+    let Some(region) = region else { return 1.0 };
+    let cubes: HashSet<[i64; 3]> =
+        cloud.iter().map(|point| point.map(|x| (x / region).floor() as i64).into()).collect();
+    (cloud.len() as f64 / cubes.len() as f64).max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two millimetres apart on a square of 20 mm: a hundred points, in cubes of 5 mm from -10 to 10.
+    #[test]
+    fn points_of_a_region_are_counted() {
+        let at = |i: i32| 2.0 * f64::from(i) - 9.0;
+        let cloud: Vec<Vector3<f64>> = (0..100).map(|i| Vector3::new(at(i % 10), at(i / 10), 1.0)).collect();
+        assert_eq!(alike(&cloud, Some(5.0)), 100.0 / 16.0);
+        assert_eq!(alike(&cloud, Some(1.0)), 1.0);
+        assert_eq!(alike(&cloud, None), 1.0);
+        assert_eq!(alike(&[], Some(1.0)), 1.0);
+    }
+}
