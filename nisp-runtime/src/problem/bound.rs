@@ -108,7 +108,7 @@ impl Bound {
         slot.map_or(self.scaling.scale[head], |slot| self.scalars[slot])
     }
 
-    /// The direction along which a term's cloud is off, if it is known.
+    /// The direction from which a term's cloud was seen, if it is known.
     pub(crate) fn view(&self, group: usize, term: &str) -> Option<[f64; 3]> {
         self.problem.groups[group].as_ref()?.view(term)
     }

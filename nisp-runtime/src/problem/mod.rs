@@ -74,7 +74,7 @@ struct Binding {
     columns: Vec<Vec<f64>>,
     /// Clouds of Chamfer terms: term, points flat.
     clouds: Vec<(String, Vec<f64>)>,
-    /// Directions along which clouds are off: term, direction.
+    /// Directions from which clouds were seen: term, direction.
     views: Vec<(String, [f64; 3])>,
     /// How far clouds may be off over whole regions: term, tolerance in the term's declared unit.
     tolerances: Vec<(String, Tolerance)>,
@@ -92,7 +92,7 @@ impl Binding {
         (points, columns, views, tolerances) == (&other.points, &other.columns, &other.views, &other.tolerances)
     }
 
-    /// The direction along which a term's cloud is off, as bound last.
+    /// The direction from which a term's cloud was seen, as bound last.
     fn view(&self, term: &str) -> Option<[f64; 3]> {
         self.views.iter().rev().find(|(name, _)| name == term).map(|(_, view)| *view)
     }
@@ -199,8 +199,8 @@ impl Problem {
         binding.ok_or_else(|| BindError::unknown("group", group, groups.iter().map(|g| g.name)))
     }
 
-    /// Says that a cloud is off along one direction only, as a depth camera's is; local functions measure distances along
-    /// it. Otherwise distances count across the surface.
+    /// Says from which direction a cloud was seen. A camera's points are off along it most; local functions find out from the cloud by
+    /// how much less they are off in other directions. Without a direction points are off alike in all.
     ///
     /// # Errors
     /// No such group, or nothing bound to it yet.
