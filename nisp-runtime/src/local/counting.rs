@@ -12,13 +12,15 @@ use crate::schema;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Counting {
     /// Of a misfit over its standard deviation.
-    pub(super) loss: Loss,
+    loss: Loss,
     /// The standard deviation of a point, or of all points of a region, where it is declared.
-    pub(super) within: Option<f64>,
+    within: Option<f64>,
     /// Length over which points are off alike, where it is declared.
-    pub(super) region: Option<f64>,
+    region: Option<f64>,
+    /// Points that are off alike, in the mean over the cloud.
+    alike: f64,
     /// What the loss is multiplied by.
-    pub(super) weight: f64,
+    weight: f64,
 }
 
 impl Counting {
@@ -29,12 +31,33 @@ impl Counting {
         const OUTLIER: f64 = 3.0;
         let loss = if declared.is_robust() { declared } else { Loss::Huber(OUTLIER) };
         let within = tolerance.map(|tolerance| tolerance.size).or(term.within.map(|_| size));
-        Self { loss, within, region: tolerance.map(|tolerance| tolerance.region), weight: term.weight }
+        Self { loss, within, region: tolerance.map(|tolerance| tolerance.region), alike: 1.0, weight: term.weight }
+    }
+
+    /// Takes over the points of a cloud.
+    pub(super) fn see(&mut self, cloud: &[Vector3<f64>]) {
+        self.alike = alike(cloud, self.region);
+    }
+
+    /// The standard deviation that points count with, where it is declared: larger where several are worth one together.
+    pub(super) fn within(&self) -> Option<f64> {
+        self.within.map(|within| within * self.alike.sqrt())
+    }
+
+    /// The loss of a misfit that counts with the standard deviation `sigma`. Whether it is an outlier, the deviation of a single
+    /// point says.
+    pub(super) fn rho(&self, misfit: f64, sigma: f64) -> f64 {
+        self.weight / self.alike * self.loss.rho(misfit / sigma * self.alike.sqrt())
+    }
+
+    /// What the square of a misfit is multiplied by to minimise its loss.
+    pub(super) fn precision(&self, misfit: f64, sigma: f64) -> f64 {
+        self.weight * self.loss.weight(misfit / sigma * self.alike.sqrt()) / (sigma * sigma)
     }
 }
 
 /// Points of a cloud in a cube of this size, the mean over all cubes that have any; one if there is no size.
-pub(super) fn alike(cloud: &[Vector3<f64>], region: Option<f64>) -> f64 {
+fn alike(cloud: &[Vector3<f64>], region: Option<f64>) -> f64 {
     let Some(region) = region else { return 1.0 };
     let cubes: HashSet<[i64; 3]> =
         cloud.iter().map(|point| point.map(|x| (x / region).floor() as i64).into()).collect();

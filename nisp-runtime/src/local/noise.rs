@@ -27,7 +27,7 @@ impl Solver {
     pub(super) fn noise_across(&self, used: f64) -> f64 {
         /// Shares that are tried, from none to all.
         const SHARES: usize = 20;
-        /// Points that are far off say nothing, but cost more than a surface seen edge on can gain.
+        /// Points that are far off cost a constant. It is more than a point gains by a small deviation where the surface is seen edge on.
         const CLEAN: Loss = Loss::Tukey(5.0);
         let seen: Vec<(f64, f64)> = self.surfaces.iter().flat_map(Surface::facing).collect();
         if seen.is_empty() {

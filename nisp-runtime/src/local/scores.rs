@@ -170,7 +170,7 @@ impl Solver {
                 Known::Direction { axis, .. } => surface.moved(|arm, _| -Vector3::ith(axis, 1.0).cross(arm)),
                 Known::Size { .. } => surface.moved(|arm, _| -arm),
             };
-            let by = surface.across(&moved, sigma);
+            let by = surface.changes(&moved, sigma);
             blocks.iter().zip(by).for_each(|(block, by)| sums.add(block, &[by]));
         }
     }

@@ -12,7 +12,7 @@ use nalgebra::{Matrix3, Vector2, Vector3};
 use rayon::prelude::*;
 
 use super::block::Block;
-use super::counting::{Counting, alike};
+use super::counting::Counting;
 use super::group::Group;
 use super::heads::Heads;
 use super::shape::{Shape, padded, tangents_at};
@@ -55,8 +55,6 @@ pub(super) struct Surface {
     /// Standard deviations of the misfits over that along the view.
     spreads: Vec<f64>,
     counting: Counting,
-    /// Points that are off alike, in the mean over the cloud.
-    alike: f64,
 }
 
 /// Feet of a cloud's points; none before the first search.
@@ -76,7 +74,7 @@ impl Surface {
         view: Option<[f64; 3]>,
         samples: &[f64],
         inputs: usize,
-        (reach, counting): (f64, Counting),
+        (reach, mut counting): (f64, Counting),
     ) -> Self {
         let cloud: Vec<Vector3<f64>> = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
         let flat: Vec<[f64; 3]> = samples.chunks_exact(inputs).map(padded).collect();
@@ -84,7 +82,7 @@ impl Surface {
         let tangents = flat.iter().zip(samples.chunks_exact(inputs));
         let tangents = tangents.map(|(at, _)| tangents_at(rest.as_ref(), &flat, at, inputs)).collect();
         let count = cloud.len();
-        let alike = alike(&cloud, counting.region);
+        counting.see(&cloud);
         Self {
             group,
             term: term.name,
@@ -104,7 +102,6 @@ impl Surface {
             misfits: vec![0.0; count],
             spreads: vec![1.0; count],
             counting,
-            alike,
         }
     }
 
@@ -112,7 +109,7 @@ impl Surface {
     pub(super) fn renew(&mut self, cloud: &[f64]) {
         self.cloud = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
         let count = self.cloud.len();
-        self.alike = alike(&self.cloud, self.counting.region);
+        self.counting.see(&self.cloud);
         self.feet.clear();
         self.nearest = vec![0; count];
         self.found = vec![false; count];
@@ -187,16 +184,14 @@ impl Surface {
         self.within().unwrap_or(estimated)
     }
 
-    /// The declared standard deviation. Points that are off alike are worth one of them together.
+    /// The declared standard deviation along the view.
     pub(super) fn within(&self) -> Option<f64> {
-        self.counting.within.map(|within| within * self.alike.sqrt())
+        self.counting.within()
     }
 
     /// Sum of the points' losses.
     pub(super) fn loss(&self, sigma: f64) -> f64 {
-        let Counting { loss, weight, .. } = self.counting;
-        let own = sigma / self.alike.sqrt();
-        self.misfits().map(|misfit| weight / self.alike * loss.rho(misfit / own)).sum()
+        self.misfits().map(|misfit| self.counting.rho(misfit, sigma)).sum()
     }
 
     /// Where the surface has the feet of all points.
@@ -212,15 +207,14 @@ impl Surface {
     }
 
     /// By how much the rows of [`Surface::blocks`] change where the surface at every foot goes so far.
-    pub(super) fn across(&self, moved: &[Vector3<f64>], sigma: f64) -> Vec<f64> {
+    pub(super) fn changes(&self, moved: &[Vector3<f64>], sigma: f64) -> Vec<f64> {
         let kept = (0..self.cloud.len()).filter(|&i| self.found[i]);
         kept.map(|i| self.normals[i].dot(&moved[i]) * self.root_weight(i, sigma)).collect()
     }
 
     /// What the row of a point is multiplied by: its weight's root over its standard deviation.
     fn root_weight(&self, i: usize, sigma: f64) -> f64 {
-        let own = sigma / self.alike.sqrt() * self.spreads[i];
-        (self.counting.weight / self.alike * self.counting.loss.weight(self.misfits[i] / own)).sqrt() / own
+        self.counting.precision(self.misfits[i], sigma * self.spreads[i]).sqrt()
     }
 
     /// Finds the feet of all points on the present surface: true where they have come to rest.
@@ -263,14 +257,15 @@ impl Surface {
                 self.found[i] = false;
                 return None;
             };
+            // From the foot to the point, if it is the likeliest: S n.
             let share = self.across * self.across;
-            let way = self.view.map_or(normal, |view| view * (view.dot(&normal) * (1.0 - share)) + normal * share);
-            self.spreads[i] = way.dot(&normal).sqrt();
+            let likely = self.view.map_or(normal, |view| view * (view.dot(&normal) * (1.0 - share)) + normal * share);
+            self.spreads[i] = likely.dot(&normal).sqrt();
             // A surface seen edge on says nothing along the view.
             self.found[i] = self.spreads[i] > EDGE_ON;
             self.normals[i] = normal;
             self.misfits[i] = normal.dot(&(near[0] - self.cloud[i]));
-            let inverse = Matrix3::from_columns(&[a, b, way.normalize()]).try_inverse()?;
+            let inverse = Matrix3::from_columns(&[a, b, likely.normalize()]).try_inverse()?;
             self.found[i].then(|| (inverse * (self.cloud[i] - near[0])).xy())
         };
         moving.iter().zip(positions.chunks_exact(5)).map(way).collect()
