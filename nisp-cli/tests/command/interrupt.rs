@@ -44,9 +44,10 @@ fn ctrl_c_writes_the_best_state_and_says_so() {
     let stopped = object["iterations"].as_u64().unwrap();
     let ran =
         place.run(&format!("solve pendulum --carrier network --resume nisp-out --iterations {} --json", stopped + 2));
-    // Two steps more may be too few for an answer that nothing says against.
-    assert!(matches!(ran.code, Some(0 | 3)), "{}", ran.stderr);
     let object: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+    // Two steps more may be too few for an answer that passes all checks.
+    let passes = object["verdict"].as_array().unwrap().iter().all(|check| check["passed"] == true);
+    assert_eq!(ran.code, Some(if passes { 0 } else { 3 }), "{}", ran.stderr);
     assert_eq!(object["iterations"], stopped + 2);
 }
 
