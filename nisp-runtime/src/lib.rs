@@ -25,6 +25,7 @@ pub mod real;
 pub mod recover;
 pub mod residual;
 mod rhythm;
+mod roughness;
 pub mod rules;
 pub mod saved;
 pub mod schema;

@@ -2,10 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use kiddo::ImmutableKdTree;
 use nalgebra::{DMatrix, DVector};
 
+use crate::facts::spread;
 use crate::problem::Bound;
-use crate::schema;
+use crate::roughness::roughness;
+use crate::schema::{self, TermKind};
 use crate::solve::vector::root_mean_square;
 
 /// Noise of what is observed.
@@ -54,6 +57,22 @@ impl Noise {
         let shares = self.observations.iter().map(|o| (o.deviation / o.spread.max(o.deviation)).powi(2));
         let sum: f64 = shares.map(|share| if share.is_nan() { 0.0 } else { share }).sum();
         if self.observations.is_empty() { 1.0 } else { sum / self.observations.len() as f64 }
+    }
+
+    /// The same with the noise of all clouds in space, whose points then count as observations do.
+    pub(crate) fn with_clouds(mut self, bound: &Bound) -> Self {
+        let groups = bound.problem.scene().schema.groups.iter().enumerate();
+        let terms =
+            groups.flat_map(|(at, group)| group.terms.iter().enumerate().map(move |(term, own)| (at, term, own)));
+        let clouds = terms.filter(|(.., own)| matches!(own.kind, TermKind::Chamfer { .. }) && own.rows == 3);
+        self.observations.extend(clouds.filter_map(|(group, term, _)| {
+            let points = bound.clouds[group][term].as_chunks::<3>().0;
+            let tree = ImmutableKdTree::new_from_slice(points).ok()?;
+            let deviation = roughness(points, points, &tree)?;
+            let (_, spread) = spread(points.iter().map(|&point| point.into()));
+            Some(ObservationNoise { group, term, deviation, spread })
+        }));
+        self
     }
 
     /// Noise of a term of a group, if it is an observation.

@@ -154,10 +154,11 @@ pub struct Group {
 }
 
 impl Scene {
-    /// The heads that observations read.
+    /// The heads that observations and clouds read.
     pub(crate) fn observed(&self) -> Vec<usize> {
+        let is_data = |term: &&Term| matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. });
         let jets = self.groups.iter().flat_map(|group| {
-            let terms = group.terms.iter().filter(|term| term.kind == TermKind::Observation);
+            let terms = group.terms.iter().filter(is_data);
             terms.flat_map(|term| term.jets).map(|&jet| group.jets[jet].head)
         });
         jets.collect()

@@ -140,7 +140,7 @@ pub(crate) fn of_terms(bound: &Bound, noise: &Noise) -> Vec<Class> {
                 let size = found.deviation.max(least);
                 Class::open(size, Guess { size, count: NOISE_COUNT, least })
             }
-            None if declared.kind == TermKind::Observation => {
+            None if matches!(declared.kind, TermKind::Observation | TermKind::Chamfer { .. }) => {
                 let size = 1e-2 * known;
                 Class::open(size, Guess { size, count: NOISE_COUNT, least: 1e-9 * known })
             }

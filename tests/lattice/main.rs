@@ -1,6 +1,7 @@
-//! Splines on a lattice against closed forms: a conductivity from a noisy field, a source that does not change, and the same
-//! answers from a compiled scene and from its text.
+//! Splines on a lattice against closed forms: a conductivity from a noisy field, a source that does not change, loads from clouds,
+//! and the same answers from a compiled scene and from its text.
 
+mod clouds;
 mod sources;
 
 use std::f64::consts::PI;
@@ -367,9 +368,10 @@ fn a_text_has_the_answer_of_the_compiled_scene() {
         assert_eq!(compiled.2, read.2);
         let size = root_mean_square(compiled.0.0.iter().copied());
         let apart = root_mean_square(compiled.0.0.iter().zip(&read.0.0).map(|(a, b)| a - b));
-        assert!(apart < 1e-6 * size, "{name}: {apart:e} of {size:e}");
+        // Rounding, times the condition of the normal equations of rows that are a hundred thousand times as strict as others.
+        assert!(apart < 1e-5 * size, "{name}: {apart:e} of {size:e}");
         for (a, b) in compiled.1.iter().zip(&read.1) {
-            assert!((a.value - b.value).abs() < 1e-6 * a.value.abs(), "{}: {} {}", a.name, a.value, b.value);
+            assert!((a.value - b.value).abs() < 1e-5 * a.value.abs(), "{}: {} {}", a.name, a.value, b.value);
         }
     };
     answers(scene::<conduction::recover::Scene>(), &|scene| conduction(scene, 0.01, 1.0), "a");

@@ -3,7 +3,7 @@
 use super::*;
 
 /// Places at random in a rectangle, not nearer to its edge than a fiftieth of its sides.
-fn scattered(count: usize, sides: [f64; 2], seed: u64) -> Vec<f64> {
+pub(super) fn scattered(count: usize, sides: [f64; 2], seed: u64) -> Vec<f64> {
     let mut normal = normals(seed);
     // A normal number is as likely to be on one side of a number as on the other: its distribution function is uniform.
     let mut uniform = || 0.5 * (1.0 + (normal() / 2f64.sqrt() * 0.9).tanh());

@@ -14,7 +14,7 @@ use super::solver::Solver;
 use super::unseen::Unseen;
 use super::{Local, LocalError};
 use crate::problem::Bound;
-use crate::solve::driver::{Warning, WarningKind};
+use crate::solve::driver::Warning;
 use crate::solve::fault::Fault;
 
 /// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
@@ -39,6 +39,7 @@ impl Solver {
         let slopes = self.set_learned(&state.learned);
         let theta = &state.theta;
         let regress = phase == Phase::Regress;
+        self.surfaces.iter_mut().for_each(|surface| surface.set_near(phase == Phase::Concave));
         let mut probes = vec![vec![0.0; theta.len()]; PROBES];
         let mut random = StdRng::seed_from_u64(0);
         self.normal.clear();
@@ -143,15 +144,7 @@ impl Solver {
     /// Says which sources act where no cloud saw the surface.
     pub(super) fn rests_on_the_prior(&self) -> Vec<Warning> {
         let heads = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| head.source);
-        let unseen = heads.filter_map(|(at, head)| Some((head.name, self.unseen(at)?.share)));
-        let said = |(name, share): (&str, f64)| {
-            format!(
-                "clouds do not show {:.0} % of where `{name}` acts; it is what the prior says there, as little as can be, and its \
-                 deviations say how much it may be",
-                100.0 * share
-            )
-        };
-        unseen.map(|found| Warning { kind: WarningKind::Settled, message: said(found) }).collect()
+        heads.filter_map(|(at, head)| Some(self.unseen(at)?.warning(head.name))).collect()
     }
 
     /// What priors add to the loss, but for a constant.

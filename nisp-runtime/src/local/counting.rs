@@ -11,7 +11,10 @@ use crate::schema;
 /// How the misfits of a cloud's points count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Counting {
-    /// Of a misfit over its standard deviation.
+    /// Of a misfit over its standard deviation: while the surface is sought, and once it is near.
+    far: Loss,
+    near: Loss,
+    /// The one at work.
     loss: Loss,
     /// The standard deviation of a point, or of all points of a region, where it is declared.
     within: Option<f64>,
@@ -24,14 +27,24 @@ pub(super) struct Counting {
 }
 
 impl Counting {
-    /// As declared; `size` is the standard deviation of a term that says `within`. Clouds have outliers, so that one of which nothing
-    /// is said has Huber's loss.
+    /// As declared; `size` is the standard deviation of a term that says `within`. Clouds have outliers, so that those of one of which
+    /// nothing is said count little while the surface is sought, and not at all once it is near.
     pub(super) fn of(term: &schema::Term, declared: Loss, size: f64, tolerance: Option<Tolerance>) -> Self {
-        /// Deviations from which on a point counts as an outlier.
-        const OUTLIER: f64 = 3.0;
-        let loss = if declared.is_robust() { declared } else { Loss::Huber(OUTLIER) };
+        /// Deviations from which on a point counts less, and not at all.
+        const UNLIKELY: f64 = 3.0;
+        const OUTLIER: f64 = 6.0;
+        let (far, near) = match declared {
+            Loss::Square => (Loss::Huber(UNLIKELY), Loss::Tukey(OUTLIER)),
+            declared => (declared.convex(), declared),
+        };
         let within = tolerance.map(|tolerance| tolerance.size).or(term.within.map(|_| size));
-        Self { loss, within, region: tolerance.map(|tolerance| tolerance.region), alike: 1.0, weight: term.weight }
+        let region = tolerance.map(|tolerance| tolerance.region);
+        Self { far, near, loss: far, within, region, alike: 1.0, weight: term.weight }
+    }
+
+    /// Whether the surface is near. Before, a loss that leaves out what is far off would leave out what is right.
+    pub(super) fn set_near(&mut self, is_near: bool) {
+        self.loss = if is_near { self.near } else { self.far };
     }
 
     /// Takes over the points of a cloud.

@@ -83,8 +83,13 @@ impl Group {
         Sites::new(heads, &self.highest, flat, &[])
     }
 
-    /// Rows whose terms are tested or asked for at every point.
-    fn own_rows(&self) -> Vec<usize> {
+    /// Where the first row of a term that is asked for at every point is among those of [`Group::blocks`].
+    pub(super) fn first_own(&self, term: &schema::Term) -> usize {
+        self.own_rows().iter().filter(|&&row| row < term.first).count()
+    }
+
+    /// Rows whose terms are tested or asked for at every point: those of [`Group::blocks`].
+    pub(super) fn own_rows(&self) -> Vec<usize> {
         let terms = self.schema.terms.iter();
         let own = terms.filter(|term| matches!(term.kind, TermKind::Residual | TermKind::Observation));
         own.flat_map(|term| term.first..term.first + term.rows).collect()

@@ -2,7 +2,7 @@
 
 use super::place::State;
 use super::solver::Solver;
-use crate::facts::{Answer, CloudFacts, OTHER_THAN_SPLINES};
+use crate::facts::{Answer, OTHER_THAN_SPLINES};
 
 /// Distances to a cloud that splines do not follow, as a share of a cell.
 const UNRESOLVED: f64 = 0.03;
@@ -12,15 +12,7 @@ impl Solver {
     pub(super) fn answer(&mut self, state: &State) -> Answer {
         self.find_feet(state);
         let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta));
-        let clouds = self.surfaces.iter().map(|surface| CloudFacts {
-            group: surface.group,
-            term: surface.term,
-            points: surface.cloud(),
-            places: surface.places(),
-            misfits: surface.signed(),
-            signed: true,
-            resolution: UNRESOLVED * self.cell,
-        });
+        let clouds = self.surfaces.iter().map(|surface| surface.facts(UNRESOLVED * self.cell));
         Answer {
             facts: facts.collect(),
             between: None,

@@ -161,6 +161,14 @@ impl Lattice {
         (self.degree + 1).pow(self.dimensions() as u32)
     }
 
+    /// Standard deviation in the middle of a cell, where all coefficients are off by one independently.
+    pub(super) fn smoothing(&self) -> f64 {
+        let middle = Place { cell: [0; MOST_COORDINATES], within: [0.5; MOST_COORDINATES] };
+        let mut values = vec![0.0; self.per_cell()];
+        self.values(&middle, &Exponents::default(), &mut values);
+        values.iter().map(|value| value * value).sum::<f64>().sqrt()
+    }
+
     /// Size of a cell along a coordinate.
     pub(super) fn spacing(&self, axis: usize) -> f64 {
         self.spacing[axis]

@@ -357,16 +357,21 @@ impl Factor {
         vectors.iter().enumerate().map(inner).collect()
     }
 
-    /// Solutions of the bordered system for the columns of a matrix, without anything on the right of the border.
-    pub(super) fn solve_all(&self, right: &Mat<f64>) -> Option<Mat<f64>> {
-        let mut solutions = self.solutions(right);
-        let below = vec![0.0; self.border.len()];
-        for column in 0..if below.is_empty() { 0 } else { solutions.ncols() } {
+    /// The products of right-hand sides with their solutions: the columns of a matrix, and what is on the right of the border.
+    pub(super) fn products(&self, right: &Mat<f64>, below: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let solutions = self.solutions(right);
+        let product = |(column, below): (usize, &Vec<f64>)| {
             let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
-            self.share(&mut own, &below)?;
-            own.iter().enumerate().for_each(|(row, x)| solutions[(row, column)] = *x);
-        }
-        Some(solutions)
+            let shared = self.share(&mut own, below)?;
+            let along = own.iter().enumerate().map(|(row, x)| x * right[(row, column)]).sum::<f64>();
+            Some(along + vector::dot(&shared, below))
+        };
+        below.iter().enumerate().map(product).collect()
+    }
+
+    /// Unknowns of the border.
+    pub(super) fn below(&self) -> usize {
+        self.border.len()
     }
 
     /// Variance of a sum of coefficients, each times its weight.

@@ -12,7 +12,6 @@ pub(super) const HIGHEST_DEGREE: usize = 8;
 pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) -> Result<(), LocalError> {
     let inputs = schema.coordinates.len();
     let terms = || schema.groups.iter().flat_map(|group| group.terms);
-    let cloud = |term: &schema::Term| matches!(term.kind, TermKind::Chamfer { .. });
     let refused = [
         (inputs > MOST_COORDINATES, "more than four coordinates"),
         (schema.groups.iter().any(|group| group.paired), "paired points"),
@@ -21,12 +20,26 @@ pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) 
             "fields and sources of some of the coordinates only",
         ),
         (terms().any(|t| t.kind == TermKind::Observation && t.within.is_none()), "measurements without `within`"),
-        (terms().any(|t| t.kind == TermKind::Chamfer { symmetric: true, plane: false }), "symmetric Chamfer distances"),
         (terms().any(|t| t.kind == TermKind::Integral && t.loss.is_robust()), "robust losses of integrals"),
-        (terms().any(|t| cloud(t) && (t.rows != 3 || !(2..=3).contains(&inputs))), "clouds that are not in space"),
         (settings.cells <= settings.tests || settings.finer == 0, "lattices of fewer cells than a test is spread over"),
         (settings.degree > HIGHEST_DEGREE, "splines of such a degree"),
     ];
     let found = refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what);
-    found.or_else(|| bounds::refused(schema)).map_or(Ok(()), |what| Err(LocalError::Unsupported(what)))
+    let found = found.or_else(|| clouds(schema)).or_else(|| bounds::refused(schema));
+    found.map_or(Ok(()), |what| Err(LocalError::Unsupported(what)))
+}
+
+/// Clouds whose points have no foot on a surface (see `surface`).
+pub(super) fn clouds(schema: &schema::Scene) -> Option<&'static str> {
+    let clouds = || {
+        let terms = schema.groups.iter().flat_map(|group| group.terms);
+        terms.filter(|term| matches!(term.kind, TermKind::Chamfer { .. }))
+    };
+    let is_surface = (2..=3).contains(&schema.coordinates.len());
+    let is_symmetric = |term: &schema::Term| term.kind == TermKind::Chamfer { symmetric: true, plane: false };
+    match () {
+        () if clouds().any(is_symmetric) => Some("symmetric Chamfer distances"),
+        () if clouds().any(|term| term.rows != 3 || !is_surface) => Some("clouds that are not in space"),
+        () => None,
+    }
 }

@@ -1,6 +1,5 @@
 //! A problem on its lattices: what is set up once, before any step.
 
-use super::counting::Counting;
 use super::group::Group;
 use super::heads::Heads;
 use super::lattice::Lattice;
@@ -11,7 +10,6 @@ use super::refuse::refuse_what_networks_do;
 use super::surface::{Feet, Surface};
 use super::{Local, LocalError};
 use crate::problem::Bound;
-use crate::schema::TermKind;
 
 /// How far equations may be off, as a share of their natural size: about the error of splines on their lattice. Held to less,
 /// they would take that error for a load.
@@ -71,15 +69,7 @@ impl Solver {
             let points = (flat.as_slice(), bound.columns[at].as_slice());
             let losses = &bound.losses[at];
             let group = Group::new((schema, losses), kernel, &heads, points, weights, (&base, settings.tests));
-            for (index, (term, cloud)) in schema.terms.iter().zip(&bound.clouds[at]).enumerate() {
-                if !matches!(term.kind, TermKind::Chamfer { .. }) {
-                    continue;
-                }
-                let view = bound.view(at, term.name);
-                let counting =
-                    Counting::of(term, bound.losses[at][index], bound.sizes[at][index], bound.tolerance(at, term));
-                surfaces.push(Surface::new(at, term, cloud, view, flat, inputs, (cell, counting)));
-            }
+            surfaces.extend(Surface::of(bound, at, cell));
             groups.push(group);
         }
         let together = together(&heads, &base, settings.tests, bound);

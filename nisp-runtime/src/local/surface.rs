@@ -16,8 +16,9 @@ use super::counting::Counting;
 use super::group::Group;
 use super::heads::Heads;
 use super::shape::{Shape, padded, tangents_at};
-use crate::facts::spread;
-use crate::schema;
+use crate::facts::{CloudFacts, spread};
+use crate::problem::Bound;
+use crate::schema::{self, TermKind};
 
 /// Newton steps for the feet, at most.
 const STEPS: usize = 8;
@@ -67,7 +68,21 @@ pub(super) struct Feet {
 }
 
 impl Surface {
-    pub(super) fn new(
+    /// Those of all clouds of a group, on lattices of cells of some size.
+    pub(super) fn of(bound: &Bound, at: usize, cell: f64) -> Vec<Self> {
+        let schema = bound.problem.scene().schema;
+        let terms = schema.groups[at].terms.iter().zip(&bound.clouds[at]).enumerate();
+        let clouds = terms.filter(|(_, (term, _))| matches!(term.kind, TermKind::Chamfer { .. }));
+        let surface = |(index, (term, cloud)): (usize, (&schema::Term, &Vec<f64>))| {
+            let counting =
+                Counting::of(term, bound.losses[at][index], bound.sizes[at][index], bound.tolerance(at, term));
+            let view = bound.view(at, term.name);
+            Self::new(at, term, cloud, view, &bound.coordinates[at], schema.coordinates.len(), (cell, counting))
+        };
+        clouds.map(surface).collect()
+    }
+
+    fn new(
         group: usize,
         term: &schema::Term,
         cloud: &[f64],
@@ -123,9 +138,32 @@ impl Surface {
         Feet { feet: self.feet.clone(), nearest: self.nearest.clone() }
     }
 
+    /// What it says, for the verdict: splines do not follow distances below a `resolution`.
+    pub(super) fn facts(&self, resolution: f64) -> CloudFacts {
+        CloudFacts {
+            group: self.group,
+            term: self.term,
+            points: self.cloud.iter().map(|&point| point.into()).collect(),
+            places: self.feet.chunks_exact(self.inputs).map(padded).collect(),
+            misfits: self.signed(),
+            signed: true,
+            resolution,
+        }
+    }
+
+    /// Whether the surface is near its cloud, so that points far off count for nothing.
+    pub(super) fn set_near(&mut self, is_near: bool) {
+        self.counting.set_near(is_near);
+    }
+
     /// Puts the feet back.
     pub(super) fn set_feet(&mut self, feet: Feet) {
         (self.feet, self.nearest) = (feet.feet, feet.nearest);
+    }
+
+    /// Size of a cell: feet this far from all places at rest have left the surface.
+    pub(super) fn cell(&self) -> f64 {
+        self.reach
     }
 
     /// Points of the cloud.
@@ -153,16 +191,6 @@ impl Surface {
         all.filter(|(_, found)| **found).map(|((misfit, facing), _)| (*misfit, facing))
     }
 
-    /// The points of the cloud.
-    pub(super) fn cloud(&self) -> Vec<[f64; 3]> {
-        self.cloud.iter().map(|&point| point.into()).collect()
-    }
-
-    /// The feet of all points.
-    pub(super) fn places(&self) -> Vec<[f64; 3]> {
-        self.feet.chunks_exact(self.inputs).map(padded).collect()
-    }
-
     /// Places at rest that the surface is known to have.
     pub(super) fn samples(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         self.samples.chunks_exact(self.inputs).map(padded)
@@ -175,7 +203,7 @@ impl Surface {
     }
 
     /// Signed distances of all points across the surface; nothing where the foot was lost.
-    pub(super) fn signed(&self) -> Vec<Option<f64>> {
+    fn signed(&self) -> Vec<Option<f64>> {
         self.misfits.iter().zip(&self.found).map(|(distance, found)| found.then_some(*distance)).collect()
     }
 

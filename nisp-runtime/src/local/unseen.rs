@@ -7,6 +7,7 @@ use super::heads::Heads;
 use super::lattice::Lattice;
 use super::normal::Normal;
 use super::surface::Surface;
+use crate::solve::driver::{Warning, WarningKind};
 
 /// Share of the surface up to which clouds are taken to show all: a rim is hardly ever seen, and nothing presses there.
 const FEW: f64 = 0.1;
@@ -25,7 +26,7 @@ pub(super) struct Unseen {
     /// By number among those kept.
     pub(super) functions: Vec<bool>,
     /// Share of the surface.
-    pub(super) share: f64,
+    share: f64,
     /// Nodes along a patch.
     nodes: f64,
 }
@@ -53,6 +54,16 @@ impl Unseen {
             |at| of_samples.query(&lattice.middle(at)).nearest_one::<SquaredEuclidean<f64>>().execute().item as usize;
         let functions = (0..lattice.len()).map(|at| is_unseen(distances[nearest(at)])).collect();
         Some(Self { functions, share, nodes }).filter(|unseen| unseen.share > FEW)
+    }
+
+    /// Says that a source acts there too.
+    pub(super) fn warning(&self, source: &str) -> Warning {
+        let message = format!(
+            "clouds do not show {:.0} % of where `{source}` acts; it is what the prior says there, as little as can be, and its \
+             deviations say how much it may be",
+            100.0 * self.share
+        );
+        Warning { kind: WarningKind::Settled, message }
     }
 
     /// Adds what is known of a source there: no more than that it is of the order of `level`, in units of its coefficients.

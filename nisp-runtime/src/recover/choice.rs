@@ -115,10 +115,10 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
     }
 }
 
-/// True if an observation compares with data.
+/// True if an observation or a cloud compares with data.
 fn is_measured(schema: &Scene) -> bool {
     let mut terms = schema.groups.iter().flat_map(|group| group.terms);
-    terms.any(|term| term.kind == TermKind::Observation)
+    terms.any(|term| matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. }))
 }
 
 /// A source of which an equation reads a derivative.

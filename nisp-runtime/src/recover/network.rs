@@ -95,6 +95,11 @@ fn fitted(bound: &Bound, settings: &Settings, mut course: Course<'_, '_>) -> Res
     // A prior that no evidence has weighed says nothing of what exact data leave open: the error is that of the solver.
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     let prior = prior.filter(|_| optimizer == Optimizer::Evidence || is_noisy);
+    let is_seen = bound.clouds.iter().flatten().any(|cloud| !cloud.is_empty());
+    if prior.is_none() && is_seen && matches!(outcome.status, Status::Converged | Status::Budget) {
+        let message = "there are no error bars: networks do not tell how noisy a cloud is".into();
+        outcome.warnings.push(Warning { kind: WarningKind::NoBars, message });
+    }
     let (architecture, theta, distrust) = (settings.architecture, outcome.theta, Distrust::under(&noise));
     Ok(Solved {
         status: outcome.status,

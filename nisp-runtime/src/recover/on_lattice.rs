@@ -33,7 +33,7 @@ impl Carrier for OnLattice {
             return Err(RecoverError::Splines(what));
         }
         let (limits, from) = (course.left(), course.from);
-        let noise = noise::estimate(bound);
+        let noise = noise::estimate(bound).with_clouds(bound);
         let found = smooth::solve(bound, &noise, limits, from, &mut |progress| course.watch(progress))?;
         let open = undetermined::of_local(bound, &found);
         Ok(solved(found, open, Optimizer::Evidence))

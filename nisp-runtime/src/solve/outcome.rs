@@ -88,7 +88,7 @@ impl Warning {
     /// No error bars, since the budget went before they were found.
     pub(crate) fn no_bars() -> Self {
         let message = "no time was left for error bars; give a larger budget".into();
-        Self { kind: WarningKind::OutOfTime, message }
+        Self { kind: WarningKind::NoBars, message }
     }
 }
 
@@ -111,6 +111,8 @@ pub enum WarningKind {
     Unresolved,
     /// Something that was not looked at, because the budget was spent.
     OutOfTime,
+    /// Error bars that the carrier cannot give.
+    NoBars,
     /// A direction of the answer that neither equations nor data determine.
     Undetermined,
     /// A condition that the answer rests on: the data alone would leave a direction open.

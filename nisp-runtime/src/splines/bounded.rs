@@ -4,7 +4,7 @@ use super::iterate::State;
 use super::rows::{Rows, Walk};
 use super::solver::Solver;
 use super::triangle::{Row, Source};
-use crate::bounds::{Limit, WALL, each, within};
+use crate::bounds::{Bounded, Limit, Spring, WALL, each};
 
 /// A row that holds a head at a bound where one of its functions is centred, positive inside: its value where all coefficients are
 /// zero, and its derivatives by them from the first that it depends on.
@@ -24,23 +24,29 @@ impl Wall {
     }
 }
 
-/// The rows of a step about some coefficients and the walls that are held, in the order of their first unknowns.
-struct Held<'a> {
+/// The rows of a step about some coefficients and springs that pull at walls, in the order of their first unknowns.
+struct Pulled<'a> {
     rows: Walk<'a>,
-    walls: &'a [&'a Wall],
+    springs: &'a [Spring],
+    walls: &'a [Wall],
     theta: &'a [f64],
+    /// The derivatives of the spring at hand.
+    slopes: Vec<f64>,
     /// A wall's derivatives by learned parameters.
     none: &'a [f64],
 }
 
-impl Source for Held<'_> {
+impl Source for Pulled<'_> {
     #[inline(always)]
     fn next(&mut self) -> Option<Row<'_>> {
-        match self.walls.split_first() {
-            Some((wall, others)) if self.rows.first().is_none_or(|first| wall.first <= first) => {
-                self.walls = others;
-                let value = wall.value(self.theta);
-                Some(Row { first: wall.first, slopes: &wall.slopes, shared: self.none, value })
+        match self.springs.split_first() {
+            Some((spring, others)) if self.rows.first().is_none_or(|first| self.walls[spring.at].first <= first) => {
+                self.springs = others;
+                let (wall, share) = (&self.walls[spring.at], spring.stiffness / WALL);
+                self.slopes.clear();
+                self.slopes.extend(wall.slopes.iter().map(|slope| slope * share));
+                let value = wall.value(self.theta) * share - spring.stiffness * spring.target;
+                Some(Row { first: wall.first, slopes: &self.slopes, shared: self.none, value })
             }
             _ => self.rows.next(),
         }
@@ -61,12 +67,13 @@ impl Solver<'_> {
         let inside =
             |step: &(Vec<f64>, Vec<f64>), at: usize| (walls[at].value(theta) + walls[at].change(&step.0)) / WALL;
         let at_bound = (0..walls.len()).filter(|&at| walls[at].value(theta) <= 0.0).collect();
-        within(walls.len(), step, at_bound, inside, |held| {
-            let walls: Vec<&Wall> = held.iter().map(|&at| &walls[at]).collect();
+        let pulled = &mut |springs: &[Spring]| {
             self.triangle.clear();
-            self.triangle.add_all(Held { rows: rows.walk(), walls: &walls, theta, none: &none });
+            let rows = rows.walk();
+            self.triangle.add_all(Pulled { rows, springs, walls: &walls, theta, none: &none, slopes: Vec::new() });
             self.triangle.solve()
-        })
+        };
+        Bounded { count: walls.len(), inside: &inside, pulled }.within(step, at_bound)
     }
 
     /// The walls of bounded heads, one for each of their bounds where each of their functions is centred, in the order of their first

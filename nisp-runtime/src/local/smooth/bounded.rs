@@ -2,7 +2,7 @@
 
 use super::solver::Solver;
 use super::state::State;
-use crate::bounds::{Limit, WALL, each, within};
+use crate::bounds::{Bounded, Limit, Spring, WALL, each};
 use crate::local::block::Block;
 
 impl Solver<'_> {
@@ -15,12 +15,18 @@ impl Solver<'_> {
         let at_bound = (0..walls.len()).filter(|&at| walls[at].misfits[0] <= 0.0).collect();
         // Kept only where a wall is in the way.
         let mut free = None;
-        within(walls.len(), step, at_bound, inside, |held| {
+        let pulled = &mut |springs: &[Spring]| {
             self.normal.go_back(free.get_or_insert_with(|| self.normal.sums()));
-            let held: Vec<Block> = held.iter().map(|&at| walls[at].clone()).collect();
-            self.normal.add_all(&held);
+            let pulling = |spring: &Spring| {
+                let mut wall = walls[spring.at].clone();
+                wall.divide(std::iter::once(WALL / spring.stiffness));
+                wall.misfits[0] -= spring.stiffness * spring.target;
+                wall
+            };
+            self.normal.add_all(&springs.iter().map(pulling).collect::<Vec<Block>>());
             self.normal.step(&self.normal.factor()?)
-        })
+        };
+        Bounded { count: walls.len(), inside: &inside, pulled }.within(step, at_bound)
     }
 
     /// Rows that hold bounded heads at each of their bounds, one for each of their functions; positive inside.

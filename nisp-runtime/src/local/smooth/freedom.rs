@@ -39,7 +39,7 @@ impl Freedom {
         };
         let probes: Vec<Vec<f64>> = (0..PROBES).map(|_| probe()).collect();
         let probes = Mat::from_fn(len, PROBES, |row, column| probes[column][row]);
-        let alone = along(&probes, &factor.solve_all(&probes)?);
+        let alone = factor.products(&probes, &vec![Vec::new(); PROBES])?;
         Some(Self { first, probes, alone })
     }
 
@@ -49,7 +49,7 @@ impl Freedom {
         let right = Mat::from_fn(len, PROBES, |row, column| {
             if own.contains(&row) { self.probes[(row - own.start, column)] / roughness } else { 0.0 }
         });
-        let together = along(&right, &factor.solve_all(&right)?);
+        let together = factor.products(&right, &vec![vec![0.0; factor.below()]; PROBES])?;
         Some(self.alone.iter().zip(together).map(|(alone, together)| alone - together).sum::<f64>() / PROBES as f64)
     }
 }
@@ -93,9 +93,4 @@ impl Unmeasured {
         let of = all().map(|&[settled, squares, _]| Before { settled, squares }).collect();
         Self { of, sizes: all().map(|&[_, _, size]| size).collect() }
     }
-}
-
-/// Products of columns.
-fn along(a: &Mat<f64>, b: &Mat<f64>) -> Vec<f64> {
-    (0..a.ncols()).map(|column| (0..a.nrows()).map(|row| a[(row, column)] * b[(row, column)]).sum()).collect()
 }

@@ -14,6 +14,8 @@ use crate::solve::vector::root_mean_square;
 
 /// Equations that are left over by this much beside their tolerance are held back by the cells of the lattice.
 const TENSE: f64 = 0.2;
+/// Distances to a cloud that splines do not follow, as a share of a cell: they are of high degree.
+const UNRESOLVED: f64 = 3e-3;
 /// What may be left of an equation between the points that it was asked at, over its size.
 const BETWEEN: f64 = 0.03;
 /// Noise that is found, beside what neighbouring measurements say, from which on these are missed.
@@ -79,7 +81,7 @@ impl Solver<'_> {
                 let misfits = (0..group.sites.count).map(|p| found.row(row, p)).filter(is_known);
                 root_mean_square(misfits.map(|misfit| misfit / may_be(row)))
             };
-            let is_equation = |term: &&schema::Term| term.kind != TermKind::Observation && term.within.is_none();
+            let is_equation = |term: &&schema::Term| term.kind == TermKind::Residual && term.within.is_none();
             let equations = group.schema.terms.iter().filter(is_equation);
             equations.flat_map(|term| term.first..term.first + term.rows).map(of_row).fold(0.0, f64::max)
         };
@@ -104,13 +106,14 @@ impl Solver<'_> {
     /// What a state says, for the verdict.
     pub(super) fn answer(&mut self, state: &State) -> Answer {
         self.set_learned(&state.learned);
+        self.find_feet(state);
         let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta)).collect();
         let others = others(&self.bound);
         let between = others.map(|(at, bound)| (at, groups(&bound, &self.heads)[at].facts(&self.heads, &state.theta)));
         Answer {
             facts,
             between,
-            clouds: Vec::new(),
+            clouds: self.surfaces.iter().map(|surface| surface.facts(UNRESOLVED * surface.cell())).collect(),
             scalars: self.scalars.clone(),
             scores: Vec::new(),
             told: Vec::new(),
@@ -123,10 +126,14 @@ impl Solver<'_> {
     /// Misfits of all terms, by group, and the noise of observations.
     pub(super) fn misfits(&mut self, state: &State) -> Vec<Vec<Misfits>> {
         self.set_learned(&state.learned);
+        self.find_feet(state);
         let of = |(at, group): (usize, &Group)| {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
             let counts = self.counts(at, Phase::Solve);
             let term = |(number, term): (usize, &schema::Term)| {
+                if let Some(cloud) = self.surfaces.iter().find(|own| (own.group, own.term) == (at, term.name)) {
+                    return (cloud.misfits().collect(), Some(self.sigma(state, cloud)));
+                }
                 let places = |row: usize| {
                     (0..group.sites.count).filter(|&p| counts[row][p]).map(|p| found.row(row, p)).collect::<Vec<f64>>()
                 };

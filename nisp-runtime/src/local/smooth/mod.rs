@@ -22,7 +22,7 @@ use std::time::Instant;
 
 use judged::{FAR, MISSED};
 
-use super::{KeptLattices, LocalError, LocalSolution};
+use super::{KeptLattices, LocalError, LocalSolution, refuse};
 use crate::bounds;
 use crate::carrier::Progress;
 use crate::local::lattice::MOST_COORDINATES;
@@ -61,10 +61,10 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
         (schema.coordinates.len() > MOST_COORDINATES, "more than four coordinates"),
         (schema.groups.iter().any(|group| group.paired), "paired points"),
         (terms().any(|term| matches!(term.kind, TermKind::Integral)), "integrals"),
-        (terms().any(|term| matches!(term.kind, TermKind::Chamfer { .. })), "clouds"),
         (heads().any(|head| meshes::degree(schema, head).is_none()), "derivatives of such an order"),
     ];
-    refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what).or_else(|| bounds::refused(schema))
+    let found = refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what);
+    found.or_else(|| refuse::clouds(schema)).or_else(|| bounds::refused(schema))
 }
 
 /// Solves a bound problem within its limits, from the start or from a saved state.
@@ -153,6 +153,8 @@ fn finish(
         }
         Default::default()
     };
+    let sources = bound.problem.scene().schema.heads.iter().enumerate();
+    warnings.extend(sources.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
     if status == Status::Budget && solver.strain(&state, noise) > 1.0 {
         let message = "the lattice may be too coarse for these equations; a larger --budget makes it finer".into();
         warnings.push(Warning { kind: WarningKind::OutOfTime, message });

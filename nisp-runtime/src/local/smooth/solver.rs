@@ -11,6 +11,7 @@ use crate::local::LocalError;
 use crate::local::group::Group;
 use crate::local::heads::Heads;
 use crate::local::normal::Normal;
+use crate::local::surface::Surface;
 use crate::loss::Loss;
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -32,6 +33,7 @@ pub(super) struct Solver<'a> {
     pub(super) bound: Cow<'a, Bound>,
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
+    pub(super) surfaces: Vec<Surface>,
     /// By group and term, the number of its class.
     pub(super) classes: Vec<Vec<usize>>,
     /// By head, the number of the class of its roughness.
@@ -71,6 +73,9 @@ impl<'a> Solver<'a> {
         let (lattices, cells) = lattices(&bound);
         let heads = Heads::new(&bound, lattices);
         let groups = groups(&bound, &heads);
+        let cell = heads.lattices.iter().flat_map(|own| (0..own.dimensions()).map(|axis| own.spacing(axis)));
+        let cell = cell.fold(0.0, f64::max);
+        let surfaces = (0..groups.len()).flat_map(|at| Surface::of(&bound, at, cell)).collect();
         let mut numbers = 0..;
         let mut next = || numbers.next().unwrap_or(0);
         let classes = schema.groups.iter().map(|g| g.terms.iter().map(|_| next()).collect()).collect();
@@ -84,7 +89,20 @@ impl<'a> Solver<'a> {
         let shares = noise.observations.iter().map(|found| found.deviation / found.spread.max(found.deviation));
         let tolerance = (SHARE * shares.fold(0.0, f64::max)).clamp(STRICTEST, EASIEST);
         let scalars = bound.scalars.clone();
-        Ok(Self { bound, heads, groups, classes, roughness, priors, freedoms, sizes, normal, scalars, tolerance })
+        Ok(Self {
+            bound,
+            heads,
+            groups,
+            surfaces,
+            classes,
+            roughness,
+            priors,
+            freedoms,
+            sizes,
+            normal,
+            scalars,
+            tolerance,
+        })
     }
 
     pub(super) fn schema(&self) -> &'static schema::Scene {
@@ -162,6 +180,25 @@ impl<'a> Solver<'a> {
             self.scalars[learned.slot] = *value;
         }
         found.into_iter().map(|(_, slope)| slope).collect()
+    }
+
+    /// Finds the feet of all clouds on the surface of a state.
+    pub(super) fn find_feet(&mut self, state: &State) {
+        for surface in &mut self.surfaces {
+            surface.set_near(state.phase == Phase::Solve && !state.convex);
+            surface.find(&self.groups[surface.group], &self.heads, &state.theta, &self.scalars);
+        }
+    }
+
+    /// The class of a cloud's points.
+    pub(super) fn class(&self, surface: &Surface) -> usize {
+        let terms = self.schema().groups[surface.group].terms.iter();
+        self.classes[surface.group][terms.take_while(|term| term.name != surface.term).count()]
+    }
+
+    /// The noise of a cloud's points at a state.
+    pub(super) fn sigma(&self, state: &State, surface: &Surface) -> f64 {
+        surface.sigma(state.classes[self.class(surface)].size)
     }
 
     /// Takes over the sizes of equations at a state.

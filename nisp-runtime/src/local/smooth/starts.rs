@@ -19,10 +19,10 @@ impl Solver<'_> {
     pub(super) fn again(&mut self, noise: &Noise, state: &State) -> Option<State> {
         let count = |found: &ObservationNoise| self.groups[found.group].sites.count;
         let size = |found: &ObservationNoise| state.classes[self.classes[found.group][found.term]].size;
-        // The evidence costs the cube of the measurements.
+        // The evidence costs the cube of the measurements, and clouds have thousands.
         let is_few = noise.observations.iter().map(count).sum::<usize>() <= ENOUGH;
         let may_hide = is_few && start::may_hide(noise, count, size);
-        if state.earlier.is_some() || !may_hide || self.judged(Phase::Solve).is_empty() {
+        if state.earlier.is_some() || !self.surfaces.is_empty() || !may_hide || self.judged(Phase::Solve).is_empty() {
             return None;
         }
         let evidence = self.evidence(state)?;
@@ -49,14 +49,16 @@ impl Solver<'_> {
         self.size(state);
         self.set_sigmas(state);
         let loss = self.loss(state);
-        let blocks = self.assemble(state, &slopes).ok()?;
+        let asked = self.assemble(state, &slopes).ok()?.asked;
         let factor = self.normal.factor()?;
         let (mut rows, mut volume) = (Vec::new(), 0.0);
-        for (at, blocks) in &blocks {
+        for (at, blocks) in &asked {
             let (group, counts) = (&self.groups[*at], self.counts(*at, state.phase));
             let terms = group.schema.terms.iter().filter(|term| term.kind == TermKind::Observation);
-            for row in terms.flat_map(|term| term.first..term.first + term.rows) {
-                let own = blocks.iter().enumerate().filter(|(p, _)| counts[row][*p]).map(|(_, block)| (block, row));
+            for (at, row) in
+                terms.flat_map(|term| (0..term.rows).map(|row| (group.first_own(term) + row, term.first + row)))
+            {
+                let own = blocks.iter().enumerate().filter(|(p, _)| counts[row][*p]).map(|(_, block)| (block, at));
                 let before = rows.len();
                 rows.extend(own);
                 volume += (rows.len() - before) as f64 * group.sigma[row].ln();

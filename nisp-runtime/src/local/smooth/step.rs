@@ -1,5 +1,6 @@
 //! Gauss-Newton steps: the normal equations about a state, where they lead, and what their rows say of noise and roughness.
 
+use faer::Mat;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -10,9 +11,12 @@ use crate::local::LocalError;
 use crate::local::block::Block;
 use crate::local::normal::Factor;
 use crate::local::rows::Evaluated;
+use crate::local::surface::Surface;
+use crate::local::unseen::Unseen;
+use crate::loss::deviation_of_clean;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
-use crate::solve::vector;
+use crate::solve::vector::root_mean_square;
 use crate::tolerance;
 use crate::weighed::{Tally, renew};
 
@@ -27,6 +31,9 @@ const LEARNED: f64 = 10.0;
 const FARTHEST: f64 = 1.0;
 /// Random vectors for the trace of the influence matrix (Hutchinson).
 const PROBES: usize = 16;
+/// What a source is of the order of where no cloud saw it, beside its size where one did, or its natural one: patches carry twice as
+/// much.
+const LIKELY: f64 = 0.5;
 /// A step is halved so often until it leads downhill, and so often until equations have a value where it leads.
 const HALVINGS: u32 = 8;
 const MOST_HALVINGS: u32 = 40;
@@ -47,15 +54,23 @@ pub(super) struct Found {
     pub(super) factor: Factor,
 }
 
+/// The rows that take part about a state.
+pub(super) struct Rows {
+    /// Of groups, with the group's number.
+    pub(super) asked: Vec<(usize, Vec<Block>)>,
+    /// Of every cloud, one for each point that has a foot.
+    pub(super) clouds: Vec<Vec<Block>>,
+}
+
 impl Solver<'_> {
     /// By row of a group and point, whether it counts in a phase: equations wait until data and conditions on values are
     /// regressed, and of what was not measured nothing is known.
     pub(super) fn counts(&self, at: usize, phase: Phase) -> Vec<Vec<bool>> {
         let group = &self.groups[at];
         let mut counts = vec![vec![false; group.sites.count]; group.schema.rows];
-        let is_of_values = |&jet: &usize| group.schema.jets[jet].degree.iter().all(|&degree| degree == 0);
-        let takes_part = |term: &&schema::Term| phase.has_equations() || term.jets.iter().all(is_of_values);
-        for term in group.schema.terms.iter().filter(takes_part) {
+        let is_asked = |term: &&schema::Term| !matches!(term.kind, TermKind::Chamfer { .. });
+        let takes_part = |term: &&schema::Term| takes_part(group.schema, term, phase);
+        for term in group.schema.terms.iter().filter(is_asked).filter(takes_part) {
             let measured = self.bound.lacking(at, term).unwrap_or_else(|| vec![true; group.sites.count]);
             counts[term.first..term.first + term.rows].fill(measured);
         }
@@ -72,12 +87,13 @@ impl Solver<'_> {
     ) -> Result<Vec<Block>, LocalError> {
         let group = &self.groups[at];
         let mut blocks = group.blocks(&self.heads, evaluated, slopes);
+        let rows = group.own_rows();
         for (p, block) in blocks.iter_mut().enumerate() {
-            for (row, counts) in counts.iter().enumerate() {
-                if !counts[p] {
-                    block.clear(row);
-                } else if !block.misfits[row].is_finite() {
-                    return Err(LocalError::Fault(Fault::residual(group.name(row), Some(p))));
+            for (at, &row) in rows.iter().enumerate() {
+                if !counts[row][p] {
+                    block.clear(at);
+                } else if !block.misfits[at].is_finite() {
+                    return Err(LocalError::Fault(Fault::residual(group.name(at), Some(p))));
                 }
             }
         }
@@ -98,7 +114,9 @@ impl Solver<'_> {
     /// Half the sum of squares of all rows, robust ones by what they cost.
     pub(super) fn loss(&mut self, state: &State) -> f64 {
         self.set_learned(&state.learned);
-        let mut sum = 0.0;
+        self.find_feet(state);
+        let clouds = self.surfaces.iter().filter(|surface| self.is_seen(surface, state.phase));
+        let mut sum = clouds.map(|surface| surface.loss(self.sigma(state, surface))).sum::<f64>();
         for (at, group) in self.groups.iter().enumerate() {
             let counts = self.counts(at, state.phase);
             if !is_any(&counts) {
@@ -135,16 +153,16 @@ impl Solver<'_> {
             self.groups[at].set_losses(losses.into_iter());
         }
         let loss = self.loss(state);
-        let blocks = self.rows(state, &slopes)?;
+        let rows = self.rows(state, &slopes)?;
         // While equations are loose, they need no source.
         let is_loose = state.phase.has_equations() && state.tolerance > self.tolerance;
         let counts = state.phase.has_equations() && !is_loose;
-        let unmeasured = if counts { self.count_unmeasured(state, &blocks) } else { Unmeasured::default() };
-        self.add_all(state, &blocks);
+        let unmeasured = if counts { self.count_unmeasured(state, &rows) } else { Unmeasured::default() };
+        self.add_all(state, &rows);
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
         let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
         let tallies =
-            self.tallies(state, &blocks, (&step, &shared), (&factor, &unmeasured)).ok_or(LocalError::Factorisation)?;
+            self.tallies(state, &rows, (&step, &shared), (&factor, &unmeasured)).ok_or(LocalError::Factorisation)?;
         let (step, shared) = self.within_bounds(state, (step, shared));
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
         let mut next = state.clone();
@@ -181,33 +199,61 @@ impl Solver<'_> {
     }
 
     /// The normal equations about a state; returns the rows of all groups that take part, with the group's number.
-    pub(super) fn assemble(&mut self, state: &State, slopes: &[f64]) -> Result<Vec<(usize, Vec<Block>)>, LocalError> {
+    pub(super) fn assemble(&mut self, state: &State, slopes: &[f64]) -> Result<Rows, LocalError> {
+        self.find_feet(state);
         let all = self.rows(state, slopes)?;
         self.add_all(state, &all);
         Ok(all)
     }
 
-    /// The rows of all groups that take part about a state, with the group's number.
-    fn rows(&self, state: &State, slopes: &[f64]) -> Result<Vec<(usize, Vec<Block>)>, LocalError> {
-        let mut all = Vec::new();
+    /// Where no cloud saw the surface that a source acts on.
+    pub(super) fn unseen(&self, head: usize) -> Option<Unseen> {
+        let lattice = &self.heads.lattices[head];
+        let is_of_all = lattice.dimensions() == lattice.inputs();
+        (self.schema().heads[head].source && is_of_all).then(|| Unseen::of(&self.surfaces, lattice)).flatten()
+    }
+
+    /// Whether a cloud takes part in a phase.
+    fn is_seen(&self, surface: &Surface, phase: Phase) -> bool {
+        let group = &self.schema().groups[surface.group];
+        group.terms.iter().any(|term| term.name == surface.term && takes_part(group, term, phase))
+    }
+
+    /// The rows of all groups and clouds that take part about a state, whose feet are found.
+    fn rows(&self, state: &State, slopes: &[f64]) -> Result<Rows, LocalError> {
+        let mut asked = Vec::new();
         for (at, group) in self.groups.iter().enumerate() {
             let counts = self.counts(at, state.phase);
             if !is_any(&counts) {
                 continue;
             }
             let evaluated = group.evaluate(&self.heads, &state.theta, &self.scalars, true);
-            let blocks = self.blocks(at, &counts, &evaluated, slopes)?;
-            all.push((at, blocks));
+            asked.push((at, self.blocks(at, &counts, &evaluated, slopes)?));
         }
-        Ok(all)
+        let of_cloud = |surface: &Surface| {
+            let (group, sigma) = (&self.groups[surface.group], self.sigma(state, surface));
+            let rows = || surface.blocks(group, &self.heads, &state.theta, &self.scalars, slopes, sigma);
+            if self.is_seen(surface, state.phase) { rows() } else { Vec::new() }
+        };
+        Ok(Rows { asked, clouds: self.surfaces.iter().map(of_cloud).collect() })
     }
 
-    /// The normal equations of the groups' rows and of what is believed.
-    pub(super) fn add_all(&mut self, state: &State, blocks: &[(usize, Vec<Block>)]) {
+    /// The normal equations of rows and of what is believed.
+    pub(super) fn add_all(&mut self, state: &State, rows: &Rows) {
         self.normal.clear();
-        blocks.iter().for_each(|(_, blocks)| self.normal.add_all(blocks));
+        rows.asked.iter().map(|(_, blocks)| blocks).chain(&rows.clouds).for_each(|blocks| self.normal.add_all(blocks));
         for head in 0..self.priors.len() {
-            self.normal.add_all(&self.prior_rows(state, head));
+            let mut believed = self.prior_rows(state, head);
+            // The answer is what the prior says where nothing was seen; its deviations are not.
+            if let Some(unseen) = self.normal.draws.as_ref().and_then(|_| self.unseen(head)) {
+                let first = self.heads.first[head];
+                let own = &state.theta[first..self.heads.first[head + 1]];
+                believed.retain(|row| !row.dofs.iter().any(|&dof| unseen.functions[dof as usize - first]));
+                let seen = own.iter().enumerate().filter(|(at, _)| !unseen.functions[*at]).map(|(_, x)| *x);
+                let level = LIKELY * root_mean_square(seen).max(1.0) / self.heads.lattices[head].smoothing();
+                unseen.add(&mut self.normal, &self.heads, head, level);
+            }
+            self.normal.add_all(&believed);
         }
         for (at, theta) in state.theta.iter().enumerate() {
             self.normal.add_stiffness(at, RIDGE.powi(2));
@@ -224,36 +270,46 @@ impl Solver<'_> {
     fn tallies(
         &self,
         state: &State,
-        blocks: &[(usize, Vec<Block>)],
+        rows: &Rows,
         (step, shared): (&[f64], &[f64]),
         (factor, unmeasured): (&Factor, &Unmeasured),
     ) -> Option<Vec<Tally>> {
         let mut tallies = vec![Tally::default(); state.classes.len()];
         let mut random = StdRng::seed_from_u64(0);
-        for (at, blocks) in blocks {
-            let counts = self.counts(*at, state.phase);
-            let terms = self.groups[*at].schema.terms.iter().enumerate();
+        let mut of_data = |rows: &[(&Block, usize)]| {
+            let squares = rows.iter().map(|(block, row)| block.after(*row, step, shared).powi(2)).sum();
+            let used = used(rows, factor, (step.len(), shared.len()), &mut random)?;
+            Some(Tally { squares, count: rows.len() as f64, used })
+        };
+        for (at, blocks) in &rows.asked {
+            let (group, counts) = (&self.groups[*at], self.counts(*at, state.phase));
+            let terms = group.schema.terms.iter().enumerate();
             for (number, term) in terms.filter(|(_, term)| term.kind == TermKind::Observation) {
-                let tally = &mut tallies[self.classes[*at][number]];
-                let rows = blocks.iter().enumerate().flat_map(|(p, block)| {
-                    let own = (term.first..term.first + term.rows).filter(|&row| counts[row][p]);
-                    own.map(|row| (block, row)).collect::<Vec<_>>()
+                let first = group.first_own(term);
+                let own = blocks.iter().enumerate().flat_map(|(p, block)| {
+                    let own = (0..term.rows).filter(|&row| counts[term.first + row][p]);
+                    own.map(|row| (block, first + row)).collect::<Vec<_>>()
                 });
-                let rows: Vec<(&Block, usize)> = rows.collect();
-                tally.count = rows.len() as f64;
-                tally.squares = rows.iter().map(|(block, row)| block.after(*row, step, shared).powi(2)).sum();
-                tally.used = used(&rows, factor, (step.len(), shared.len()), &mut random)?;
+                tallies[self.classes[*at][number]] = of_data(&own.collect::<Vec<_>>())?;
             }
+        }
+        for (surface, blocks) in self.surfaces.iter().zip(&rows.clouds) {
+            let own: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
+            let tally = of_data(&own)?;
+            // Clouds have outliers, which are no noise.
+            let clean = deviation_of_clean(surface.misfits().collect(), tally.used) / self.sigma(state, surface);
+            let squares = clean.powi(2) * (tally.count - tally.used);
+            tallies[self.class(surface)] = Tally { squares, ..tally };
         }
         for head in self.judged(state.phase) {
             let blocks = self.prior_rows(state, head);
-            let rows: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
+            let own: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
             let tally = &mut tallies[self.roughness[head]];
             tally.count = self.priors[head].rank as f64;
             tally.squares = blocks.iter().map(|block| block.after(0, step, shared).powi(2)).sum();
             tally.used = match state.phase {
                 // What data leave of a field is no small difference.
-                Phase::Regress => used(&rows, factor, (step.len(), shared.len()), &mut random)?,
+                Phase::Regress => used(&own, factor, (step.len(), shared.len()), &mut random)?,
                 Phase::Explain | Phase::Solve => {
                     let roughness = state.classes[self.roughness[head]].size;
                     let settled = self.freedoms[head].as_ref()?.settled(factor, step.len(), roughness)?;
@@ -267,6 +323,12 @@ impl Solver<'_> {
     }
 }
 
+/// Whether a term takes part in a phase: those with derivatives wait until data and conditions on values are regressed.
+fn takes_part(group: &schema::Group, term: &schema::Term, phase: Phase) -> bool {
+    let is_of_values = |&jet: &usize| group.jets[jet].degree.iter().all(|&degree| degree == 0);
+    phase.has_equations() || term.jets.iter().all(is_of_values)
+}
+
 fn is_any(counts: &[Vec<bool>]) -> bool {
     counts.iter().any(|row| row.contains(&true))
 }
@@ -274,12 +336,12 @@ fn is_any(counts: &[Vec<bool>]) -> bool {
 /// How many unknowns rows settle, in the mean over random combinations of them (Hutchinson); of so many coefficients and learned
 /// scalars.
 fn used(rows: &[(&Block, usize)], factor: &Factor, lens: (usize, usize), random: &mut StdRng) -> Option<f64> {
-    let mut used = 0.0;
-    for _ in 0..PROBES {
+    let mut probe = || {
         let (mut by, mut below) = (vec![0.0; lens.0], vec![0.0; lens.1]);
         rows.iter().for_each(|(block, row)| block.add_signed(*row, random.random(), &mut by, &mut below));
-        let (x, y) = factor.solve(&by, &below)?;
-        used += (vector::dot(&by, &x) + vector::dot(&below, &y)) / PROBES as f64;
-    }
-    Some(used)
+        (by, below)
+    };
+    let (probes, below): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (0..PROBES).map(|_| probe()).unzip();
+    let probes = Mat::from_fn(lens.0, PROBES, |row, column| probes[column][row]);
+    Some(factor.products(&probes, &below)?.iter().sum::<f64>() / PROBES as f64)
 }

@@ -3,20 +3,16 @@
 //! Programs read a number without bounds, which a network needs: `bound + sign * scale * softplus(number)`, or between two bounds
 //! `lower + (upper - lower) * sigmoid(number)`. It has no inverse at a bound itself, where sources that are often zero are.
 
+mod steps;
+
+pub(crate) use steps::{Bounded, Spring, WALL};
+
 use crate::functions::{sigmoid, softplus};
 use crate::problem::{Bound, UnitSystem};
 use crate::schema;
 
 /// Values closer to a bound than this share of the scale, or of the width between two, are read as linear.
 const CLOSEST: f64 = 1e-6;
-/// How stiff a value is held at its head's bound, how far beyond it a value may be, both over the head's scale, and how many sets of
-/// held ones are tried in a step.
-pub(crate) const WALL: f64 = 1e4;
-const BEYOND: f64 = 1e-6;
-const MOST_SETS: u32 = 60;
-/// How often all numbers on the wrong side are turned though they do not get fewer.
-const PATIENCE: u32 = 3;
-
 /// The bounds of a head, in the engine's units: one or two.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Limits {
@@ -76,42 +72,6 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
         return Some("heads with hard conditions");
     }
     schema.groups.iter().flat_map(|group| group.jets).any(derived).then_some("derivatives of bounded heads")
-}
-
-/// A step after which none of so many numbers is beyond its bound, found by block principal pivoting (Judice and Pires 1994).
-/// `inside` says how far a number is inside of its bound after a step; `hold` returns the step with these numbers held at it by
-/// stiff springs, or nothing if there is none. `step` holds none of them; where it is not enough, those in `held` are held first.
-pub(crate) fn within<S>(
-    count: usize,
-    step: S,
-    held: Vec<usize>,
-    inside: impl Fn(&S, usize) -> f64,
-    mut hold: impl FnMut(&[usize]) -> Option<S>,
-) -> S {
-    if (0..count).all(|at| inside(&step, at) >= -BEYOND) {
-        return step;
-    }
-    let mut is_held = vec![false; count];
-    held.iter().for_each(|&at| is_held[at] = true);
-    let (mut found, mut fewest, mut patience) = (hold(&held), usize::MAX, PATIENCE);
-    for _ in 0..MOST_SETS {
-        let Some(last) = &found else { return step };
-        // A spring that keeps a number from going further in is in the way.
-        let is_wrong = |&at: &usize| if is_held[at] { inside(last, at) > 0.0 } else { inside(last, at) < -BEYOND };
-        let wrong: Vec<usize> = (0..count).filter(is_wrong).collect();
-        let Some(&one) = wrong.last() else { break };
-        if wrong.len() < fewest {
-            (fewest, patience) = (wrong.len(), PATIENCE);
-        } else {
-            patience = patience.saturating_sub(1);
-        }
-        // Turning all of them may go round in circles; the last alone does not.
-        let turned = if patience > 0 { wrong } else { vec![one] };
-        turned.into_iter().for_each(|at| is_held[at] = !is_held[at]);
-        let held: Vec<usize> = (0..count).filter(|&at| is_held[at]).collect();
-        found = hold(&held);
-    }
-    found.unwrap_or(step)
 }
 
 impl Limits {

@@ -1,0 +1,105 @@
+//! How noisy the points of a cloud are, whatever surface they are of.
+
+use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
+use std::num::NonZero;
+
+/// Neighbours that a smooth piece of surface is fitted to, at least, and how many such pieces are.
+const AROUND: NonZero<usize> = NonZero::new(24).unwrap();
+const PLACES: usize = 400;
+/// Where a piece is thicker than this share of its width, its plane is not told from its noise: more neighbours are taken.
+const THICK: f64 = 0.3;
+/// So many times as many.
+const WIDER: NonZero<usize> = NonZero::new(4).unwrap();
+
+/// Standard deviation of a cloud about smooth pieces of surface: least squares of a quadratic through the neighbours of some
+/// points, across the plane that they lie in.
+pub(crate) fn roughness(points: &[[f64; 3]], places: &[[f64; 3]], tree: &ImmutableKdTree<f64, 3>) -> Option<f64> {
+    const UNKNOWNS: usize = 6;
+    if points.len() < 4 * AROUND.get() {
+        return None;
+    }
+    let step = points.len().div_ceil(PLACES);
+    let left = places.iter().step_by(step).filter_map(|centre| {
+        let Piece { local, widths } = std::iter::successors(Some(AROUND), |around| around.checked_mul(WIDER))
+            .map(|around| Piece::around(centre, around, points, tree))
+            .find(|piece| {
+                piece.widths[2] <= THICK * piece.widths[1] || WIDER.get() * piece.local.len() > points.len()
+            })?;
+        let reach = widths[0].max(f64::MIN_POSITIVE);
+        let rows = local.iter().flat_map(|&[x, y, _]| {
+            let (x, y) = (x / reach, y / reach);
+            [1.0, x, y, x * x, x * y, y * y]
+        });
+        let design = DMatrix::from_row_iterator(local.len(), UNKNOWNS, rows);
+        let heights = DVector::from_iterator(local.len(), local.iter().map(|p| p[2]));
+        let fit = design.clone().svd(true, true).solve(&heights, 1e-10).ok()?;
+        Some((heights - design * fit).norm_squared() / (local.len() - UNKNOWNS) as f64)
+    });
+    Some(middle(left.collect()).sqrt())
+}
+
+/// The neighbours of a place along the axes of their spread, from the longest axis to the shortest.
+struct Piece {
+    /// From the middle of the piece.
+    local: Vec<[f64; 3]>,
+    /// Roots of the sums of squares along the axes.
+    widths: [f64; 3],
+}
+
+impl Piece {
+    fn around(centre: &[f64; 3], around: NonZero<usize>, points: &[[f64; 3]], tree: &ImmutableKdTree<f64, 3>) -> Self {
+        let near = tree.query(centre).nearest_n::<SquaredEuclidean<f64>>(around).execute();
+        let near: Vec<Vector3<f64>> = near.iter().map(|found| Vector3::from(points[found.item as usize])).collect();
+        let middle = near.iter().sum::<Vector3<f64>>() / near.len() as f64;
+        let spread: Matrix3<f64> = near.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
+        let axes = spread.symmetric_eigen();
+        let mut order = [0, 1, 2];
+        order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
+        let along = |p: &Vector3<f64>| order.map(|i| (p - middle).dot(&axes.eigenvectors.column(i)));
+        Self { local: near.iter().map(along).collect(), widths: order.map(|i| axes.eigenvalues[i].max(0.0).sqrt()) }
+    }
+}
+
+/// The value that half of all are below; zero of none.
+pub(crate) fn middle(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::network::normal;
+    use rand::{RngExt, SeedableRng, rngs::StdRng};
+
+    /// Points of a sphere of radius 1 about (0, 0, -1), noisy along z, and their places.
+    fn cap(noise: f64) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
+        let mut random = StdRng::seed_from_u64(5);
+        let point = |_| {
+            let (x, y): (f64, f64) = (random.random::<f64>() - 0.5, random.random::<f64>() - 0.5);
+            let z = (1.0 - x * x - y * y).sqrt() - 1.0 + noise * normal(&mut random);
+            ([x, y, z], [x, y, 0.0])
+        };
+        (0..3000).map(point).unzip()
+    }
+
+    #[test]
+    fn roughness_is_the_noise_and_not_the_shape() {
+        for noise in [0.0, 1e-2] {
+            let (points, places) = cap(noise);
+            let tree = ImmutableKdTree::new_from_slice(&places).unwrap();
+            let found = roughness(&points, &places, &tree).unwrap();
+            assert!((found - noise).abs() < 0.15 * noise + 1e-4, "{found} for {noise}");
+        }
+    }
+
+    /// Twenty-four of three thousand points are no wider than noise of a tenth is thick.
+    #[test]
+    fn roughness_of_a_dense_cloud_is_its_noise_too() {
+        let (points, places) = cap(0.1);
+        let tree = ImmutableKdTree::new_from_slice(&places).unwrap();
+        let found = roughness(&points, &places, &tree).unwrap();
+        assert!((found / 0.1 - 1.0).abs() < 0.15, "{found}");
+    }
+}

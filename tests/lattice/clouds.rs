@@ -1,0 +1,129 @@
+//! Sources and parameters from clouds of a surface that nobody told the place of.
+
+use nisp::solve::driver::WarningKind;
+
+use super::sources::scattered;
+use super::*;
+
+nisp::pde! {
+    /// A square skin that a load lifts, and never lowers.
+    pub mod lifted {
+        units: off;
+        coordinates: x, y;
+        fields: u;
+        sources: f >= 0;
+        on inside { balance: laplacian(u) + f == 0; }
+        on surface { seen: chamfer [x, y, u]; }
+        on edge { held: u == 0; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A square skin of unknown tension that a known load lifts.
+    pub mod tense {
+        units: off;
+        coordinates: x, y;
+        fields: u;
+        parameters: T > 0 = 1;
+        on inside { balance: T * laplacian(u) + 0.4 == 0; }
+        on surface { seen: chamfer [x, y, u]; }
+        on edge { held: u == 0; }
+        scene tension { learn T; }
+    }
+}
+
+/// The skin's height over the unit square: slopes reach a half.
+fn height([x, y]: [f64; 2]) -> f64 {
+    0.15 * (PI * x).sin() * (PI * y).sin()
+}
+
+/// `-laplacian` of it.
+fn load(place: [f64; 2]) -> f64 {
+    2.0 * PI * PI * height(place)
+}
+
+/// Points of a surface, off by so much in all directions.
+fn cloud(height: impl Fn([f64; 2]) -> f64, count: usize, noise: f64) -> Vec<[f64; 3]> {
+    let mut normal = normals(7);
+    let places = scattered(count, [1.0, 1.0], 8);
+    let point = |place: [f64; 2]| [place[0], place[1], height(place)].map(|x| x + noise * normal());
+    pairs(&places).map(point).collect()
+}
+
+fn problem(scene: SceneRef, cloud: &[[f64; 3]]) -> Problem {
+    let mut problem = Problem::new(scene);
+    problem.set_group("inside", grid([26, 26], [1.0, 1.0], false).into(), Vec::new()).unwrap();
+    problem.set_group("surface", grid([26, 26], [1.0, 1.0], true).into(), Vec::new()).unwrap();
+    let edge: Vec<f64> = (0..=40).map(|i| f64::from(i) / 40.0).flat_map(|s| [s, 0.0, s, 1.0, 0.0, s, 1.0, s]).collect();
+    problem.set_group("edge", edge.into(), Vec::new()).unwrap();
+    problem.set_cloud("surface", "seen", cloud.as_flattened().to_vec()).unwrap();
+    problem
+}
+
+/// How far the load is off at some places, over its size, and the share of it within two deviations.
+fn judged(solution: &mut Solution, places: &[f64]) -> (f64, f64) {
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
+    let (found, deviations) = values(solution, "f", places);
+    let off: Vec<f64> = found.iter().zip(pairs(places)).map(|(f, place)| f - load(place)).collect();
+    let within = off.iter().zip(deviations.unwrap()).filter(|(off, deviation)| off.abs() <= 2.0 * deviation).count();
+    let size = root_mean_square(pairs(places).map(load));
+    (root_mean_square(off.iter().copied()) / size, within as f64 / off.len() as f64)
+}
+
+#[test]
+fn a_load_is_found_from_a_cloud_with_bars_that_hold() {
+    let mut solution = solve(&problem(scene::<lifted::recover::Scene>(), &cloud(height, 2000, 0.01)));
+    let (off, within) = judged(&mut solution, &grid([15, 15], [1.0, 1.0], false));
+    assert!(off < 0.2 && within > 0.85, "{off} {within}");
+}
+
+/// One point in twenty is off by half a side.
+#[test]
+fn strays_are_no_noise() {
+    let mut points = cloud(height, 2000, 0.01);
+    points.iter_mut().step_by(20).enumerate().for_each(|(at, point)| point[2] += if at % 2 == 0 { 0.5 } else { -0.5 });
+    let mut solution = solve(&problem(scene::<lifted::recover::Scene>(), &points));
+    let (off, within) = judged(&mut solution, &grid([15, 15], [1.0, 1.0], false));
+    assert!(off < 0.2 && within > 0.85, "{off} {within}");
+}
+
+/// Of the half that no point shows, the answer says that it guesses.
+#[test]
+fn where_no_cloud_is_bars_are_wide() {
+    let seen: Vec<[f64; 3]> = cloud(height, 2000, 0.01).into_iter().filter(|point| point[0] < 0.5).collect();
+    let mut solution = solve(&problem(scene::<lifted::recover::Scene>(), &seen));
+    assert!(solution.warnings.iter().any(|warning| warning.kind == WarningKind::Settled), "{:?}", solution.warnings);
+    let places = grid([15, 15], [1.0, 1.0], false);
+    let (_, within) = judged(&mut solution, &places);
+    assert!(within > 0.8, "{within}");
+    let (_, deviations) = values(&mut solution, "f", &[0.25, 0.5, 0.75, 0.5]);
+    let deviations = deviations.unwrap();
+    assert!(deviations[1] > 2.0 * deviations[0], "{deviations:?}");
+}
+
+/// A load from below lifts the skin, and the cloud lies a twentieth of a side under its edge.
+#[test]
+fn a_cloud_in_another_place_is_noticed() {
+    let mut points = cloud(height, 2000, 0.01);
+    points.iter_mut().for_each(|point| point[2] -= 0.05);
+    let settings = Settings { budget: Some(Duration::from_secs(5)), ..settings() };
+    let problem = problem(scene::<lifted::recover::Scene>(), &points);
+    let solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
+    assert!(solution.status != Status::Converged, "{:?}", solution.verdict.checks);
+}
+
+/// A load of .4 lifts a skin of tension 2 by `0.2 phi`, where `-laplacian phi = 1`: a double series of sines.
+#[test]
+fn a_tension_is_learned_from_a_cloud() {
+    let phi = |[x, y]: [f64; 2]| {
+        let odd = || (1..60).step_by(2).map(f64::from);
+        let term = |m: f64, n: f64| (m * PI * x).sin() * (n * PI * y).sin() / (m * n * (m * m + n * n));
+        16.0 / PI.powi(4) * odd().flat_map(|m| odd().map(move |n| term(m, n))).sum::<f64>()
+    };
+    let mut solution = solve(&problem(scene::<tense::tension::Scene>(), &cloud(|at| 0.2 * phi(at), 3000, 1e-3)));
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
+    let found = &solution.learned()[0];
+    let off = (found.value - 2.0).abs();
+    assert!(off < 0.02 && off < 3.0 * found.deviation.unwrap(), "{found:?}");
+}
