@@ -25,7 +25,7 @@ pub fn dispatch<E: Element, K: Kernel<E>>(isa: Isa, kernel: K) -> K::Output {
 }
 
 macro_rules! impl_element {
-    ($elem:ident, $avx512:ident, $avx2:ident, $neon:ident, $lanes:literal) => {
+    ($elem:ident, $avx512:ident, $avx2:ident, $neon:ident) => {
         impl Element for $elem {
             #[inline(always)]
             fn dispatch<K: Kernel<Self>>(isa: Isa, kernel: K) -> K::Output {
@@ -40,21 +40,21 @@ macro_rules! impl_element {
                     #[cfg(target_arch = "aarch64")]
                     Level::Neon => unsafe { super::neon::$neon::enter(kernel) },
                     // SAFETY: asks for no features.
-                    Level::Scalar => unsafe { scalar::Array::<$elem, $lanes>::enter(kernel) },
+                    Level::Scalar => unsafe { scalar::Single::<$elem>::enter(kernel) },
                 }
             }
 
             #[inline(always)]
             fn plain<K: Kernel<Self>>(kernel: K) -> K::Output {
                 // SAFETY: asks for no features.
-                unsafe { scalar::Array::<$elem, 1>::enter(kernel) }
+                unsafe { scalar::Single::<$elem>::enter(kernel) }
             }
         }
     };
 }
 
-impl_element!(f32, F32x16, F32x8, F32x4, 4);
-impl_element!(f64, F64x8, F64x4, F64x2, 2);
+impl_element!(f32, F32x16, F32x8, F32x4);
+impl_element!(f64, F64x8, F64x4, F64x2);
 
 struct Lanes;
 
