@@ -20,7 +20,7 @@ const NEAR: f64 = 2.0;
 
 /// Points of a cloud in each cell of the answer's lattice that it passes through, in the mean, from which on more of them cost
 /// more than they say: three displacements are wanted there.
-const POINTS_OF_A_CELL: usize = 4;
+pub(crate) const POINTS_OF_A_CELL: usize = 4;
 
 /// What the clouds of a body have in common.
 #[derive(Clone, Debug)]

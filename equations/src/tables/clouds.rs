@@ -8,7 +8,11 @@ use nisp_data::cloud::View;
 
 use super::{Found, Tables};
 use crate::error::PrepareError;
+use crate::frames::POINTS_OF_A_CELL;
 use crate::request::Request;
+
+/// Cells along a cloud that hardly any answer is finer than.
+const CELLS: f64 = 40.0;
 
 /// A file that holds the cloud of a group's term.
 pub(crate) struct CloudFile<'a> {
@@ -49,7 +53,7 @@ pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) ->
             let is_plain = term.unit.text.is_empty();
             // Clouds are in metres, or in the unit that the user names; numbers without unit are what they are.
             let view = View { unit: request.view.unit.filter(|_| !is_plain), ..request.view.clone() };
-            let cloud = view.read(file.path)?;
+            let mut cloud = view.read(file.path)?;
             if is_plain && cloud.is_in_metres {
                 let what = format!(
                     "`{}.{}` has no unit, and its cloud has one: give the equation units, or the cloud none",
@@ -57,6 +61,7 @@ pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) ->
                 );
                 return Err(DataError::File { path: file.path.into(), what }.into());
             }
+            cloud.thin(cloud.length() / CELLS, POINTS_OF_A_CELL);
             found.warnings.extend(cloud.warnings);
             let size = if is_plain { 1.0 } else { term.unit.factor.recip() };
             let points = cloud.points.iter().flat_map(|point| point.iter().take(term.rows)).map(|x| x * size);

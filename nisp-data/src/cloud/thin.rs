@@ -37,11 +37,21 @@ impl Cloud {
         }
         self.points = cubes.into_values().flatten().step_by(step).map(|index| self.points[index]).collect();
         self.warnings.push(format!(
-            "{} of the cloud's {all} points are used, one of {step} in each of {count} cubes of {:.3} mm, which the answer is as fine \
-             as",
-            self.points.len(),
-            side * 1e3
+            "{} of the cloud's {all} points are used, one of {step} in each of {count} cubes, which the answer is as fine as",
+            self.points.len()
         ));
+    }
+
+    /// Length of the cloud along its longest axis, but for strays: nine tenths of the points are within nine tenths of it.
+    #[must_use]
+    pub fn length(&self) -> f64 {
+        let along = |axis: usize| {
+            let mut values: Vec<f64> = self.points.iter().map(|point| point[axis]).collect();
+            values.sort_by(f64::total_cmp);
+            let at = |share: f64| values.get((share * values.len() as f64) as usize).copied().unwrap_or(0.0);
+            (at(0.95) - at(0.05)) / 0.9
+        };
+        (0..3).map(along).fold(0.0, f64::max)
     }
 
     /// One point for every cube of a grid with this side, in metres: the point nearest to the cube's middle. Points stay in the

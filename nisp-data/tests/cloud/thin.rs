@@ -27,7 +27,7 @@ fn every_cube_keeps_its_share() {
     assert_eq!(
         cloud.warnings,
         [
-            "40000 of the cloud's 400000 points are used, one of 10 in each of 10000 cubes of 10.000 mm, which the answer is as fine as"
+            "40000 of the cloud's 400000 points are used, one of 10 in each of 10000 cubes, which the answer is as fine as"
         ]
     );
 }
@@ -58,4 +58,13 @@ fn every_cube_keeps_the_point_nearest_to_its_middle() {
     let cloud = Cloud { points, ..Cloud::default() };
     assert_eq!(cloud.one_of_each_cube(1.0, 1).points, [[0.4, 0.5, 0.6], [-0.5, 0.5, 0.5], [1.5, 0.0, 0.0]]);
     assert_eq!(cloud.one_of_each_cube(1.0, 3).points, [[0.4, 0.5, 0.6]]);
+}
+
+/// A metre along its sides, and a few points ten metres away.
+#[test]
+fn strays_do_not_make_a_cloud_longer() {
+    let mut cloud = plane();
+    cloud.points.iter_mut().step_by(100).for_each(|point| point[2] += 10.0);
+    assert!((cloud.length() - 1.0).abs() < 0.01, "{}", cloud.length());
+    assert_eq!(Cloud::default().length(), 0.0);
 }
