@@ -11,12 +11,17 @@ pub(super) fn scattered(count: usize, sides: [f64; 2], seed: u64) -> Vec<f64> {
 }
 
 /// Points of the edge of the unit square.
-fn edge(count: usize) -> Vec<f64> {
+pub(super) fn edge(count: usize) -> Vec<f64> {
     (0..count).map(|i| i as f64 / (count - 1) as f64).flat_map(|s| [s, 0.0, s, 1.0, 0.0, s, 1.0, s]).collect()
 }
 
 /// How far a source is off, over its size, and the share of it within two deviations.
-fn judged(solution: &mut Solution, name: &str, places: &[f64], exact: &dyn Fn([f64; 2]) -> f64) -> (f64, f64) {
+pub(super) fn judged(
+    solution: &mut Solution,
+    name: &str,
+    places: &[f64],
+    exact: &dyn Fn([f64; 2]) -> f64,
+) -> (f64, f64) {
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
     let (found, deviations) = values(solution, name, places);
     let off: Vec<f64> = found.iter().zip(pairs(places)).map(|(value, place)| value - exact(place)).collect();

@@ -2,7 +2,7 @@
 //!
 //! Which numbers a step leaves at their bounds is found by block principal pivoting (Judice and Pires 1994): those on the wrong side
 //! are turned, all at once, until there are none. Numbers that depend on several unknowns each may be turned round in circles; then
-//! an interior-point method (Nocedal and Wright 2006, 16.6) finds which they are, in a few steps more than a dozen.
+//! an interior-point method (Nocedal and Wright 2006, 16.6) finds which they are, in one to three dozen steps.
 
 /// How stiff a number is held at its bound, how far beyond it a number may be, both over the head's scale.
 pub(crate) const WALL: f64 = 1e4;
