@@ -55,8 +55,7 @@ fn problem(scene: SceneRef, cloud: &[[f64; 3]]) -> Problem {
     let mut problem = Problem::new(scene);
     problem.set_group("inside", grid([26, 26], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     problem.set_group("surface", grid([26, 26], [1.0, 1.0], true).into(), Vec::new()).unwrap();
-    let edge: Vec<f64> = (0..=40).map(|i| f64::from(i) / 40.0).flat_map(|s| [s, 0.0, s, 1.0, 0.0, s, 1.0, s]).collect();
-    problem.set_group("edge", edge.into(), Vec::new()).unwrap();
+    problem.set_group("edge", edge(41).into(), Vec::new()).unwrap();
     problem.set_cloud("surface", "seen", cloud.as_flattened().to_vec()).unwrap();
     problem
 }
