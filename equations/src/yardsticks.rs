@@ -2,7 +2,7 @@
 
 use std::time::Instant;
 
-use nisp_data::nearest::intersection_over_union;
+use nisp_data::overlap::intersection_over_union;
 
 use crate::prepared::Prepared;
 use crate::rivals::{mean_abs_error, zero_error};

@@ -4,6 +4,7 @@
 
 pub mod activation;
 pub mod aligned;
+mod axes;
 mod bounds;
 mod bytes;
 pub mod carrier;
@@ -17,6 +18,7 @@ pub mod layer;
 pub mod local;
 pub mod loss;
 pub mod memory;
+pub mod nearest;
 pub mod network;
 mod noise;
 pub mod peak;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use kiddo::ImmutableKdTree;
 use nalgebra::{DMatrix, DVector};
 
 use crate::facts::spread;
@@ -67,8 +66,7 @@ impl Noise {
         let clouds = terms.filter(|(.., own)| matches!(own.kind, TermKind::Chamfer { .. }) && own.rows == 3);
         self.observations.extend(clouds.filter_map(|(group, term, _)| {
             let points = bound.clouds[group][term].as_chunks::<3>().0;
-            let tree = ImmutableKdTree::new_from_slice(points).ok()?;
-            let deviation = roughness(points, points, &tree)?;
+            let deviation = roughness(points, points)?;
             let (_, spread) = spread(points.iter().map(|&point| point.into()));
             Some(ObservationNoise { group, term, deviation, spread })
         }));

@@ -1,8 +1,11 @@
 //! How noisy the points of a cloud are, whatever surface they are of.
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::{DMatrix, DVector, Matrix3, Vector3};
 use std::num::NonZero;
+
+use nalgebra::{DMatrix, DVector};
+
+use crate::axes::Axes;
+use crate::nearest::Nearest;
 
 /// Neighbours that a smooth piece of surface is fitted to, at least, and how many such pieces are.
 const AROUND: NonZero<usize> = NonZero::new(24).unwrap();
@@ -14,15 +17,16 @@ const WIDER: NonZero<usize> = NonZero::new(4).unwrap();
 
 /// Standard deviation of a cloud about smooth pieces of surface: least squares of a quadratic through the neighbours of some
 /// points, across the plane that they lie in.
-pub(crate) fn roughness(points: &[[f64; 3]], places: &[[f64; 3]], tree: &ImmutableKdTree<f64, 3>) -> Option<f64> {
+pub(crate) fn roughness(points: &[[f64; 3]], places: &[[f64; 3]]) -> Option<f64> {
     const UNKNOWNS: usize = 6;
     if points.len() < 4 * AROUND.get() {
         return None;
     }
+    let tree = Nearest::of(places)?;
     let step = points.len().div_ceil(PLACES);
     let left = places.iter().step_by(step).filter_map(|centre| {
         let Piece { local, widths } = std::iter::successors(Some(AROUND), |around| around.checked_mul(WIDER))
-            .map(|around| Piece::around(centre, around, points, tree))
+            .map_while(|around| Piece::around(centre, around, points, &tree))
             .find(|piece| {
                 piece.widths[2] <= THICK * piece.widths[1] || WIDER.get() * piece.local.len() > points.len()
             })?;
@@ -48,16 +52,10 @@ struct Piece {
 }
 
 impl Piece {
-    fn around(centre: &[f64; 3], around: NonZero<usize>, points: &[[f64; 3]], tree: &ImmutableKdTree<f64, 3>) -> Self {
-        let near = tree.query(centre).nearest_n::<SquaredEuclidean<f64>>(around).execute();
-        let near: Vec<Vector3<f64>> = near.iter().map(|found| Vector3::from(points[found.item as usize])).collect();
-        let middle = near.iter().sum::<Vector3<f64>>() / near.len() as f64;
-        let spread: Matrix3<f64> = near.iter().map(|p| (p - middle) * (p - middle).transpose()).sum();
-        let axes = spread.symmetric_eigen();
-        let mut order = [0, 1, 2];
-        order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
-        let along = |p: &Vector3<f64>| order.map(|i| (p - middle).dot(&axes.eigenvectors.column(i)));
-        Self { local: near.iter().map(along).collect(), widths: order.map(|i| axes.eigenvalues[i].max(0.0).sqrt()) }
+    fn around(centre: &[f64; 3], around: NonZero<usize>, points: &[[f64; 3]], tree: &Nearest<3>) -> Option<Self> {
+        let near: Vec<[f64; 3]> = tree.some(centre, around).iter().map(|found| points[found.index]).collect();
+        let axes = Axes::of(&near)?;
+        Some(Self { local: near.iter().map(|point| axes.along(point)).collect(), widths: axes.squares.map(f64::sqrt) })
     }
 }
 
@@ -88,8 +86,7 @@ mod tests {
     fn roughness_is_the_noise_and_not_the_shape() {
         for noise in [0.0, 1e-2] {
             let (points, places) = cap(noise);
-            let tree = ImmutableKdTree::new_from_slice(&places).unwrap();
-            let found = roughness(&points, &places, &tree).unwrap();
+            let found = roughness(&points, &places).unwrap();
             assert!((found - noise).abs() < 0.15 * noise + 1e-4, "{found} for {noise}");
         }
     }
@@ -98,8 +95,7 @@ mod tests {
     #[test]
     fn roughness_of_a_dense_cloud_is_its_noise_too() {
         let (points, places) = cap(0.1);
-        let tree = ImmutableKdTree::new_from_slice(&places).unwrap();
-        let found = roughness(&points, &places, &tree).unwrap();
+        let found = roughness(&points, &places).unwrap();
         assert!((found / 0.1 - 1.0).abs() < 0.15, "{found}");
     }
 }

@@ -1,6 +1,6 @@
 //! Calibration of a bubble from frames in which nothing touches it.
 
-use nisp_data::nearest::Nearest;
+use nisp::nearest::Nearest;
 use nisp_data::{Cloud, DataError};
 
 use super::given::Given;
@@ -125,13 +125,12 @@ impl References {
             })
             .collect();
         let normals = face.area_vectors(&moved);
-        let tree = match Nearest::new(&moved) {
-            Ok(tree) => tree,
-            Err(error) => return Some(Err(error)),
+        let Some(tree) = Nearest::of(&moved) else {
+            return Some(Err(DataError::Invalid("the body's surface is not finite".into())));
         };
         let off = |point: &[f64; 3]| {
             let inside = pose.inward(*point);
-            let at = tree.nearest(&inside).index;
+            let at = tree.one(&inside).index;
             let size = length(normals[at]);
             let normal = normals[at].map(|x| x / size);
             let distance = minus(inside, moved[at]).iter().zip(normal).map(|(x, n)| x * n).sum();

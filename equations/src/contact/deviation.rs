@@ -1,13 +1,15 @@
 //! What the theory of a free surface leaves unexplained, as a smooth field over the plane of the rim.
 
+use std::num::NonZero;
+
+use nisp::nearest::Nearest;
 use nisp_data::DataError;
-use nisp_data::nearest::Nearest;
 use serde::{Deserialize, Serialize};
 
 /// Nodes along the longer axis: on a bubble of twelve centimetres every two millimetres.
 const NODES: usize = 61;
 /// Points of which a node takes the median: it is known to a tenth of their noise.
-const POINTS: usize = 100;
+const POINTS: NonZero<usize> = NonZero::new(100).unwrap();
 
 /// How far a seen surface is from the theory's: vectors in metres on a grid over the plane of the rim.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -37,13 +39,14 @@ impl Deviation {
     /// No points, or some that are not finite.
     pub(crate) fn fit(points: &[Off], half: [f64; 2]) -> Result<Self, DataError> {
         let places: Vec<[f64; 2]> = points.iter().map(|point| point.place).collect();
-        let tree = Nearest::new(&places)?;
+        let none = || DataError::Invalid("a deviation needs at least one point, and only finite ones".into());
+        let tree = Nearest::of(&places).ok_or_else(none)?;
         let spacing = 2.0 * half[0].max(half[1]) / (NODES - 1) as f64;
         let counts = half.map(|half| 2 + (2.0 * half / spacing) as usize);
         let at = |axis: usize, index: usize| half[axis] * (2.0 * index as f64 / (counts[axis] - 1) as f64 - 1.0);
         let node = |row: usize, column: usize| {
             let near: Vec<&Off> =
-                tree.nearest_many(&[at(0, column), at(1, row)], POINTS).map(|index| &points[index]).collect();
+                tree.some(&[at(0, column), at(1, row)], POINTS).iter().map(|found| &points[found.index]).collect();
             let mut distances: Vec<f64> = near.iter().map(|point| point.distance).collect();
             let middle = distances.len() / 2;
             let (_, median, _) = distances.select_nth_unstable_by(middle, f64::total_cmp);

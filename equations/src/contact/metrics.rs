@@ -1,6 +1,6 @@
 //! Measures of a contact: which points are touched, how far two patches are apart.
 
-use nisp_data::nearest::chamfer;
+use nisp::nearest::Nearest;
 
 /// How a touched point is told from one that is not.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,9 +30,15 @@ impl Rule {
 pub fn patch_chamfer_mm2(a: &[[f64; 3]], b: &[[f64; 3]]) -> Option<f64> {
     match (a.is_empty(), b.is_empty()) {
         (true, true) => Some(0.0),
-        (false, false) => chamfer(a, b).ok().map(|squares| 1e6 * squares),
+        (false, false) => Some(1e6 * (mean_square(a, b)? + mean_square(b, a)?)),
         _ => None,
     }
+}
+
+/// Mean squared distance from each point of `from` to its nearest of `to`.
+fn mean_square(from: &[[f64; 3]], to: &[[f64; 3]]) -> Option<f64> {
+    let tree = Nearest::of(to)?;
+    Some(from.iter().map(|point| tree.one(point).distance.powi(2)).sum::<f64>() / from.len() as f64)
 }
 
 #[cfg(test)]

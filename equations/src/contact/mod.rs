@@ -22,8 +22,8 @@ pub use patches::Patch;
 pub use pose::Pose;
 pub use score::{Against, ContactScore, TrueContact, Values};
 
+use nisp::nearest::Nearest;
 use nisp::schema::Scene;
-use nisp_data::nearest::Nearest;
 use nisp_data::{DataError, Table};
 
 use crate::truth::{Headers, Truth};
@@ -97,8 +97,8 @@ impl Contact {
             return None;
         };
         let surface = self.deformed(&self.surface.points, [&x, &y, &z]);
-        let tree = Nearest::new(&self.cloud).ok()?;
-        let is_near = |point: &&[f64; 3]| tree.nearest(point).squared_distance < self.near.powi(2);
+        let tree = Nearest::of(&self.cloud)?;
+        let is_near = |point: &&[f64; 3]| tree.one(point).distance < self.near;
         Some(surface.iter().filter(is_near).count() as f64 / surface.len().max(1) as f64)
     }
 }

@@ -1,6 +1,6 @@
 //! What was found of a contact, and how well, against a truth that no solver has seen.
 
-use nisp_data::nearest::intersection_over_union;
+use nisp_data::overlap::intersection_over_union;
 use nisp_data::{DataError, Table};
 
 use super::face::{Face, length, minus, weighted_sum};

@@ -13,7 +13,7 @@ use nisp_cli::interrupt;
 use nisp_cli::options::{count, number, seed};
 use nisp_cli::terminal::{print, progress};
 use nisp_data::Cloud;
-use nisp_data::nearest::intersection_over_union;
+use nisp_data::overlap::intersection_over_union;
 use nisp_equations::contact::Contact;
 use nisp_equations::{Prepared, Request};
 

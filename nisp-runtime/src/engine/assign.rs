@@ -2,14 +2,15 @@
 
 use std::num::NonZero;
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::SMatrix;
 use rayon::prelude::*;
+
+use crate::axes::Axes;
+use crate::nearest::Nearest;
 
 /// A cloud, and where each of its points was nearest to a surface when last looked at.
 pub(super) struct Assignment<const D: usize> {
     points: Vec<[f64; D]>,
-    tree: ImmutableKdTree<f64, D>,
+    tree: Nearest<D>,
     nearest: Vec<usize>,
     /// How far the surface may move from `reference` before a point's nearest can change.
     reach: Vec<f64>,
@@ -20,7 +21,7 @@ pub(super) struct Assignment<const D: usize> {
 impl<const D: usize> Assignment<D> {
     /// Nothing assigned yet; nothing at all unless there is a point.
     pub(super) fn new(points: Vec<[f64; D]>) -> Option<Self> {
-        let tree = tree(&points)?;
+        let tree = Nearest::of(&points)?;
         Some(Self { nearest: Vec::new(), reach: Vec::new(), reference: Vec::new(), points, tree })
     }
 
@@ -45,7 +46,7 @@ impl<const D: usize> Assignment<D> {
         if stale == 0 && moved.is_finite() {
             return false;
         }
-        let Some(tree) = tree(surface) else { return false };
+        let Some(tree) = Nearest::of(surface) else { return false };
         // Most must be looked up anyway: begin anew, so that reaches are as long as they can be.
         let anew = moved.is_infinite() || 2 * stale > self.points.len();
         let moved = if anew { 0.0 } else { moved };
@@ -73,21 +74,16 @@ impl<const D: usize> Assignment<D> {
     }
 }
 
-fn tree<const D: usize>(points: &[[f64; D]]) -> Option<ImmutableKdTree<f64, D>> {
-    if points.is_empty() { None } else { ImmutableKdTree::new_from_slice(points).ok() }
-}
-
 fn squared_distance<const D: usize>(a: &[f64; D], b: &[f64; D]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum()
 }
 
 /// The nearest point of a tree, and half of how much nearer it is than the second.
-fn look_up<const D: usize>(tree: &ImmutableKdTree<f64, D>, point: &[f64; D]) -> (usize, f64) {
+fn look_up<const D: usize>(tree: &Nearest<D>, point: &[f64; D]) -> (usize, f64) {
     let two = const { NonZero::new(2usize).unwrap() };
-    let found = tree.query(point).nearest_n::<SquaredEuclidean<f64>>(two).execute();
-    match &found[..] {
-        [first, second, ..] => (first.item as usize, (second.distance.sqrt() - first.distance.sqrt()) / 2.0),
-        [only] => (only.item as usize, f64::INFINITY),
+    match &tree.some(point, two)[..] {
+        [first, second, ..] => (first.index, (second.distance - first.distance) / 2.0),
+        [only] => (only.index, f64::INFINITY),
         [] => (0, 0.0),
     }
 }
@@ -95,29 +91,13 @@ fn look_up<const D: usize>(tree: &ImmutableKdTree<f64, D>, point: &[f64; D]) -> 
 /// Neighbours that a surface's direction is taken from.
 const NEIGHBOURS: usize = 10;
 
-/// Most coordinates of a point.
-pub(super) const MOST: usize = 4;
-
 /// For each surface point, a unit vector across the surface: the direction in which its neighbours spread least.
 pub(super) fn normals<const D: usize>(surface: &[[f64; D]], normals: &mut Vec<[f64; D]>) {
-    let Some(tree) = tree(surface) else { return };
+    let Some(tree) = Nearest::of(surface) else { return };
     let count = const { NonZero::new(NEIGHBOURS).unwrap() };
     let normal = |point: &[f64; D]| {
-        let around = tree.query(point).nearest_n::<SquaredEuclidean<f64>>(count).execute();
-        let around = || around.iter().map(|found| &surface[found.item as usize]);
-        let count = around().count().max(1) as f64;
-        let mean: [f64; D] = std::array::from_fn(|i| around().map(|p| p[i]).sum::<f64>() / count);
-        let spread = |i: usize, j: usize| around().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum::<f64>();
-        let whole: f64 = (0..D).map(|i| spread(i, i)).sum();
-        // Coordinates that there are not spread more than any direction of those that there are.
-        let axes = SMatrix::<f64, MOST, MOST>::from_fn(|i, j| match (i < D && j < D, i == j) {
-            (true, _) => spread(i, j),
-            (false, true) => 2.0 * whole + 1.0,
-            (false, false) => 0.0,
-        })
-        .symmetric_eigen();
-        let (least, _) = axes.eigenvalues.argmin();
-        std::array::from_fn(|i| axes.eigenvectors[(i, least)])
+        let around: Vec<[f64; D]> = tree.some(point, count).iter().map(|found| surface[found.index]).collect();
+        Axes::of(&around).map_or([0.0; D], |axes| axes.directions[D - 1])
     };
     surface.par_iter().map(normal).collect_into_vec(normals);
 }

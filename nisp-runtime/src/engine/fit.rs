@@ -3,6 +3,7 @@
 use super::assign::{self, Assignment};
 use super::form::Form;
 use crate::loss::Loss;
+use crate::nearest::MOST;
 
 /// How the distances between a surface and its cloud count.
 #[derive(Clone, Copy)]
@@ -43,7 +44,7 @@ pub(super) fn fit(cloud: &[f64], dimensions: usize, points: usize, measure: Meas
     Some(match dimensions {
         2 => Box::new(Fitted::<2>::new(cloud, points, measure)?),
         3 => Box::new(Fitted::<3>::new(cloud, points, measure)?),
-        assign::MOST => Box::new(Fitted::<{ assign::MOST }>::new(cloud, points, measure)?),
+        MOST => Box::new(Fitted::<MOST>::new(cloud, points, measure)?),
         _ => return None,
     })
 }

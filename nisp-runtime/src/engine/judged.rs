@@ -1,6 +1,6 @@
 //! What a network says at the points of its groups, for the verdict.
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use crate::nearest::{Nearest, Neighbour};
 use std::num::NonZero;
 
 use super::Engine;
@@ -72,16 +72,14 @@ fn beside(group: usize, term: &'static str, surface: &[Vec<f64>], cloud: &[f64])
     const TWO: NonZero<usize> = NonZero::new(2).unwrap();
     let padded = |of: &dyn Fn(usize) -> f64| std::array::from_fn(|i| if i < surface.len() { of(i) } else { 0.0 });
     let places: Vec<[f64; 3]> = (0..surface[0].len()).map(|p| padded(&|i| surface[i][p])).collect();
-    let tree = ImmutableKdTree::<f64, 3>::new_from_slice(&places).ok()?;
-    let apart = places.iter().filter_map(|place| {
-        tree.query(place).nearest_n::<SquaredEuclidean<f64>>(TWO).execute().last().map(|found| found.distance.sqrt())
-    });
+    let tree = Nearest::of(&places)?;
+    let apart = places.iter().filter_map(|place| tree.some(place, TWO).last().map(|found| found.distance));
     let mut apart: Vec<f64> = apart.collect();
     apart.sort_by(f64::total_cmp);
     let points: Vec<[f64; 3]> = cloud.chunks_exact(surface.len()).map(|point| padded(&|i| point[i])).collect();
-    let nearest = |point: &[f64; 3]| tree.query(point).nearest_one::<SquaredEuclidean<f64>>().execute();
-    let misfits = points.iter().map(|point| Some(nearest(point).distance.sqrt())).collect();
-    let feet = points.iter().map(|point| places[nearest(point).item as usize]).collect();
+    let nearest: Vec<Neighbour> = points.iter().map(|point| tree.one(point)).collect();
+    let misfits = nearest.iter().map(|found| Some(found.distance)).collect();
+    let feet = nearest.iter().map(|found| places[found.index]).collect();
     let resolution = apart.get(apart.len() / 2).copied().unwrap_or(0.0);
     Some(CloudFacts { group, term, points, places: feet, misfits, signed: false, resolution })
 }

@@ -382,7 +382,8 @@ impl Factor {
 
     /// Variance of a learned scalar's parameter.
     pub(super) fn learned_variance(&self, at: usize) -> Option<f64> {
-        self.schur.clone().try_inverse().map(|inverse| inverse[(at, at)])
+        let unit = DVector::from_fn(self.schur.nrows(), |row, _| f64::from(u8::from(row == at)));
+        self.schur.clone().lu().solve(&unit).map(|column| column[at])
     }
 
     /// Solutions without the border, for the columns of a matrix.

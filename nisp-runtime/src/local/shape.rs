@@ -1,11 +1,12 @@
 //! A surface in space, and directions along it at rest.
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::{DMatrix, Vector3};
+use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::group::Group;
 use super::heads::Heads;
+use crate::axes::Axes;
+use crate::nearest::Nearest;
 
 /// Places whose positions are computed together.
 const TOGETHER: usize = 512;
@@ -40,25 +41,12 @@ pub(super) fn padded(point: &[f64]) -> [f64; 3] {
 }
 
 /// Two directions along the surface at rest, flat: the axes of a plane domain, or where the neighbours lie.
-pub(super) fn tangents_at(
-    tree: Option<&ImmutableKdTree<f64, 3>>,
-    samples: &[[f64; 3]],
-    at: &[f64; 3],
-    inputs: usize,
-) -> Vec<f64> {
+pub(super) fn tangents_at(tree: Option<&Nearest<3>>, samples: &[[f64; 3]], at: &[f64; 3], inputs: usize) -> Vec<f64> {
     const NEIGHBOURS: std::num::NonZero<usize> = std::num::NonZero::new(12).unwrap();
     if inputs == 2 {
         return vec![1.0, 0.0, 0.0, 1.0];
     }
     let Some(tree) = tree else { return vec![0.0; 2 * inputs] };
-    let around = tree.query(at).nearest_n::<SquaredEuclidean<f64>>(NEIGHBOURS).execute();
-    let around: Vec<&[f64; 3]> = around.iter().map(|found| &samples[found.item as usize]).collect();
-    let count = around.len().max(1) as f64;
-    let mean: [f64; 3] = std::array::from_fn(|i| around.iter().map(|p| p[i]).sum::<f64>() / count);
-    let spread: DMatrix<f64> =
-        DMatrix::from_fn(3, 3, |i, j| around.iter().map(|p| (p[i] - mean[i]) * (p[j] - mean[j])).sum());
-    let axes = spread.symmetric_eigen();
-    let mut order = [0, 1, 2];
-    order.sort_by(|&i, &j| axes.eigenvalues[j].total_cmp(&axes.eigenvalues[i]));
-    order[..2].iter().flat_map(|&i| axes.eigenvectors.column(i).iter().copied().collect::<Vec<_>>()).collect()
+    let around: Vec<[f64; 3]> = tree.some(at, NEIGHBOURS).iter().map(|found| samples[found.index]).collect();
+    Axes::of(&around).map_or(vec![0.0; 2 * inputs], |axes| axes.directions[..2].concat())
 }

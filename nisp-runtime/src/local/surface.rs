@@ -7,8 +7,7 @@
 //!
 //! A robust loss is minimised by weights that every step renews.
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
-use nalgebra::{Matrix3, Vector2, Vector3};
+use nalgebra::{Vector2, Vector3};
 use rayon::prelude::*;
 
 use super::block::Block;
@@ -17,6 +16,7 @@ use super::group::Group;
 use super::heads::Heads;
 use super::shape::{Shape, padded, tangents_at};
 use crate::facts::{CloudFacts, spread};
+use crate::nearest::Nearest;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
@@ -42,7 +42,7 @@ pub(super) struct Surface {
     /// Places at rest that the surface is known to have, flat, and their directions along it.
     samples: Vec<f64>,
     tangents: Vec<Vec<f64>>,
-    rest: Option<ImmutableKdTree<f64, 3>>,
+    rest: Option<Nearest<3>>,
     /// Feet, flat; the sample nearest to each.
     feet: Vec<f64>,
     nearest: Vec<usize>,
@@ -93,7 +93,7 @@ impl Surface {
     ) -> Self {
         let cloud: Vec<Vector3<f64>> = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
         let flat: Vec<[f64; 3]> = samples.chunks_exact(inputs).map(padded).collect();
-        let rest = ImmutableKdTree::new_from_slice(&flat).ok();
+        let rest = Nearest::of(&flat);
         let tangents = flat.iter().zip(samples.chunks_exact(inputs));
         let tangents = tangents.map(|(at, _)| tangents_at(rest.as_ref(), &flat, at, inputs)).collect();
         let count = cloud.len();
@@ -293,8 +293,10 @@ impl Surface {
             self.found[i] = self.spreads[i] > EDGE_ON;
             self.normals[i] = normal;
             self.misfits[i] = normal.dot(&(near[0] - self.cloud[i]));
-            let inverse = Matrix3::from_columns(&[a, b, likely.normalize()]).try_inverse()?;
-            self.found[i].then(|| (inverse * (self.cloud[i] - near[0])).xy())
+            // The gap is a step along the surface and the rest along `likely` (Cramer's rule).
+            let (gap, across) = (self.cloud[i] - near[0], b.cross(&likely));
+            let along = Vector2::new(gap.dot(&across), a.dot(&gap.cross(&likely)));
+            self.found[i].then(|| along / a.dot(&across))
         };
         moving.iter().zip(positions.chunks_exact(5)).map(way).collect()
     }
@@ -322,10 +324,10 @@ impl Surface {
             *x += a * tangent[k] + b * tangent[inputs + k];
         }
         let Some(tree) = &self.rest else { return false };
-        let found = tree.query(&padded(&foot)).nearest_one::<SquaredEuclidean<f64>>().execute();
-        self.nearest[i] = found.item as usize;
-        if found.distance.sqrt() > self.reach {
-            let at = found.item as usize * inputs;
+        let found = tree.one(&padded(&foot));
+        self.nearest[i] = found.index;
+        if found.distance > self.reach {
+            let at = found.index * inputs;
             foot.copy_from_slice(&self.samples[at..at + inputs]);
         }
         let own = &mut self.feet[i * inputs..(i + 1) * inputs];
@@ -339,12 +341,8 @@ impl Surface {
         let seen = |x: &Vector3<f64>| self.view.map_or(*x, |view| x - view * view.dot(x));
         let images = shape.positions(&self.samples, self.inputs);
         let images: Vec<[f64; 3]> = images.iter().map(|x| seen(x).into()).collect();
-        let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&images) else { return };
-        let nearest = |y: &Vector3<f64>| {
-            let at: [f64; 3] = seen(y).into();
-            tree.query(&at).nearest_one::<SquaredEuclidean<f64>>().execute().item as usize
-        };
-        self.nearest = self.cloud.iter().map(nearest).collect();
+        let Some(tree) = Nearest::of(&images) else { return };
+        self.nearest = self.cloud.iter().map(|y| tree.one(&seen(y).into()).index).collect();
         let inputs = self.inputs;
         self.feet = self.nearest.iter().flat_map(|&at| self.samples[at * inputs..(at + 1) * inputs].to_vec()).collect();
     }

@@ -1,12 +1,11 @@
 //! What a source may be where no cloud saw the surface. Its prior says that it is zero or well above zero there, but not which of
 //! both. So its deviations are those of a pressure that is as large as patches are, and changes over their size.
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
-
 use super::heads::Heads;
 use super::lattice::Lattice;
 use super::normal::Normal;
 use super::surface::Surface;
+use crate::nearest::Nearest;
 use crate::solve::driver::{Warning, WarningKind};
 
 /// Share of the surface up to which clouds are taken to show all: a rim is hardly ever seen, and nothing presses there.
@@ -36,12 +35,8 @@ impl Unseen {
     pub(super) fn of(surfaces: &[Surface], lattice: &Lattice) -> Option<Self> {
         let feet: Vec<[f64; 3]> = surfaces.iter().flat_map(Surface::found_places).collect();
         let samples: Vec<[f64; 3]> = surfaces.iter().flat_map(Surface::samples).collect();
-        let tree =
-            |places: &[[f64; 3]]| ImmutableKdTree::<f64, 3>::new_from_slice(places).ok().filter(|_| !places.is_empty());
-        let (of_feet, of_samples) = (tree(&feet)?, tree(&samples)?);
-        let from_foot =
-            |place: &[f64; 3]| of_feet.query(place).nearest_one::<SquaredEuclidean<f64>>().execute().distance;
-        let distances: Vec<f64> = samples.iter().map(|place| from_foot(place).sqrt()).collect();
+        let (of_feet, of_samples) = (Nearest::of(&feet)?, Nearest::of(&samples)?);
+        let distances: Vec<f64> = samples.iter().map(|place| of_feet.one(place).distance).collect();
         let mut sorted = distances.clone();
         sorted.sort_by(f64::total_cmp);
         let longest = (0..lattice.dimensions()).max_by_key(|axis| lattice.cells[*axis])?;
@@ -50,8 +45,7 @@ impl Unseen {
         let is_unseen = |distance: f64| distance > 0.5 * patch;
         let share = distances.iter().filter(|distance| is_unseen(**distance)).count() as f64 / distances.len() as f64;
         // Functions whose middle is off the surface are seen as its edge is.
-        let nearest =
-            |at| of_samples.query(&lattice.middle(at)).nearest_one::<SquaredEuclidean<f64>>().execute().item as usize;
+        let nearest = |at| of_samples.one(&lattice.middle(at)).index;
         let functions = (0..lattice.len()).map(|at| is_unseen(distances[nearest(at)])).collect();
         Some(Self { functions, share, nodes }).filter(|unseen| unseen.share > FEW)
     }

@@ -8,7 +8,7 @@ pub mod adam;
 pub mod broyden;
 pub mod curvature;
 mod damping;
-mod dense;
+pub(crate) mod dense;
 pub mod driver;
 pub mod empirical_bayes;
 pub mod evidence;

@@ -1,11 +1,11 @@
 //! What an answer's surface leaves of a cloud: no more than the cloud's own roughness, and without a pattern.
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
 use std::num::NonZero;
 
 use super::patterns::BELOW;
 use super::{Check, root_mean_square};
 use crate::facts::CloudFacts;
+use crate::nearest::{Nearest, Neighbour};
 use crate::problem::Bound;
 use crate::roughness::{middle, roughness};
 
@@ -40,7 +40,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     );
     let mut checks = vec![Check::new("seen", place, (share, LOST), said)];
     let places: Vec<[f64; 3]> = found.iter().map(|(_, place, _)| *place).collect();
-    let Ok(tree) = ImmutableKdTree::<f64, 3>::new_from_slice(&places) else { return checks };
+    let Some(tree) = Nearest::of(&places) else { return checks };
     // Strays count for nothing here: the share of the cloud that they may make up is checked above.
     let typical = middle(found.iter().map(|(.., misfit)| misfit.abs()).collect());
     let is_stray = |misfit: f64| misfit.abs() > STRAY * typical;
@@ -49,7 +49,13 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let tolerance = bound.tolerance(cloud.group, term).map(|tolerance| tolerance.size);
     let within = tolerance.or(term.within.map(|within| within / bound.system.size(&term.unit)));
     let own = found.iter().filter(|(.., misfit)| !is_stray(*misfit)).map(|(point, place, _)| (*point, *place));
-    let rough = within.or_else(|| roughness_of(own.unzip())).unwrap_or(0.0).max(cloud.resolution);
+    let rough = within
+        .or_else(|| {
+            let (points, places): (Vec<_>, Vec<_>) = own.unzip();
+            roughness(&points, &places)
+        })
+        .unwrap_or(0.0)
+        .max(cloud.resolution);
     let said = format!(
         "the surface misses `{}` by {:.2e}{unit} (rms), while the cloud's own roughness is {:.2e}{unit}: check the pose, the \
          unit and the parameters; if they are right, the equations do not describe this body",
@@ -76,18 +82,12 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     checks
 }
 
-/// Roughness of points at places on a surface.
-fn roughness_of((points, places): (Vec<[f64; 3]>, Vec<[f64; 3]>)) -> Option<f64> {
-    roughness(&points, &places, &ImmutableKdTree::new_from_slice(&places).ok()?)
-}
-
 /// Correlation of neighbouring misfits, and the same in its standard deviation under noise.
-fn pattern(places: &[[f64; 3]], misfits: &[f64], tree: &ImmutableKdTree<f64, 3>) -> (f64, f64) {
+fn pattern(places: &[[f64; 3]], misfits: &[f64], tree: &Nearest<3>) -> (f64, f64) {
     let square = misfits.iter().map(|m| m * m).sum::<f64>() / misfits.len().max(1) as f64;
     let (mut sum, mut pairs) = (0.0, 0.0f64);
     for (i, place) in places.iter().enumerate() {
-        for near in tree.query(place).nearest_n::<SquaredEuclidean<f64>>(NEIGHBOURS).execute() {
-            let j = near.item as usize;
+        for Neighbour { index: j, .. } in tree.some(place, NEIGHBOURS) {
             if j != i {
                 sum += misfits[i] * misfits[j];
                 pairs += 1.0;
@@ -114,7 +114,7 @@ mod tests {
         let mut off = || (random.random::<f64>() - 0.5, 1e-2 * normal(&mut random));
         let (places, mut misfits): (Vec<[f64; 3]>, Vec<f64>) =
             (0..3000).map(|_| (off(), off())).map(|((x, misfit), (y, _))| ([x, y, 0.0], misfit)).unzip();
-        let tree = ImmutableKdTree::new_from_slice(&places).unwrap();
+        let tree = Nearest::of(&places).unwrap();
         assert!(pattern(&places, &misfits, &tree).1.abs() < 4.0);
         places.iter().zip(&mut misfits).for_each(|(place, misfit)| *misfit += 1e-2 * place[0]);
         assert!(pattern(&places, &misfits, &tree).1 > PATTERN);

@@ -1,7 +1,10 @@
 //! Whether what is left of a record has a slow course: noise has none, and a fit takes away from what chance makes of it.
 
-use rustfft::FftPlannerScalar;
+use std::sync::Arc;
+
+use rustfft::algorithm::{BluesteinsAlgorithm, Radix4};
 use rustfft::num_complex::Complex;
+use rustfft::{Fft, FftDirection};
 
 /// Modes from here on, as a share of all, are taken for noise.
 const FAST: f64 = 0.5;
@@ -38,7 +41,9 @@ fn powers(values: &[f64]) -> Vec<f64> {
     let there = values.iter().step_by(2);
     let back = values.iter().skip(1).step_by(2).rev();
     let mut waves: Vec<Complex<f64>> = there.chain(back).map(|&value| value.into()).collect();
-    FftPlannerScalar::new().plan_fft_forward(count).process(&mut waves);
+    // Any length by lengths that are powers of two: of all of them a planner would have a kernel compiled for each small prime.
+    let padded = Radix4::new((2 * count).next_power_of_two(), FftDirection::Forward);
+    BluesteinsAlgorithm::new(count, Arc::new(padded)).process(&mut waves);
     let power = |(mode, wave): (usize, Complex<f64>)| {
         let turn = Complex::cis(-std::f64::consts::PI * mode as f64 / (2 * count) as f64);
         (turn * wave).re.powi(2) * if mode == 0 { 1.0 } else { 2.0 } / count as f64

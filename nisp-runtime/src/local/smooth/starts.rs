@@ -1,13 +1,12 @@
 //! A second start where the noise may hide a source (see `start`), and the evidence that chooses.
 
-use nalgebra::DMatrix;
-
 use super::solver::Solver;
 use super::state::{Ended, Phase, State};
 use crate::local::block::Block;
 use crate::local::normal::Factor;
 use crate::noise::{Noise, ObservationNoise};
 use crate::schema::TermKind;
+use crate::solve::dense;
 use crate::start::{self, ENOUGH, QUIETER, ROUGHER};
 
 /// A direction of which less than this is left is settled by measurements alone.
@@ -82,8 +81,10 @@ fn left(rows: &[(&Block, usize)], factor: &Factor, lens: (usize, usize)) -> Opti
         let (block, row) = rows[i];
         block.after(row, &solved[j].0, &solved[j].1) - block.misfits[row]
     };
-    let influence = DMatrix::from_fn(rows.len(), rows.len(), influence);
-    let values = ((&influence + influence.transpose()) * 0.5).symmetric_eigenvalues();
+    // Symmetric, so that columns may stand for rows.
+    let influence: Vec<f64> =
+        (0..rows.len()).flat_map(|j| (0..rows.len()).map(move |i| (i, j))).map(|(i, j)| influence(i, j)).collect();
+    let (values, _) = dense::eigen(&influence, rows.len())?;
     let left: Vec<f64> = values.iter().map(|value| 1.0 - value).filter(|&left| left > SETTLED).collect();
     Some((left.iter().map(|left| left.ln()).sum(), left.len()))
 }
