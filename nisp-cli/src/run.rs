@@ -4,16 +4,24 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 use nisp::network::Architecture;
+use serde_json::json;
 
 use crate::args::{self, Args, Command, Parsed};
 use crate::program::Program;
-use crate::terminal::end;
+use crate::terminal::{end, print};
 use crate::{calibrate, check, eval, explain, list, new, solve, stream};
 
 impl Program {
     /// Does what the command line of the process asks for.
     pub fn run(&self) -> ExitCode {
-        end(self.name, self.ask(std::env::args_os().collect()))
+        let words: Vec<OsString> = std::env::args_os().collect();
+        let is_for_machines = words.iter().any(|word| word == "--json");
+        let result = self.ask(words);
+        if let (true, Err(message)) = (is_for_machines, &result) {
+            // Standard error says it anyway.
+            let _ = print(&format!("{}\n", json!({ "status": "error", "error": message })));
+        }
+        end(self.name, result)
     }
 
     fn ask(&self, words: Vec<OsString>) -> Result<ExitCode, String> {

@@ -29,6 +29,23 @@ fn with_cell(row: usize, cell: &str) -> String {
         + &circuit(60, |r, t, v| if r == row { format!("{t},{cell}\n") } else { format!("{t},{v}\n") })
 }
 
+/// A machine reads standard output alone.
+#[test]
+fn an_object_says_what_was_wrong() {
+    let place = Place::new();
+    for (line, part) in [
+        ("solve rlc --data none.csv --json", "none.csv"),
+        ("solve rlc --budgt 3 --json", "--budgt"),
+        ("eval none.nisp --grid 5 --json", "none.nisp"),
+    ] {
+        let ran = place.run(line);
+        assert_eq!(ran.code, Some(2), "{line}");
+        let object: serde_json::Value = serde_json::from_str(&ran.stdout).unwrap();
+        assert_eq!(object["status"], "error");
+        assert!(object["error"].as_str().unwrap().contains(part) && ran.stderr.contains(part), "{line}: {object}");
+    }
+}
+
 #[test]
 fn columns() {
     says(&refusal("t_s,volt\n0,1\n1,2\n", ""), &["no column for `v` in V", "--column v=volt", "columns: t_s, volt"]);
