@@ -3,6 +3,7 @@
 use nisp::solve::driver::Flow;
 use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 
+mod bounded;
 mod driven;
 mod equations;
 #[expect(deprecated, reason = "a lint says that nothing pins a field, which is what is asked here")]

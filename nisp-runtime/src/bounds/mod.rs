@@ -3,8 +3,10 @@
 //! Programs read a number without bounds, which a network needs: `bound + sign * scale * softplus(number)`, or between two bounds
 //! `lower + (upper - lower) * sigmoid(number)`. It has no inverse at a bound itself, where sources that are often zero are.
 
+mod along;
 mod steps;
 
+pub(crate) use along::{RawAlong, towers};
 pub(crate) use steps::{Bounded, Spring, WALL};
 
 use crate::functions::{sigmoid, softplus};
@@ -68,10 +70,18 @@ pub(crate) fn sizes(bound: &Bound, limits: &[Option<Limits>]) -> (Vec<f64>, Vec<
 /// What of bounded heads is asked for that such carriers cannot give; nothing if they can.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
     let derived = |jet: &schema::Jet| schema.heads[jet.head].transformed && jet.degree.iter().any(|&n| n > 0);
-    if schema.heads.iter().any(|head| head.hard) {
-        return Some("heads with hard conditions");
-    }
-    schema.groups.iter().flat_map(|group| group.jets).any(derived).then_some("derivatives of bounded heads")
+    let is_derived = schema.groups.iter().flat_map(|group| group.jets).any(derived);
+    hard(schema).or_else(|| is_derived.then_some("derivatives of bounded fields"))
+}
+
+/// The same for a carrier over one coordinate.
+pub(crate) fn refused_along(schema: &schema::Scene) -> Option<&'static str> {
+    let is_strange = schema.groups.iter().any(|group| towers(group, |head| schema.heads[head].transformed).is_none());
+    hard(schema).or_else(|| is_strange.then_some("such derivatives of bounded fields"))
+}
+
+fn hard(schema: &schema::Scene) -> Option<&'static str> {
+    schema.heads.iter().any(|head| head.hard).then_some("heads with hard conditions")
 }
 
 impl Limits {

@@ -64,7 +64,9 @@ impl OpenAnswer {
                 let order = jet.operator.iter().flat_map(|(by, _)| by.iter().copied().max()).max().unwrap_or(0).into();
                 let (name, called) = (term.name.to_string(), head.name.to_string());
                 match degrees.as_ref().map(|degrees| degrees[jet.head]) {
-                    Some(_) if order > 0 && head.transformed => return Err(SavedError::Kink { name, head: called }),
+                    Some(_) if order > 0 && head.transformed && (head.source || schema.coordinates.len() > 1) => {
+                        return Err(SavedError::Kink { name, head: called });
+                    }
                     Some(degree) if order > 0 && order >= degree => {
                         return Err(SavedError::Order { name, head: called, order, degree });
                     }

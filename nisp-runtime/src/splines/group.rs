@@ -2,7 +2,7 @@
 
 use super::heads::Heads;
 use super::rows::Bundle;
-use crate::bounds::Raw;
+use crate::bounds::{RawAlong, towers};
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
 use crate::residual::Points;
@@ -27,6 +27,8 @@ pub(super) struct Group {
     lines: Vec<Lines>,
     /// By jet: its derivatives as indices into the lines, with their coefficients.
     operators: Vec<Vec<(usize, f64)>>,
+    /// Jets of bounded heads: values, each with its derivatives behind it.
+    towers: Vec<Vec<usize>>,
 }
 
 /// A derivative of a head's splines at all places, `[place][spline]`.
@@ -84,6 +86,7 @@ impl Group {
             read,
             lines,
             operators,
+            towers: towers(schema, |head| heads.limits[head].is_some()).unwrap_or_default(),
         }
     }
 
@@ -103,12 +106,11 @@ impl Group {
         self.jets(heads, theta).0
     }
 
-    /// The same; also what programs read of values of bounded heads, by jet and place.
-    fn jets(&self, heads: &Heads, theta: &[f64]) -> (Facts, Vec<Vec<Raw>>) {
-        let mut bounded: Vec<Vec<Raw>> = vec![Vec::new(); self.schema.jets.len()];
+    /// The same; also what programs read of bounded heads, by tower and place.
+    fn jets(&self, heads: &Heads, theta: &[f64]) -> (Facts, Vec<Vec<RawAlong>>) {
         let mut jets = vec![0.0; self.schema.jets.len() * self.stride];
         let all = self.schema.jets.iter().zip(&self.operators).zip(jets.chunks_exact_mut(self.stride.max(1)));
-        for (((jet, operator), out), bounded) in all.zip(&mut bounded) {
+        for ((jet, operator), out) in all {
             let width = heads.bases[jet.head].degree + 1;
             for (index, coefficient) in operator {
                 let lines = &self.lines[*index];
@@ -120,18 +122,13 @@ impl Group {
                     *out += offset + factor * sum;
                 }
             }
-            let limits = heads.limits[jet.head].filter(|_| jet.degree.iter().all(|&n| n == 0));
-            if let Some(limits) = limits {
-                for out in &mut out[..self.cells.len()] {
-                    let raw = limits.raw(heads.scale[jet.head], *out);
-                    *out = raw.number;
-                    bounded.push(raw);
-                }
-            }
-            if let Some(last) = self.len().checked_sub(1) {
+        }
+        let bounded = self.towers.iter().map(|tower| self.bound(tower, heads, &mut jets)).collect();
+        if let Some(last) = self.len().checked_sub(1) {
+            jets.chunks_exact_mut(self.stride).for_each(|out| {
                 let last = out[last];
                 out[self.len()..].fill(last);
-            }
+            });
         }
         let facts = Facts {
             points: self.len(),
@@ -142,6 +139,21 @@ impl Group {
             means: Vec::new(),
         };
         (facts, bounded)
+    }
+
+    /// Replaces the jets of a bounded head by what programs read of it.
+    fn bound(&self, tower: &[usize], heads: &Heads, jets: &mut [f64]) -> Vec<RawAlong> {
+        let head = self.schema.jets[tower[0]].head;
+        let Some(limits) = heads.limits[head] else { return Vec::new() };
+        let mut derivatives = Vec::with_capacity(tower.len());
+        let read = |p: usize| {
+            derivatives.clear();
+            derivatives.extend(tower.iter().map(|jet| jets[jet * self.stride + p]));
+            let raw = limits.raw_along(heads.scale[head], &derivatives);
+            tower.iter().zip(raw.numbers).for_each(|(jet, number)| jets[jet * self.stride + p] = number);
+            raw
+        };
+        (0..self.len()).map(read).collect()
     }
 
     /// Values of all rows, and their derivatives by jets and so many learned scalars where they are wanted.
@@ -171,12 +183,15 @@ impl Group {
         let wanted = slopes.or(is_beyond.then_some(0));
         let mut bars: Vec<Vec<f64>> =
             wanted.map(|learned| (0..self.schema.rows).map(|row| bars(row, learned)).collect()).unwrap_or_default();
-        for (jet, bounded) in bounded.iter().enumerate() {
+        let mut by_numbers = Vec::new();
+        for (tower, bounded) in self.towers.iter().zip(&bounded) {
             for (row, bars) in bars.iter_mut().enumerate() {
                 for (p, raw) in bounded.iter().enumerate() {
-                    let bar = &mut bars[jet * self.stride + p];
-                    *bar *= raw.slope;
-                    rows[row * self.stride + p] += *bar * raw.rest;
+                    by_numbers.clear();
+                    by_numbers.extend(tower.iter().map(|jet| bars[jet * self.stride + p]));
+                    let by_head = raw.pull(&by_numbers);
+                    tower.iter().zip(by_head).for_each(|(jet, bar)| bars[jet * self.stride + p] = bar);
+                    rows[row * self.stride + p] += by_head[0] * raw.rest;
                 }
             }
         }

@@ -221,7 +221,14 @@ impl Judged<'_> {
     /// The size of a row if its quantity were as large as elsewhere.
     fn elsewhere(&self, read: &[usize], slopes: &[Vec<f64>], row: usize) -> f64 {
         let half = &self.bound.scaling.half;
-        let sizes = read.iter().map(|&at| {
+        // A bounded field's number runs away near the bound, and its derivatives more so: the parts alone say how large they are.
+        let head = |at: usize| self.schema.jets[at].head;
+        let is_derived = |at: usize| {
+            let mut own = read.iter().filter(|&&other| head(other) == head(at));
+            self.bound.problem.scene().schema.heads[head(at)].transformed
+                && own.any(|&other| !is_value(&self.schema.jets[other]))
+        };
+        let sizes = read.iter().filter(|&&at| !is_derived(at)).map(|&at| {
             let jet = &self.schema.jets[at];
             let head = &self.bound.problem.scene().schema.heads[jet.head];
             let over: f64 = jet.degree.iter().zip(half).map(|(&degree, half)| half.powi(i32::from(degree))).product();

@@ -40,11 +40,11 @@ fn node_size(graph: &mut Graph, id: Id, sizes: &HashMap<Id, Id>) -> Id {
     }
 }
 
-/// Bounded functions are as large as their bound or their argument; others as large as they are.
+/// Functions that are bounded and vanish somewhere are as large as their bound or their argument; others as large as they are.
 fn call_size(graph: &mut Graph, function: Function, x: Id, id: Id, sizes: &HashMap<Id, Id>) -> Id {
     let one = graph.integer(1);
     match function {
-        Function::Cos | Function::Sign | Function::Step | Function::Sigmoid => one,
+        Function::Cos | Function::Sign | Function::Step => one,
         Function::Sin | Function::Tanh | Function::Atan => graph.min(sizes[&x], one),
         Function::Sqrt | Function::Abs => graph.call(function, sizes[&x]),
         _ => graph.call(Function::Abs, id),
