@@ -325,7 +325,8 @@ impl Window {
         (value, self.all.deviation(first, &slopes, &mut self.scratch))
     }
 
-    /// Gives how far each observation of an event is off, over the noise of neighbours.
+    /// Gives how far each observation of an event is off, over the noise of neighbours; over that of the fit where neighbours are
+    /// too far apart to say.
     pub(super) fn misfits(&self, event: &Event, take: &mut dyn FnMut(f64)) {
         let schema = &self.bound.problem.scene().schema.groups[event.group];
         let columns: Vec<Vec<f64>> = event.columns.iter().map(|&x| vec![x]).collect();
@@ -333,11 +334,17 @@ impl Window {
         let mut group = Group::new(schema, self.kernels[event.group], &self.heads, &place, &columns);
         group.begin_at(&place, self.grid.left());
         let found = group.evaluate(&self.heads, &self.theta, &self.weights.scalars, None);
+        let is_there = |column: &usize| !event.columns[*column].is_nan();
         for (number, term) in schema.terms.iter().enumerate().filter(|(_, term)| term.kind == TermKind::Observation) {
-            let Some(noise) = self.weights.noise.of(event.group, number) else { continue };
-            let rows = (term.first..term.first + term.rows).map(|row| found.row(row, 0));
-            let noise = noise.deviation.max(ROUNDING * noise.spread);
-            rows.filter(|misfit| misfit.is_finite()).for_each(|misfit| take(misfit / noise));
+            if !term.columns.iter().all(is_there) {
+                continue;
+            }
+            let told = self.weights.noise.of(event.group, number);
+            let told = told.map(|noise| noise.deviation.max(ROUNDING * noise.spread));
+            for row in term.first..term.first + term.rows {
+                let misfit = found.row(row, 0) / told.unwrap_or(self.weights.sigma[event.group][row]);
+                take(if misfit.is_nan() { f64::INFINITY } else { misfit });
+            }
         }
     }
 }
