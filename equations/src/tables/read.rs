@@ -1,6 +1,6 @@
 //! From a table to the places and the columns of a group.
 
-use nisp::schema::{Group, Scene};
+use nisp::schema::{Column, Group, Scene};
 use nisp_data::Table;
 
 use super::Found;
@@ -73,7 +73,7 @@ fn columns(group: &Group, table: &Table, request: &Request, found: &mut Found) -
     // A quantity without a column of its own is not measured, as long as another one is.
     let is_lacking = |name: &str| group.may_lack(name) && header(request, name).is_none() && table.lacks(name);
     let is_any = group.columns.iter().any(|column| !is_lacking(column.name));
-    gathered(group.columns.iter().map(|c| {
+    let columns = gathered(group.columns.iter().map(|c| {
         if is_any && is_lacking(c.name) {
             let headers = table.headers().collect::<Vec<_>>().join(", ");
             let message = format!("`{}` is not measured: no column answers to it (columns: {headers})", c.name);
@@ -86,7 +86,22 @@ fn columns(group: &Group, table: &Table, request: &Request, found: &mut Found) -
             found.warnings.push(format!("`{}` is not measured in {gaps} of {} rows", c.name, values.len()));
         }
         Ok(values)
-    }))
+    }))?;
+    found.warnings.extend(twins(group, &columns));
+    Ok(columns)
+}
+
+/// What is to be said of two quantities that have the same numbers in all rows: noise alone makes them differ.
+fn twins(group: &Group, columns: &[Vec<f64>]) -> Vec<String> {
+    let is_varied = |values: &[f64]| values.iter().any(|x| x.is_finite() && *x != values[0]);
+    let all = group.columns.iter().zip(columns).enumerate();
+    let of = |(at, (one, values)): (usize, (&Column, &Vec<f64>))| {
+        let later = group.columns.iter().zip(columns).skip(at + 1);
+        let other = later.into_iter().find(|(_, other)| *other == values && is_varied(values))?.0;
+        let (one, other) = (one.name, other.name);
+        Some(format!("`{one}` and `{other}` have the same numbers in every row: is one column taken for both?"))
+    };
+    all.filter_map(of).collect()
 }
 
 /// The header that the user chose for a name; the last word counts.

@@ -12,6 +12,7 @@ mod text;
 mod thin;
 mod view;
 
+use std::collections::HashSet;
 use std::path::Path;
 
 pub use camera::Camera;
@@ -72,10 +73,10 @@ impl Cloud {
         Ok(Cloud { is_in_metres: true, ..Cloud::finite(path, camera.points(image))? })
     }
 
-    /// Drops points that are not finite, and counts them. A cloud of none is an error.
+    /// Drops points that are not finite or were there before, and counts them. A cloud of none is an error.
     fn finite(path: &Path, points: Vec<[f64; 3]>) -> Result<Cloud, DataError> {
         let all = points.len();
-        let kept: Vec<[f64; 3]> = points.into_iter().filter(|point| point.iter().all(|x| x.is_finite())).collect();
+        let mut kept: Vec<[f64; 3]> = points.into_iter().filter(|point| point.iter().all(|x| x.is_finite())).collect();
         if kept.is_empty() {
             let what = match all {
                 0 => "the cloud has no points; record it again".to_string(),
@@ -87,6 +88,14 @@ impl Cloud {
         let mut warnings = Vec::new();
         if dropped > 0 {
             warnings.push(format!("{}: {dropped} of {all} points were not finite and left out", path.display()));
+        }
+        // A point that is there twice would count as two, and its noise as what two agree upon.
+        let finite = kept.len();
+        let mut seen = HashSet::with_capacity(finite);
+        kept.retain(|point| seen.insert(point.map(|x| (x + 0.0).to_bits())));
+        if kept.len() < finite {
+            let copies = finite - kept.len();
+            warnings.push(format!("{}: {copies} of {all} points are copies of others and left out", path.display()));
         }
         Ok(Cloud { points: kept, warnings, is_in_metres: false })
     }

@@ -62,6 +62,9 @@ fn text_with_and_without_header() {
     let holes = read("a.csv", b"x,y,z\n1,2,nan\n1,2,3\ninf,0,0\n");
     assert_eq!(holes.points, [[1.0, 2.0, 3.0]]);
     assert_eq!(holes.warnings, ["a.csv: 2 of 3 points were not finite and left out"]);
+    let copied = read("a.csv", b"x,y,z\n1,2,3\n0,4,5\n1,2,3\n-0,4,5\n");
+    assert_eq!(copied.points, [[1.0, 2.0, 3.0], [0.0, 4.0, 5.0]]);
+    assert_eq!(copied.warnings, ["a.csv: 2 of 4 points are copies of others and left out"]);
     assert!(refusal("a.csv", b"x,y\n1,2\n3,4\n").contains("no column for `z`"));
     assert!(refusal("a.xyz", b"1 2 3\n1 2\n").contains("line 2: 2 cells where the rows above have 3"));
     assert!(refusal("a.xyz", b"nan nan nan\n").contains("none of the 1 points is finite"));

@@ -80,7 +80,7 @@ impl FixedLagSmoother {
     /// A scene that splines over one coordinate do not do, or that observes nothing.
     pub fn new(problem: Problem, settings: LagSettings) -> Result<Self, LiveError> {
         let schema = problem.scene().schema;
-        let bounded = schema.heads.iter().any(|head| head.transformed).then_some("bounded heads");
+        let bounded = schema.heads.iter().any(|head| head.transformed).then_some("bounds of fields and sources");
         if let Some(what) = super::super::refused(schema).or(bounded) {
             return Err(LiveError::Scene(what));
         }
