@@ -235,7 +235,7 @@ pub(crate) struct Options {
     /// Folder whose checkpoint.nisp to go on from, with the same scene, data and method.
     #[arg(long, value_name = "DIR", help_heading = RESULTS)]
     pub(crate) resume: Option<PathBuf>,
-    /// One JSON object on standard output, and nothing else there; of bad input `{"status": "error", "error": MESSAGE}`.
+    /// One JSON object on standard output, and nothing else there.
     #[arg(long, help_heading = RESULTS)]
     pub(crate) json: bool,
 }

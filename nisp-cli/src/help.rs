@@ -70,7 +70,7 @@ from now, --iterations from the first start. A checkpoint that is damaged or of 
 
 Exit codes:
   0  the answer passes all checks (status `converged`, or `budget` where the time was spent)
-  2  bad input; nothing was written
+  2  bad input; nothing was written (--json: an object whose `status` is error, with the message as `error`)
   3  a check failed (status `inconsistent` or `budget`), not converged or interrupted (`not_converged`);
      the best state was written
   4  the results could not be written to the folder of --out, or to standard output";
