@@ -145,8 +145,9 @@ fn the_repository_data_reads() {
 
 #[test]
 fn headers_that_speak_of_no_known_unit_are_not_taken_for_another() {
-    let table = parse("t (Min),T [kelvins],u [furlong],v (measured)\n0,20,1,2\n1,21,2,3\n");
+    let table = parse("t (Min),T [kelvins],u [furlong],v (measured),w [in]\n0,20,1,2,3\n1,21,2,3,4\n");
     let fault = |name: &str, header: &str, unit: &str| table.chosen(name, header, unit).unwrap_err().to_string();
+    assert!(fault("w", "w [in]", "mm").contains("is `inch` meant?"), "{}", fault("w", "w [in]", "mm"));
     assert!(fault("t", "t (Min)", "s").contains("is `min` meant?"), "{}", fault("t", "t (Min)", "s"));
     assert!(fault("u", "u [furlong]", "m").contains("no such unit is known"));
     assert_eq!(table.chosen("v", "v (measured)", "m").unwrap(), [2.0, 3.0]);

@@ -57,6 +57,7 @@ fn a_new_equation_already_solves() {
     assert!(error < 0.02 * size, "{errors}");
     let again = place.run("new cup");
     assert!(again.code == Some(2) && again.stderr.contains("cup is there already"), "{}", again.stderr);
+    assert!(place.run("new move --rust").stderr.contains("a word of Rust"));
     assert!(place.run("new 3d").stderr.contains("letters, digits and underscores"));
 }
 

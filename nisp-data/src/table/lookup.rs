@@ -79,6 +79,7 @@ impl Table {
         let instead = match own.trim() {
             unit if is_unit(unit) => "choose another column, or correct the header".into(),
             unit if is_unit(&unit.to_lowercase()) => format!("is `{}` meant? correct the header", unit.to_lowercase()),
+            "in" => "is `inch` meant? correct the header".into(),
             unit => {
                 format!("no such unit is known: put it into one that is, or correct the header if `{unit}` is none")
             }

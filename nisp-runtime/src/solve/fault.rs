@@ -26,13 +26,16 @@ pub enum Kind {
     /// A matrix that should be positive definite is not, even with the largest damping.
     #[error("the normal matrix cannot be factorised")]
     Factorisation,
+    /// Rows whose triangle has no finite solution.
+    #[error("the rows cannot be solved in double precision")]
+    Unsolved,
     /// A saved state does not belong to this solver, this version or this number of parameters.
     #[error("the saved state does not fit")]
     State,
 }
 
 impl Kind {
-    const ALL: [Self; 4] = [Self::Residual, Self::Gradient, Self::Factorisation, Self::State];
+    const ALL: [Self; 5] = [Self::Residual, Self::Gradient, Self::Factorisation, Self::Unsolved, Self::State];
 
     /// Name in saved states.
     pub(super) fn code(self) -> &'static str {
@@ -40,6 +43,7 @@ impl Kind {
             Self::Residual => "residual",
             Self::Gradient => "gradient",
             Self::Factorisation => "factorisation",
+            Self::Unsolved => "unsolved",
             Self::State => "state",
         }
     }
@@ -58,6 +62,7 @@ impl Kind {
             Self::Factorisation => {
                 "; give every learned parameter a width (`learn k within 0.1;`) or a term that depends on it"
             }
+            Self::Unsolved => "; check the units of the data and the parameters",
             Self::State => "; start afresh, or give the settings that the state was saved with",
         }
     }
@@ -72,6 +77,11 @@ impl Fault {
     /// A non-finite derivative of `term` at `point`.
     pub fn gradient(term: impl Into<String>, point: Option<usize>) -> Self {
         Self { term: term.into(), point, what: Kind::Gradient }
+    }
+
+    /// Rows of `rows` that have no finite solution.
+    pub fn unsolved(rows: impl Into<String>) -> Self {
+        Self { term: rows.into(), point: None, what: Kind::Unsolved }
     }
 
     /// A saved state that does not fit; `entry` names the part that is missing or has the wrong size.

@@ -199,7 +199,7 @@ impl Window {
         self.all.add_all(staying.walk());
         let from = self.first(from);
         if !self.all.solve_from(from, &mut self.step) {
-            return Err(Fault::state("window"));
+            return Err(Fault::unsolved("the latest rows"));
         }
         let mut change = 0.0_f64;
         for at in from..self.theta.len() {
