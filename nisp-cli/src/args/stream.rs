@@ -144,6 +144,6 @@ Ctrl-C or SIGTERM ends the stream after the frame or row at hand; of a record th
 
 Exit codes:
   0  frames or rows have ended, or the stream was interrupted
-  2  bad options
+  2  bad options, or no frame was a cloud of the sensor
   3  the rows do not determine an answer
   4  answers or maps could not be written";

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
-use crate::terminal::{NOT_WRITTEN, note};
+use crate::terminal::{BAD_INPUT, NOT_WRITTEN, note};
 use crate::{interrupt, processors};
 use nisp::solve::driver::Flow;
 use nisp::{RecoverError, Session, Settings, Solution};
@@ -33,6 +33,7 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
     let view = view(options.unit, options.camera.as_deref()).map_err(|error| error.to_string())?;
     let frames = input::frames(&options.from, view)?;
     let mut sensor = None;
+    let (mut answered, mut refused) = (0, 0);
     while let Some((frame, dropped)) = frames.take() {
         let Frame { name, came, parameters, cloud, live } = frame;
         // What was recorded waits for its turn.
@@ -41,6 +42,7 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
             Ok(cloud) => see(&mut sensor, entry, options, (&name, parameters, cloud))?,
             Err(error) => Err(error),
         };
+        *(if seen.is_ok() { &mut answered } else { &mut refused }) += 1;
         let head = Head {
             frame: &name,
             t: (came - start).as_secs_f64(),
@@ -61,7 +63,8 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
             Err(message) => return Ok(not_written(&message)),
         }
     }
-    Ok(ExitCode::SUCCESS)
+    // Frames of which none is one are bad input, as a single one is.
+    Ok(ExitCode::from(if answered == 0 && refused > 0 { BAD_INPUT } else { 0 }))
 }
 
 pub(super) fn not_written(message: &str) -> ExitCode {

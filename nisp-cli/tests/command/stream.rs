@@ -28,6 +28,16 @@ fn force(line: &Value) -> f64 {
     force.sum::<f64>().sqrt()
 }
 
+#[test]
+fn frames_of_which_none_is_a_cloud_are_bad_input() {
+    let place = Place::new();
+    place.put("f_1.ply", "no cloud");
+    place.put("f_2.ply", "no cloud either");
+    let ran = place.run(&format!("{} --frames f_*.ply", membrane("flower_1.toml")));
+    assert_eq!(ran.code, Some(2), "{}", ran.stderr);
+    assert!(lines(&ran.stdout).len() == 2 && lines(&ran.stdout).iter().all(|line| line["status"] == "error"));
+}
+
 /// The sample's truth: 8.69 N on a patch of 426 square millimetres at rest.
 #[test]
 fn files_of_a_pattern_are_all_answered_and_a_bad_one_is_named() {
