@@ -3,9 +3,11 @@
 //! Programs read a number without bounds, which a network needs: `bound + sign * scale * softplus(number)`, or between two bounds
 //! `lower + (upper - lower) * sigmoid(number)`. It has no inverse at a bound itself, where sources that are often zero are.
 
+mod across;
 mod along;
 mod steps;
 
+pub(crate) use across::{Across, Slopes};
 pub(crate) use along::{RawAlong, towers};
 pub(crate) use steps::{Bounded, Spring, WALL};
 
@@ -69,9 +71,9 @@ pub(crate) fn sizes(bound: &Bound, limits: &[Option<Limits>]) -> (Vec<f64>, Vec<
 
 /// What of bounded heads is asked for that such carriers cannot give; nothing if they can.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
-    let derived = |jet: &schema::Jet| schema.heads[jet.head].transformed && jet.degree.iter().any(|&n| n > 0);
-    let is_derived = schema.groups.iter().flat_map(|group| group.jets).any(derived);
-    hard(schema).or_else(|| is_derived.then_some("derivatives of bounded fields"))
+    let is_strange =
+        schema.groups.iter().any(|group| Across::all(group, |head| schema.heads[head].transformed).is_none());
+    hard(schema).or_else(|| is_strange.then_some("such derivatives of bounded fields"))
 }
 
 /// The same for a carrier over one coordinate.

@@ -7,20 +7,19 @@ use super::heads::Heads;
 use super::lattice::{Exponents, contracted};
 use super::rows::Evaluated;
 use super::sites::Sites;
-use crate::bounds::Raw;
+use crate::bounds::{Across, Limits, Slopes};
 use crate::facts::Facts;
 use crate::residual::Points;
 use crate::simd::Isa;
 
 impl Group {
-    /// Jets at points, `[jet][point]`, from [`Group::spread`]; of values of bounded heads, by jet and point, what
-    /// a program reads.
-    pub(super) fn jets_at(&self, sites: &Sites, heads: &Heads, spread: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<Raw>>) {
+    /// Jets at points, `[jet][point]`, from [`Group::spread`]; of bounded heads what programs read, and by tower and point how it
+    /// follows the head.
+    pub(super) fn jets_at(&self, sites: &Sites, heads: &Heads, spread: &[Vec<f64>]) -> (Vec<f64>, Vec<Vec<Slopes>>) {
         let stride = sites.stride;
         let count = self.schema.jets.len();
         let mut jets = vec![0.0; count * stride];
-        let mut bounded: Vec<Vec<Raw>> = vec![Vec::new(); count];
-        jets.par_chunks_mut(stride).zip(&mut bounded).enumerate().for_each(|(at, (jets, bounded))| {
+        jets.par_chunks_mut(stride).enumerate().for_each(|(at, jets)| {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
             let is_value = jet.degree.iter().all(|&n| n == 0);
             let (splines, lattice) = (&sites.splines[jet.head], &heads.lattices[jet.head]);
@@ -33,16 +32,16 @@ impl Group {
                     coefficient * contracted(cell, &lines, &across, along)
                 };
                 let offset = if is_value { heads.offset[jet.head] } else { 0.0 };
-                let value = offset + heads.scale[jet.head] * operator.iter().map(term).sum::<f64>();
-                *out = match heads.limits[jet.head].filter(|_| is_value) {
-                    Some(limits) => {
-                        let raw = limits.raw(heads.scale[jet.head], value);
-                        bounded.push(raw);
-                        raw.number
-                    }
-                    None => value,
-                };
+                *out = offset + heads.scale[jet.head] * operator.iter().map(term).sum::<f64>();
             }
+        });
+        let bounded = self.towers.iter().filter_map(|tower| Some((tower, heads.limits[tower.head]?)));
+        let read = |(tower, limits): (&Across, Limits)| {
+            let of = |p: usize| tower.read(limits, heads.scale[tower.head], &mut jets, |jet| jet * stride + p);
+            (0..sites.count).map(of).collect()
+        };
+        let bounded = bounded.map(read).collect();
+        jets.chunks_exact_mut(stride).for_each(|jets| {
             let last = jets[sites.count - 1];
             jets[sites.count..].fill(last);
         });
@@ -77,7 +76,7 @@ impl Group {
         };
         let mut rows = vec![0.0; self.schema.rows * stride];
         self.kernel.programs.residual(Isa::detect(), points, &mut rows);
-        let straight = bounded.iter().flatten().all(|raw| raw.rest == 0.0);
+        let straight = bounded.iter().flatten().all(|slopes| slopes.rest == 0.0);
         if !slopes && straight {
             return Evaluated { stride, rows, bars: Vec::new() };
         }
@@ -91,12 +90,10 @@ impl Group {
                 bars
             })
             .collect();
-        for (jet, bounded) in bounded.iter().enumerate() {
+        for (tower, bounded) in self.towers.iter().zip(&bounded) {
             for (row, bars) in bars.iter_mut().enumerate() {
-                for (p, raw) in bounded.iter().enumerate() {
-                    let bar = &mut bars[jet * stride + p];
-                    *bar *= raw.slope;
-                    rows[row * stride + p] += *bar * raw.rest;
+                for (p, slopes) in bounded.iter().enumerate() {
+                    rows[row * stride + p] += slopes.rest * tower.pull(slopes, &jets, bars, |jet| jet * stride + p);
                 }
             }
         }

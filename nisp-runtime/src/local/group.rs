@@ -13,6 +13,7 @@ use super::lattice::{Exponents, Lattice, Span};
 use super::rows::Evaluated;
 use super::sites::Sites;
 use super::testing::{Test, tests};
+use crate::bounds::Across;
 use crate::kernel::GroupKernel;
 use crate::loss::Loss;
 use crate::schema::{self, TermKind};
@@ -23,6 +24,8 @@ pub(super) struct Group {
     pub(super) kernel: GroupKernel<f64>,
     pub(super) sites: Sites,
     pub(super) operators: Vec<Vec<(Exponents, f64)>>,
+    /// The jets of bounded heads.
+    pub(super) towers: Vec<Across>,
     /// By row: what it is divided by.
     pub(super) sigma: Vec<f64>,
     /// By row: derivatives of that divisor's logarithm by the learned scalars; empty if it goes with none.
@@ -75,7 +78,8 @@ impl Group {
         for (term, loss) in schema.terms.iter().zip(terms) {
             losses[term.first..term.first + term.rows].fill((*loss, term.weight));
         }
-        Self { schema, kernel, operators, sigma, growth, losses, sites, weights, tests, degree, highest }
+        let towers = Across::all(schema, |head| heads.limits[head].is_some()).unwrap_or_default();
+        Self { schema, kernel, operators, towers, sigma, growth, losses, sites, weights, tests, degree, highest }
     }
 
     /// Other points than the group's own, without columns.
