@@ -12,7 +12,7 @@ nisp::pde! {
     mod prey {
         units: off;
         coordinates: t;
-        fields: x > 0, y > 0;
+        fields: x, y;
         sources: h;
         parameters: a = 1, b = 0.5, c = 0.3, e = 0.6;
         on course {
