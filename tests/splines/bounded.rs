@@ -80,6 +80,14 @@ fn a_field_that_touches_its_bound_has_the_source_of_its_derivative() {
     assert!((0..at.len()).filter(|&i| off(i) < 2.0 * bars[i]).count() >= 52);
     assert!((0..at.len()).all(|i| off(i) < 0.12), "{:?}", (0..at.len()).map(off).fold(0.0, f64::max));
     assert!(of(&answer, "h").values.iter().all(|&h| h > -1e-3));
+    // What a saved answer says of the derivative closes the balance too, where there is something of either.
+    let saved = right.saved().unwrap();
+    let (read, names) = nisp_interpreter::ask(&saved, "d(h, t) + k * h").unwrap();
+    let all = read.evaluate(&at);
+    let sums = &of(&all, &names[0]).values;
+    assert!(sums.iter().zip(found).all(|(sum, q)| (sum - q).abs() < 2e-3), "{sums:?} {found:?}");
+    let error = nisp_interpreter::ask(&saved, "h_ttttt").err().unwrap().to_string();
+    assert!(error.contains("`h`") && !error.contains("kink"), "{error}");
 }
 
 /// `x = 0.99 sin(t)` comes within a hundredth of both walls; the force is `3 x`.

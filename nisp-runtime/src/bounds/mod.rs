@@ -71,19 +71,21 @@ pub(crate) fn sizes(bound: &Bound, limits: &[Option<Limits>]) -> (Vec<f64>, Vec<
 
 /// What of bounded heads is asked for that such carriers cannot give; nothing if they can.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
-    let is_strange =
-        schema.groups.iter().any(|group| Across::all(group, |head| schema.heads[head].transformed).is_none());
-    hard(schema).or_else(|| is_strange.then_some("such derivatives of bounded fields"))
+    if schema.heads.iter().any(|head| head.hard) {
+        return Some("fields with hard conditions");
+    }
+    let mut groups = schema.groups.iter().chain([&schema.outputs]);
+    groups.any(|group| !are_derived(group, schema)).then_some("such derivatives of bounded fields")
 }
 
-/// The same for a carrier over one coordinate.
-pub(crate) fn refused_along(schema: &schema::Scene) -> Option<&'static str> {
-    let is_strange = schema.groups.iter().any(|group| towers(group, |head| schema.heads[head].transformed).is_none());
-    hard(schema).or_else(|| is_strange.then_some("such derivatives of bounded fields"))
-}
-
-fn hard(schema: &schema::Scene) -> Option<&'static str> {
-    schema.heads.iter().any(|head| head.hard).then_some("heads with hard conditions")
+/// True if such carriers have all derivatives of bounded heads that a group reads: of orders up to the fourth over one coordinate, and
+/// up to the second over several.
+pub(crate) fn are_derived(group: &schema::Group, schema: &schema::Scene) -> bool {
+    let is_bounded = |head: usize| schema.heads[head].transformed;
+    match schema.coordinates {
+        [_] => towers(group, is_bounded).is_some(),
+        _ => Across::all(group, is_bounded).is_some(),
+    }
 }
 
 impl Limits {

@@ -112,6 +112,16 @@ pub enum SavedError {
         /// The head.
         head: String,
     },
+    /// A derivative of so high an order of a field with bounds.
+    #[error(
+        "`{name}` needs a derivative of `{head}`, a field with bounds, of an order that splines do not give: ask for lower ones"
+    )]
+    Bounded {
+        /// What was asked for.
+        name: String,
+        /// The head.
+        head: String,
+    },
     /// A scene without the text of its equation.
     #[error("the scene does not know the text of its equation, without which an answer cannot be read")]
     NoText,

@@ -3,6 +3,7 @@
 use super::extent::Extent;
 use super::kept::restored;
 use super::{SavedAnswer, SavedError, fingerprint};
+use crate::bounds::are_derived;
 use crate::carrier::{Estimate, Kept, Outputs};
 use crate::engine::{Learned, LearnedMap, Scaling};
 use crate::kernel::SceneRef;
@@ -64,8 +65,11 @@ impl OpenAnswer {
                 let order = jet.operator.iter().flat_map(|(by, _)| by.iter().copied().max()).max().unwrap_or(0).into();
                 let (name, called) = (term.name.to_string(), head.name.to_string());
                 match degrees.as_ref().map(|degrees| degrees[jet.head]) {
-                    Some(_) if order > 0 && head.transformed && (head.source || schema.coordinates.len() > 1) => {
+                    Some(_) if order > 0 && head.transformed && head.source => {
                         return Err(SavedError::Kink { name, head: called });
+                    }
+                    Some(_) if head.transformed && !are_derived(&schema.outputs, schema) => {
+                        return Err(SavedError::Bounded { name, head: called });
                     }
                     Some(degree) if order > 0 && order >= degree => {
                         return Err(SavedError::Order { name, head: called, order, degree });

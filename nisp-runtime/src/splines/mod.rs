@@ -71,7 +71,7 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
         (terms().any(|term| matches!(term.kind, TermKind::Chamfer { .. })), "clouds"),
         (cells::degrees(schema).is_none(), "derivatives of such an order"),
     ];
-    refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what).or_else(|| bounds::refused_along(schema))
+    refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what).or_else(|| bounds::refused(schema))
 }
 
 /// Why splines cannot solve a problem.
