@@ -21,9 +21,8 @@ pub(crate) fn new(name: &str, rust: bool) -> Result<ExitCode, String> {
             "`{name}` is no name for an equation; use letters, digits and underscores, a letter first"
         ));
     }
-    // As the equation of a crate it names a module.
-    if rust && nisp_interpreter::read(&format!("mod {name} {{ {EQUATION} }}"), name).is_err() {
-        return Err(format!("`{name}` is a word of Rust; choose another name"));
+    if nisp_interpreter::read(&EQUATION.replace(NAME, name), name).is_err() {
+        return Err(format!("`{name}` is a word of Rust and can name no equation; choose another name"));
     }
     if Path::new(name).exists() {
         return Err(format!("{name} is there already; choose another name"));
