@@ -2,18 +2,13 @@
 
 use std::num::NonZero;
 
-use kiddo::{ImmutableKdTree, SquaredEuclidean};
+use kdtree::KdTree;
+use kdtree::distance::squared_euclidean;
 
-/// Most coordinates of a point.
-pub const MOST: usize = 4;
-
-/// Points of up to [`MOST`] coordinates, to be searched.
-///
-/// One tree serves any number of coordinates: a point of fewer repeats its own, each divided by the root of how often it is
-/// there, which leaves distances as they are. A build has one search to compile then, and no coordinate divides nothing.
+/// Points to be searched.
 #[derive(Debug)]
 pub struct Nearest<const D: usize> {
-    tree: ImmutableKdTree<f64, MOST>,
+    tree: KdTree<f64, usize, [f64; D]>,
 }
 
 /// A point that was found.
@@ -28,41 +23,28 @@ pub struct Neighbour {
 impl<const D: usize> Nearest<D> {
     /// Builds the tree; nothing where there is no point, or one that is not finite.
     pub fn of(points: &[[f64; D]]) -> Option<Self> {
-        let repeated: Vec<[f64; MOST]> = points.iter().map(repeated).collect();
-        tree(&repeated).map(|tree| Self { tree })
+        let mut tree = KdTree::new(D);
+        for (index, point) in points.iter().enumerate() {
+            tree.add(*point, index).ok()?;
+        }
+        (tree.size() > 0).then_some(Self { tree })
     }
 
-    /// The nearest point; where the place is not finite, the first one, at a distance of `NaN`.
+    /// The nearest point; where the place is so far away that squares overflow, the first one, at an infinite distance; where it
+    /// is not finite, the first one, at a distance of `NaN`.
     pub fn one(&self, place: &[f64; D]) -> Neighbour {
         let found = self.some(place, NonZero::<usize>::MIN);
-        found.first().copied().unwrap_or(Neighbour { index: 0, distance: f64::NAN })
+        found.first().copied().unwrap_or_else(|| {
+            let finite = place.iter().all(|x| x.is_finite());
+            Neighbour { index: 0, distance: if finite { f64::INFINITY } else { f64::NAN } }
+        })
     }
 
-    /// So many of the nearest points, the nearest first; all if there are fewer, none where the place is not finite.
+    /// So many of the nearest points, the nearest first; all if there are fewer, none where squares overflow.
     pub fn some(&self, place: &[f64; D], count: NonZero<usize>) -> Vec<Neighbour> {
-        nearest(&self.tree, &repeated(place), count)
+        let found = self.tree.nearest(place, count.get(), &squared_euclidean).unwrap_or_default();
+        found.into_iter().map(|(square, &index)| Neighbour { index, distance: square.sqrt() }).collect()
     }
-}
-
-fn repeated<const D: usize>(point: &[f64; D]) -> [f64; MOST] {
-    const { assert!(0 < D && D <= MOST) };
-    let times = |axis: usize| (MOST - axis).div_ceil(D) as f64;
-    std::array::from_fn(|slot| point[slot % D] / times(slot % D).sqrt())
-}
-
-fn tree(points: &[[f64; MOST]]) -> Option<ImmutableKdTree<f64, MOST>> {
-    if points.is_empty() || !points.as_flattened().iter().all(|x| x.is_finite()) {
-        return None;
-    }
-    ImmutableKdTree::new_from_slice(points).ok()
-}
-
-fn nearest(tree: &ImmutableKdTree<f64, MOST>, place: &[f64; MOST], count: NonZero<usize>) -> Vec<Neighbour> {
-    if !place.iter().all(|x| x.is_finite()) {
-        return Vec::new();
-    }
-    let found = tree.query(place).nearest_n::<SquaredEuclidean<f64>>(count).execute();
-    found.iter().map(|found| Neighbour { index: found.item as usize, distance: found.distance.sqrt() }).collect()
 }
 
 #[cfg(test)]

@@ -3,7 +3,6 @@
 use super::assign::{self, Assignment};
 use super::form::Form;
 use crate::loss::Loss;
-use crate::nearest::MOST;
 
 /// How the distances between a surface and its cloud count.
 #[derive(Clone, Copy)]
@@ -44,7 +43,7 @@ pub(super) fn fit(cloud: &[f64], dimensions: usize, points: usize, measure: Meas
     Some(match dimensions {
         2 => Box::new(Fitted::<2>::new(cloud, points, measure)?),
         3 => Box::new(Fitted::<3>::new(cloud, points, measure)?),
-        MOST => Box::new(Fitted::<MOST>::new(cloud, points, measure)?),
+        4 => Box::new(Fitted::<4>::new(cloud, points, measure)?),
         _ => return None,
     })
 }
