@@ -1,11 +1,13 @@
 //! Records as they come: a fixed-lag smoother over one coordinate.
 //!
 //! The same splines, equations and priors as for a whole record, on a window of cells that moves along with it
-//! ([`window`](self)). The first rows are solved as a whole: they say how large the noise is, how smooth the sources are, and
-//! after which lag a longer wait would tell little more. Later parts of the record are asked again, on a thread of their own.
+//! ([`window`](self)). The first rows are solved as a whole: they have their answers from there, and say how large the noise is,
+//! how smooth the sources are, and after which lag a longer wait would tell little more. Later parts of the record are asked
+//! again, on a thread of their own.
 
 mod evidence;
 mod grid;
+mod opening;
 mod record;
 mod smoother;
 mod window;

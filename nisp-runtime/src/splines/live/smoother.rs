@@ -5,6 +5,7 @@ use std::thread::{self, JoinHandle};
 
 use super::evidence::{Stretch, Weights};
 use super::grid::Grid;
+use super::opening::Opening;
 use super::record::{Layout, MeasuredRow};
 use super::window::{Event, Known, Window};
 use super::{LagSettings, LiveError, RowColumn, Smoothed};
@@ -50,6 +51,8 @@ pub struct FixedLagSmoother {
 /// Rows under way.
 struct Live {
     window: Window,
+    /// The answer to the first rows, while one of them waits.
+    opening: Option<Opening>,
     /// From declared units to the engine's: of the coordinate, and of each column.
     inward: (f64, Vec<f64>),
     outward: Vec<f64>,
@@ -121,7 +124,7 @@ impl FixedLagSmoother {
         }
         self.waiting.push(MeasuredRow { at, values: values.to_vec() });
         if self.waiting.len() >= self.settings.first_rows.max(FEWEST) {
-            found.extend(self.begin()?);
+            found.extend(self.begin(false)?);
         }
         Ok(found)
     }
@@ -136,7 +139,7 @@ impl FixedLagSmoother {
             if self.waiting.len() < FEWEST {
                 return Err(LiveError::FewRows { rows: self.waiting.len(), least: FEWEST });
             }
-            found = self.begin()?;
+            found = self.begin(true)?;
         }
         found.extend(self.live.as_mut().map_or_else(Vec::new, Live::finish));
         Ok(found)
@@ -160,11 +163,12 @@ impl FixedLagSmoother {
         }
     }
 
-    /// Finds noise, smoothness and lag from the rows that wait, and answers them.
-    fn begin(&mut self) -> Result<Vec<Smoothed>, LiveError> {
+    /// Finds noise, smoothness and lag from the rows that wait, and answers them: all of them that no later row tells more of.
+    fn begin(&mut self, has_ended: bool) -> Result<Vec<Smoothed>, LiveError> {
         let rows = std::mem::take(&mut self.waiting);
         let bound = self.layout.bound(&self.problem, &rows)?;
-        let stretch = Stretch::solve(&bound, None)?;
+        let (stretch, opening) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
+        let stretch = stretch?;
         let schema = self.problem.scene().schema;
         let system = bound.system;
         let by = system.inward(&schema.coordinates[0].unit);
@@ -203,6 +207,7 @@ impl FixedLagSmoother {
         window.guess(&known);
         let mut live = Live {
             window,
+            opening: opening.map(|opening| opening.until(if has_ended { end } else { end - lag })),
             inward,
             outward,
             lag,
@@ -233,9 +238,9 @@ struct Nearby {
 }
 
 impl Nearby {
-    fn count_up(&mut self, window: &Window, pending: &VecDeque<(f64, Vec<Event>)>) {
+    fn count_up(&mut self, answers: (&Window, Option<&Opening>), pending: &VecDeque<(f64, Vec<Event>)>) {
         for (_, events) in pending.iter().take(self.ahead + 1).skip(self.counted) {
-            count(window, events, &mut self.square, (NEARBY, LARGEST_NEARBY));
+            count(answers, events, &mut self.square, (NEARBY, LARGEST_NEARBY));
             self.counted += 1;
         }
     }
@@ -339,14 +344,17 @@ impl Live {
     }
 
     fn answer_next(&mut self) -> Option<Smoothed> {
+        let next = self.pending.front()?.0;
+        self.opening.take_if(|opening| !opening.answers(next));
+        let (window, opening) = (&mut self.window, self.opening.as_ref());
         for nearby in &mut self.nearby {
-            nearby.count_up(&self.window, &self.pending);
+            nearby.count_up((window, opening), &self.pending);
         }
         let (at, events) = self.pending.pop_front()?;
         self.nearby.iter_mut().for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
-        count(&self.window, &events, &mut self.square, (LOOKED_BACK, LARGEST_SQUARE));
+        count((window, opening), &events, &mut self.square, (LOOKED_BACK, LARGEST_SQUARE));
         let read = |(head, outward): (usize, &f64)| {
-            let (value, deviation) = self.window.read(head, at);
+            let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
             (value * outward, deviation * outward)
         };
         let heads = self.outward.iter().enumerate().map(read).collect();
@@ -388,9 +396,15 @@ impl Live {
 }
 
 /// Counts the misfits of a row's values in a running mean of their squares over so many values, none larger than that.
-fn count(window: &Window, events: &[Event], mean: &mut f64, (values, largest): (f64, f64)) {
+fn count(
+    (window, opening): (&Window, Option<&Opening>),
+    events: &[Event],
+    mean: &mut f64,
+    (values, largest): (f64, f64),
+) {
+    let splines = opening.map(Opening::splines);
     for event in events {
-        window.misfits(event, &mut |misfit| *mean += ((misfit * misfit).min(largest) - *mean) / values);
+        window.misfits(event, splines, &mut |misfit| *mean += ((misfit * misfit).min(largest) - *mean) / values);
     }
 }
 

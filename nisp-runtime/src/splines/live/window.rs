@@ -326,14 +326,16 @@ impl Window {
     }
 
     /// Gives how far each observation of an event is off, over the noise of neighbours; over that of the fit where neighbours are
-    /// too far apart to say.
-    pub(super) fn misfits(&self, event: &Event, take: &mut dyn FnMut(f64)) {
+    /// too far apart to say. Other splines than the window's, and their coefficients, may be given for what the heads are.
+    pub(super) fn misfits(&self, event: &Event, other: Option<(&Heads, &[f64])>, take: &mut dyn FnMut(f64)) {
+        let own = || (&self.heads, &self.theta[..], self.grid.left());
+        let (heads, theta, zero) = other.map_or_else(own, |(heads, theta)| (heads, theta, 0.0));
         let schema = &self.bound.problem.scene().schema.groups[event.group];
         let columns: Vec<Vec<f64>> = event.columns.iter().map(|&x| vec![x]).collect();
-        let place = [event.at - self.grid.left()];
-        let mut group = Group::new(schema, self.kernels[event.group], &self.heads, &place, &columns);
-        group.begin_at(&place, self.grid.left());
-        let found = group.evaluate(&self.heads, &self.theta, &self.weights.scalars, None);
+        let place = [event.at - zero];
+        let mut group = Group::new(schema, self.kernels[event.group], heads, &place, &columns);
+        group.begin_at(&place, zero);
+        let found = group.evaluate(heads, theta, &self.weights.scalars, None);
         let is_there = |column: &usize| !event.columns[*column].is_nan();
         for (number, term) in schema.terms.iter().enumerate().filter(|(_, term)| term.kind == TermKind::Observation) {
             if !term.columns.iter().all(is_there) {
