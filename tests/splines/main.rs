@@ -8,6 +8,7 @@ mod driven;
 mod equations;
 #[expect(deprecated, reason = "a lint says that nothing pins a field, which is what is asked here")]
 mod free;
+mod leaning;
 mod measured;
 mod oscillator;
 mod steps;

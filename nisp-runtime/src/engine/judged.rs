@@ -29,6 +29,7 @@ impl Engine<f64> {
             scalars: self.scalars.clone(),
             scores: Vec::new(),
             told: Vec::new(),
+            leaning: Vec::new(),
             ahead: None,
             moved: None,
             finer: "more --budget, more --width or another --seed",

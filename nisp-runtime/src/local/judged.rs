@@ -20,6 +20,7 @@ impl Solver {
             scalars: self.scalars.clone(),
             scores: Vec::new(),
             told: Vec::new(),
+            leaning: Vec::new(),
             ahead: None,
             moved: None,
             finer: OTHER_THAN_SPLINES,

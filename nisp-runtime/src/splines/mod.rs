@@ -18,6 +18,7 @@ mod group;
 mod heads;
 mod iterate;
 mod kept;
+mod leaning;
 pub mod live;
 mod place;
 mod prior;
@@ -191,6 +192,10 @@ pub(crate) fn solve(
     if bars.is_open {
         status = Status::NotConverged;
     }
+    let mut leaning = Vec::new();
+    if let Some(best) = place.best().filter(|_| status == Status::Converged && run.has_time_for(leaning::STEPS)) {
+        leaning = solver.leaning(KINDS[best.kind], &best.state)?;
+    }
     let mut roots = Vec::new();
     if status == Status::Converged
         && solver.heads.len() <= MANY
@@ -219,6 +224,7 @@ pub(crate) fn solve(
         scalars,
         scores: Vec::new(),
         told,
+        leaning,
         ahead,
         moved: None,
         finer: OTHER_THAN_SPLINES,

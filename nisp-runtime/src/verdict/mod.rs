@@ -9,6 +9,7 @@ mod equations;
 mod gathered;
 mod held;
 mod known;
+mod leaning;
 mod learned;
 mod misfits;
 mod observations;
@@ -34,7 +35,7 @@ const FIRM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `stretch`, `rhythm`,
-    /// `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined` or `range`.
+    /// `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`, `leaning` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,
@@ -64,9 +65,10 @@ impl Verdict {
     }
 
     /// True where an answer holds its equations firmly and misses the data: these equations do not describe the data, and another
-    /// answer could only fit them by bending the equations. Also where the data leave a source open: so does any other answer.
+    /// answer could only fit them by bending the equations. Also where the data leave a source or a learned scalar open: so does
+    /// any other answer.
     pub(crate) fn contradicts(&self) -> bool {
-        if self.failed().any(|check| check.check == "determined") {
+        if self.failed().any(|check| matches!(check.check, "determined" | "leaning")) {
             return true;
         }
         let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");
@@ -118,6 +120,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
     checks.extend(told::checks(bound, &answer.told));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));
+    checks.extend(leaning::checks(bound, &answer.leaning));
     Verdict { checks }
 }
 

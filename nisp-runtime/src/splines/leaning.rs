@@ -1,0 +1,41 @@
+//! What learned scalars lean on, where a source stands beside them.
+//!
+//! A source of its own makes up for any value of a scalar: what is learned of the scalar is then which value leaves the source
+//! smallest and smoothest. That tells much where the source is zero or constant over parts of the record, and nothing where it
+//! follows what is measured. The two are told apart by letting the source be larger: much that is told stays where it was.
+
+use super::iterate::{Phase, State};
+use super::prior::Smoothness;
+use super::solver::Solver;
+use crate::facts::LARGER;
+use crate::solve::fault::Fault;
+
+/// Steps with a larger source, at most.
+pub(super) const STEPS: usize = 20;
+/// Change of a coefficient or parameter that no longer matters.
+const SETTLED: f64 = 1e-3;
+
+impl Solver<'_> {
+    /// By learned scalar, how far its parameter moves from an end where sources may be [`LARGER`] times as large and as rough;
+    /// nothing without sources or scalars.
+    pub(super) fn leaning(&mut self, kind: Smoothness, end: &State) -> Result<Vec<f64>, Fault> {
+        if end.learned.is_empty() || !self.has_sources() {
+            return Ok(Vec::new());
+        }
+        self.set_smoothness(kind, end);
+        let mut state = end.clone();
+        for (amplitude, &roughness) in self.amplitude.iter().zip(&self.roughness) {
+            let Some(amplitude) = *amplitude else { continue };
+            state.classes[amplitude].size *= LARGER;
+            state.classes[roughness].size *= LARGER;
+        }
+        for _ in 0..STEPS {
+            let Some(found) = self.step(&state, Phase::Solve)? else { break };
+            state = State { classes: state.classes, ..found.next };
+            if found.change < SETTLED {
+                break;
+            }
+        }
+        Ok(state.learned.iter().zip(&end.learned).map(|(larger, own)| (larger - own).abs()).collect())
+    }
+}

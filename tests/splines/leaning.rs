@@ -1,0 +1,58 @@
+//! Scalars that are learned beside a free source: told by a motion that the source cannot have made, or by nothing.
+
+use nisp::solve::driver::Status;
+use nisp::{Carrier, Problem, Solution, scene};
+
+use crate::{normals, solve};
+
+nisp::pde! {
+    /// A damped oscillator of which neither the spring nor the force is known.
+    mod spring {
+        units: off;
+        coordinates: t;
+        fields: x;
+        sources: f;
+        parameters: c > 0 = 1, k > 0 = 10;
+        on motion { balance: d(x, t, 2) + c * d(x, t) + k * x == f; }
+        on samples { observe x; }
+        scene rings { learn c, k; }
+    }
+}
+
+const DAMPING: f64 = 0.6;
+const STIFFNESS: f64 = 16.0;
+
+fn solved(motion: impl Fn(f64) -> f64) -> Solution {
+    let mut normal = normals(11);
+    let times: Vec<f64> = (0..200).map(|i| 0.06 * f64::from(i)).collect();
+    let measured = times.iter().map(|&t| motion(t) + 0.01 * normal()).collect();
+    let mut problem = Problem::new(scene::<spring::rings::Scene>());
+    problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", times.into(), vec![measured]).unwrap();
+    solve(&problem, Carrier::Splines)
+}
+
+fn leaning(solution: &Solution) -> Vec<(&'static str, bool)> {
+    let checks = solution.verdict.checks.iter().filter(|check| check.check == "leaning");
+    checks.map(|check| (check.term, check.passed)).collect()
+}
+
+/// The ringing dies away as spring and damper say, and no smooth force makes it.
+#[test]
+fn a_spring_is_told_by_its_ringing() {
+    let frequency = (STIFFNESS - DAMPING * DAMPING / 4.0).sqrt();
+    let mut solution = solved(|t| (-DAMPING * t / 2.0).exp() * (frequency * t).cos());
+    assert_eq!(leaning(&solution), [("c", true), ("k", true)]);
+    for (learned, exact) in solution.learned().iter().zip([DAMPING, STIFFNESS]) {
+        assert!((learned.value / exact - 1.0).abs() < 0.02, "{learned:?} is not {exact}");
+    }
+}
+
+/// A slow force moves the spring as it would move a softer one, were it smaller.
+#[test]
+fn a_spring_that_a_slow_force_moves_is_not_told() {
+    let mut solution = solved(|t| (0.7 * t).sin() + 0.3 * (1.1 * t).cos());
+    assert_eq!(solution.status, Status::Inconsistent);
+    assert!(leaning(&solution).iter().any(|(_, passed)| !passed), "{:?}", leaning(&solution));
+    assert!(solution.learned().iter().all(|learned| learned.deviation.is_none()), "bars where nothing is told");
+}
