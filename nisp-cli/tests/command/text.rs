@@ -1,5 +1,6 @@
 //! Equations in text files.
 
+use std::f64::consts::PI;
 use std::fs;
 
 use crate::common::{Place, Ran, circuit_table, names};
@@ -103,6 +104,33 @@ fn a_domain_says_where_groups_lie() {
     // Points of the grid that lie in the disc.
     let inside = (0..45).filter(|i| (f64::from(i % 9) * 0.5 - 2.0).hypot(f64::from(i / 9) - 2.0) <= 2.0);
     assert_eq!(grid.len(), inside.count());
+}
+
+/// `u = sin(pi x) sin(pi y)` is zero on all edges of an L. What the splines are in its notch says nothing of the answer.
+#[test]
+fn an_answer_over_an_l_is_not_judged_in_the_notch() {
+    let place = Place::new();
+    let text = "coordinates: x [m], y [m]; fields: u [mm]; sources: q [mm/m^2];
+        domains: shape = polygon([0,0],[2,0],[2,1],[1,1],[1,2],[0,2]);
+        on inside in shape { balance: -laplacian(u) == q; }
+        on rim boundary of shape { held: u == 0; }
+        on probes { observe u; }";
+    place.put("l.pde", text);
+    let [bend, load] = [1.0, 2.0 * PI * PI].map(|size| move |x: f64, y: f64| size * (PI * x).sin() * (PI * y).sin());
+    // Multiples of irrational numbers scatter evenly (Roberts 2018); an error of a hundredth, by sines of large numbers.
+    let places = (1..).map(f64::from).map(|i| [0.754_877_666_2, 0.569_840_290_9].map(|step| 2.0 * (i * step).fract()));
+    let inside: Vec<[f64; 2]> = places.filter(|[x, y]| *x < 1.0 || *y < 1.0).take(500).collect();
+    let row = |(i, [x, y]): (usize, &[f64; 2])| {
+        let off = 0.014 * (1e4 * (1.0 + i as f64).sqrt()).sin();
+        format!("{x},{y},{},{}\n", bend(*x, *y) + off, load(*x, *y))
+    };
+    let rows: String = inside.iter().enumerate().map(row).collect();
+    place.put("u.csv", &format!("x,y,u,q\n{rows}"));
+    let ran = place.run("solve l.pde --data u.csv --truth u.csv --at u.csv --json");
+    let object = object(&ran);
+    assert_eq!(object["status"], "converged", "{}", object["verdict"]);
+    let [error, size] = ["q", "q_if_zero"].map(|name| object["errors"][name].as_f64().unwrap());
+    assert!(error < 0.1 * size, "{error} of {size}");
 }
 
 #[test]

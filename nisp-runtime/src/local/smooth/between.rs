@@ -14,6 +14,8 @@ const ENOUGH: usize = 2000;
 /// Other places that an answer is judged at, at least and at most.
 const FEWEST_OTHERS: usize = 1000;
 const MOST_OTHERS: usize = 4000;
+/// How much farther a neighbour may be than its own neighbour in the opposite direction is, as squares.
+const MUTUAL: f64 = 9.0;
 /// Seeds of places that equations are asked at, and of others.
 const ASKED: u64 = 0;
 const OTHERS: u64 = 1;
@@ -81,8 +83,8 @@ fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
         (high - low).max(f64::MIN_POSITIVE)
     };
     let widths: Vec<f64> = (0..inputs).map(width).collect();
-    // The nearest along every coordinate, either way: rows of points may lie close, and far apart from each other.
-    let near = |at: usize| {
+    // The nearest along every coordinate, either way, and how far it is: rows of points may lie close, and far apart from each other.
+    let nearest = |at: usize| {
         let mut nearest = vec![(f64::INFINITY, at); 2 * inputs];
         let mut away = vec![0.0; inputs];
         for other in (0..count).filter(|&other| other != at) {
@@ -96,15 +98,28 @@ fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
                 *place = if apart < place.0 { (apart, other) } else { *place };
             }
         }
-        let mut found: Vec<usize> = nearest.into_iter().map(|(_, other)| other).filter(|&other| other != at).collect();
-        found.extend(found.is_empty().then_some(at));
-        found
+        nearest
     };
     // Start from the equation's own points only. Starting from conditions too would crowd the places along edges that have many
     // points.
     let bases = own.len() / inputs;
     let chosen: Vec<usize> = (0..more.min(bases)).map(|number| number * bases / more.min(bases)).collect();
-    let neighbours: Vec<Vec<usize>> = chosen.par_iter().map(|&at| near(at)).collect();
+    let mut ends: Vec<Vec<(f64, usize)>> = chosen.par_iter().map(|&at| nearest(at)).collect();
+    // Across a notch or a hole the one is the nearest to the other, but the other has nearer ones in that direction.
+    let mut others: Vec<usize> = ends.iter().flatten().map(|(_, other)| *other).collect();
+    others.sort_unstable();
+    others.dedup();
+    let back: Vec<Vec<(f64, usize)>> = others.par_iter().map(|&at| nearest(at)).collect();
+    let is_across = |direction: usize, (apart, other): (f64, usize)| {
+        others.binary_search(&other).is_ok_and(|found| apart > MUTUAL * back[found][direction ^ 1].0)
+    };
+    let mut near = |(at, ends): (&usize, &mut Vec<(f64, usize)>)| {
+        let ends = ends.iter().enumerate().filter(|(direction, end)| end.1 != *at && !is_across(*direction, **end));
+        let mut found: Vec<usize> = ends.map(|(_, end)| end.1).collect();
+        found.extend(found.is_empty().then_some(*at));
+        found
+    };
+    let neighbours: Vec<Vec<usize>> = chosen.iter().zip(&mut ends).map(&mut near).collect();
     let mut random = StdRng::seed_from_u64(seed);
     let mut place = |number: usize| {
         let (at, near) = (chosen[number % chosen.len()], &neighbours[number % chosen.len()]);
