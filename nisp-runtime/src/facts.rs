@@ -223,6 +223,8 @@ pub(crate) struct Answer {
     /// How far the last step moved a source, over its size, at most; nothing at the end of the steps, and where the carrier does not
     /// tell.
     pub(crate) moved: Option<f64>,
+    /// How far the cells hold the answer back, over what may be, where the budget ended before finer ones were tried.
+    pub(crate) strain: Option<f64>,
     /// What to do where the carrier may be too coarse.
     pub(crate) finer: &'static str,
 }

@@ -41,9 +41,41 @@ pub(crate) fn level(mut has_value: impl FnMut(f64) -> bool) -> f64 {
     LEVELS.into_iter().find(|level| is_inside(level)).unwrap_or(0.0)
 }
 
+/// Steps of a head either way, in natural sizes, by which is told what it does.
+pub(crate) const EITHER_WAY: [f64; 3] = [-1e-3, 0.0, 1e-3];
+/// Difference of the changes either way, over the changes, that is none.
+const ALIKE: f64 = 1e-3;
+
+/// Whether no step leaves a head's value: what it changes, or what it changes of the data, it changes alike either way, as a square
+/// does at zero. By term, whether it is an observation, and its rows at the values of [`EITHER_WAY`].
+pub(crate) fn sleeps(terms: &[(bool, [Vec<f64>; 3])]) -> bool {
+    let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let changed: Vec<(bool, bool)> = terms
+        .iter()
+        .map(|(is_data, [less, own, more])| (*is_data, largest(less, more), largest(own, more).max(largest(own, less))))
+        .filter(|(_, _, change)| *change > 0.0)
+        .map(|(is_data, apart, change)| (is_data, apart <= ALIKE * change))
+        .collect();
+    let all_are = |wanted: &dyn Fn(bool) -> bool| {
+        let mut own = changed.iter().filter(|(is_data, _)| wanted(*is_data)).peekable();
+        own.peek().is_some() && own.all(|(_, is_even)| *is_even)
+    };
+    all_are(&|is_data| is_data) || all_are(&|_| true)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_square_sleeps_at_zero_and_nowhere_else() {
+        let term = |is_data: bool, of: &dyn Fn(f64) -> f64| (is_data, EITHER_WAY.map(|step| vec![of(step), 2.0]));
+        assert!(sleeps(&[term(false, &|x| 3.0 - x * x)]));
+        assert!(sleeps(&[term(true, &|x| x * x), term(false, &|x| x)]));
+        assert!(!sleeps(&[term(true, &f64::cos), term(true, &f64::sin)]));
+        assert!(!sleeps(&[term(false, &|x| (1.0 + x).powi(2))]));
+        assert!(!sleeps(&[term(false, &|_| 1.0)]));
+    }
 
     #[test]
     fn the_end_of_a_root_is_no_start() {

@@ -32,6 +32,7 @@ impl Engine<f64> {
             leaning: Vec::new(),
             ahead: None,
             moved: None,
+            strain: None,
             finer: "more --budget, more --width or another --seed",
         }
     }

@@ -23,6 +23,7 @@ impl Solver {
             leaning: Vec::new(),
             ahead: None,
             moved: None,
+            strain: None,
             finer: OTHER_THAN_SPLINES,
         }
     }

@@ -44,6 +44,7 @@ use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
 use crate::splines::SplineError;
+use crate::verdict::settled;
 
 /// What is believed of the precision of weights before any row is seen: a network whose heads change by a few times their
 /// natural size. Worth so few parameters, it matters only where the data say next to nothing.
@@ -182,7 +183,9 @@ fn solve(
             let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
             let contradicts = is_witness && solution.verdict.contradicts();
             let is_over = solution.is_clear() || contradicts || solution.status == Status::Interrupted;
+            let is_unfinished = first.is_some() && is_over && solution.status == Status::Budget;
             let mut solution = if is_over { solution } else { first.take().unwrap_or(solution) };
+            solution.verdict.checks.extend(is_unfinished.then(settled::unfinished));
             solution.wall_s = start.elapsed().as_secs_f64();
             match attempts.next().filter(|_| !is_over && has_time_again(settings, start)) {
                 Some(next) => (attempt, first) = (next, Some(solution)),

@@ -90,6 +90,15 @@ impl Warning {
         let message = "no time was left for error bars; give a larger budget".into();
         Self { kind: WarningKind::NoBars, message }
     }
+
+    /// A head that comes in as a square does: either sign fits.
+    pub(crate) fn open_sign(name: &str) -> Self {
+        let message = format!(
+            "`{name}` comes in as a square does, so that the data do not say which sign it has: if it has one only, declare it \
+             (`{name} >= 0`)"
+        );
+        Self { kind: WarningKind::Undetermined, message }
+    }
 }
 
 impl std::fmt::Display for Warning {

@@ -126,7 +126,9 @@ pub(crate) fn solve(
     memory::require(Solver::bytes(bound, &breakpoints), what, "give a part of the record, or fewer rows of it")?;
     let mut solver = Solver::over(bound, &breakpoints);
     let schema = bound.problem.scene().schema;
-    let mut place = Place::first(solver.first(noise), kinds(solver.has_sources(), cells::stretches(bound)));
+    let first = solver.first(noise);
+    let asleep = solver.asleep(&first);
+    let mut place = Place::first(first, kinds(solver.has_sources(), cells::stretches(bound)));
     let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY, ahead: f64::INFINITY };
     let begun = |saved: &&state::State| saved.indices("kinds").is_ok();
     match (from.filter(begun), cells::middle(bound, &breakpoints)) {
@@ -168,7 +170,7 @@ pub(crate) fn solve(
     }
     let (loss, mut ahead) = (run.loss, (status != Status::Converged).then_some(run.ahead));
     let checkpoint = place.save();
-    let mut warnings = Vec::new();
+    let mut warnings: Vec<Warning> = asleep.iter().map(|&head| Warning::open_sign(schema.heads[head].name)).collect();
     if let Some(Tried { state, .. }) = place.best().cloned() {
         place.state = State { step: place.state.step, ..state };
         if status == Status::Converged
@@ -227,6 +229,7 @@ pub(crate) fn solve(
         leaning,
         ahead,
         moved: None,
+        strain: None,
         finer: OTHER_THAN_SPLINES,
     };
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })

@@ -4,6 +4,7 @@ use super::iterate::{Phase, State};
 use super::place::Place;
 use super::solver::{SHORTEST, Solver};
 use crate::noise::{Noise, ObservationNoise};
+use crate::schema::{self, TermKind};
 use crate::start::{self, QUIETER, ROUGHER};
 use crate::tolerance::LOOSE;
 use crate::weighed::{Class, Guess, of_terms};
@@ -53,6 +54,29 @@ impl Solver<'_> {
             self.loss(state, Phase::Solve).is_finite()
         });
         state.theta.fill(level);
+    }
+
+    /// Heads that no step leaves a state by: the sign of what they become is open.
+    pub(super) fn asleep(&self, state: &State) -> Vec<usize> {
+        let sleeps = |head: &usize| {
+            let at = start::EITHER_WAY.map(|by| {
+                let mut theta = state.theta.clone();
+                self.heads.numbers(*head, 0).iter().for_each(|&number| theta[number] += by);
+                theta
+            });
+            let terms = self.groups.iter().filter(|group| group.len() > 0).flat_map(|group| {
+                let found = at.each_ref().map(|theta| group.evaluate(&self.heads, theta, &self.scalars, None));
+                let rows = move |term: &schema::Term| {
+                    let all =
+                        || (term.first..term.first + term.rows).flat_map(|row| (0..group.len()).map(move |p| (row, p)));
+                    let own = found.each_ref().map(|found| all().map(|(row, p)| found.row(row, p)).collect());
+                    (term.kind == TermKind::Observation, own)
+                };
+                group.schema.terms.iter().map(rows)
+            });
+            start::sleeps(&terms.collect::<Vec<_>>())
+        };
+        (0..self.heads.bases.len()).filter(sleeps).collect()
     }
 
     /// Where the steps start again, with less noise and rougher sources, where the noise of the most likely end may hide a source.

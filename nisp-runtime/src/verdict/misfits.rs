@@ -2,7 +2,7 @@
 
 use super::root_mean_square;
 use super::slow::chance;
-use crate::noise::{Noise, ObservationNoise};
+use crate::noise::{Noise, ObservationNoise, deviation};
 use crate::problem::Bound;
 use crate::schema;
 
@@ -78,6 +78,15 @@ impl<'a> Misfits<'a> {
     /// The number of values.
     pub(super) fn count(&self) -> usize {
         self.rows.iter().map(Vec::len).sum()
+    }
+
+    /// Standard deviation of what was measured: the root mean square over the columns.
+    pub(super) fn spread(&self) -> f64 {
+        let of = |&column: &usize| {
+            let own = self.bound.measured(self.group, self.term, &self.bound.columns[self.group][column]);
+            deviation(&own)
+        };
+        root_mean_square(self.term.columns.iter().map(of))
     }
 
     /// How much larger the noise may be than differences of few data say. Eighth differences of neighbours share most of their

@@ -16,7 +16,7 @@ mod observations;
 mod outliers;
 mod outside;
 mod patterns;
-mod settled;
+pub(crate) mod settled;
 mod slow;
 mod smooth;
 mod stretches;
@@ -34,8 +34,9 @@ const FIRM: f64 = 0.25;
 /// One thing that was looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `pattern`, `stretch`, `rhythm`,
-    /// `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`, `leaning` or `range`.
+    /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
+    /// `rhythm`, `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
+    /// `leaning` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,

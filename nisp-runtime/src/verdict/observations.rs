@@ -19,6 +19,10 @@ const HELD: f64 = 0.02;
 const HEAVY: f64 = 2.0;
 /// Share of the values that may be outliers.
 const LEFT: f64 = 0.25;
+/// Values up to which noise may be a source that changes faster than they come, and the share of their spread that it may be. Of
+/// simulated answers with so few values and so much noise nine in ten had taken a source for it.
+const FEW: usize = 100;
+const NOISY: f64 = 0.25;
 /// Digits that numbers in files may be rounded to, as a share of their spread: nothing smaller is an outlier's measure.
 const ROUNDING: f64 = 1e-5;
 
@@ -42,8 +46,28 @@ fn of(left: &Misfits, finer: &str) -> Vec<Check> {
     if left.is_robust {
         checks.push(left_out(left));
     }
+    checks.extend(noisy(left));
     checks.extend(patterns::checks(left, finer));
     checks
+}
+
+/// Whether what is taken for noise may be a source, of few values whose noise is not declared.
+fn noisy(left: &Misfits) -> Option<Check> {
+    let has_source = left.bound.problem.scene().schema.heads.iter().any(|head| head.source);
+    let is_few = left.count() <= FEW && left.term.within.is_none() && !left.is_robust && !left.is_exact();
+    // A single value does not vary.
+    let spread = Some(left.spread()).filter(|spread| has_source && is_few && *spread > 0.0)?;
+    let share = left.size / spread;
+    let said = format!(
+        "what is taken for noise of `{}` is {} (rms), {:.0} % of how much its {} values vary: a source that changes faster than they \
+         come would look alike; measure more often, or say how exact they are (`observe {} within ...`)",
+        left.term.name,
+        left.words(left.size),
+        100.0 * share,
+        left.count(),
+        left.term.name
+    );
+    Some(Check::new("noise", left.name(), (share, NOISY), said))
 }
 
 /// The size of what is left, beside a declared tolerance or the data's own noise; nothing where neither is known.

@@ -1,4 +1,4 @@
-//! Learned scalars and sources that steps still changed where the budget ended them.
+//! What the budget ended too early: steps that still changed learned scalars or sources, and cells that were too coarse.
 
 use super::Check;
 use crate::facts::Answer;
@@ -8,6 +8,8 @@ use crate::problem::Bound;
 const NEAR: f64 = 1e-2;
 /// How far the last step may have moved a source, over its size.
 const MOVED: f64 = 0.1;
+/// How far cells may hold an answer back.
+const STRAINED: f64 = 1.0;
 
 /// The checks of an answer whose steps did not come to their end; none of one whose did.
 pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
@@ -17,9 +19,19 @@ pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
     });
     let moved =
         answer.moved.map(|moved| (moved, MOVED, format!("a step still moved a source by {:.0} %", 100.0 * moved)));
+    let strain = answer.strain.map(|strain| {
+        (strain, STRAINED, format!("cells were still too coarse for the equations or the data, by {strain:.1} times"))
+    });
     let check = |(value, limit, said): (f64, f64, String)| {
         let said = format!("the run ended while {said}: give a larger budget, or more iterations");
         Check::new("settled", ("", ""), (value, limit), said)
     };
-    ahead.into_iter().chain(moved).map(check).collect()
+    ahead.into_iter().chain(moved).chain(strain).map(check).collect()
+}
+
+/// That a carrier came to its end where another one had failed before it: an answer that is not finished settles nothing then.
+pub(crate) fn unfinished() -> Check {
+    let said = "the budget ended this answer before its steps did, and what was tried first failed: give a larger budget, or \
+                check the parameters and the data";
+    Check::new("settled", ("", ""), (1.0, 0.0), said.into())
 }

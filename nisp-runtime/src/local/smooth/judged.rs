@@ -120,6 +120,7 @@ impl Solver<'_> {
             leaning: Vec::new(),
             ahead: None,
             moved: None,
+            strain: None,
             finer: OTHER_THAN_SPLINES,
         }
     }

@@ -49,8 +49,8 @@ const MORE: usize = 2;
 const EASED: f64 = 0.9;
 /// Finer lattices that may not help, one after the other, where measurements are missed by far.
 const PATIENCE: usize = 2;
-/// How much longer a finer lattice takes.
-const SLOWER: f64 = 3.0;
+/// How much longer a finer lattice takes at least. Where it does not end within the budget, nothing is lost but time.
+const SLOWER: f64 = 1.0;
 
 /// What splines on a lattice cannot do, of a scene; nothing if they can do all of it.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
@@ -155,12 +155,10 @@ fn finish(
     };
     let sources = bound.problem.scene().schema.heads.iter().enumerate();
     warnings.extend(sources.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
-    if status == Status::Budget && solver.strain(&state, noise) > 1.0 {
-        let message = "the lattice may be too coarse for these equations; a larger --budget makes it finer".into();
-        warnings.push(Warning { kind: WarningKind::OutOfTime, message });
-    }
+    let strain = (status == Status::Budget).then(|| solver.strain(&state, noise));
     solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
+    answer.strain = strain;
     if status != Status::Converged {
         (answer.ahead, answer.moved) = (Some(ahead), Some(moved));
     }
