@@ -55,30 +55,54 @@ fn nonsense_is_refused() {
     assert!(!log_log(&one).unwrap().svg().contains("NaN"));
 }
 
-#[test]
-fn maps_of_scattered_points_are_drawn() {
-    let points: Vec<[f64; 2]> =
-        (0..300).map(|i| [(f64::from(i) * 0.618).fract(), (f64::from(i) * 0.7548).fract()]).collect();
+/// A map of points scattered over so much of each axis.
+fn scattered([wide, tall]: [f64; 2]) -> FieldMap {
+    let places = (0..300).map(f64::from).map(|i| [wide * (i * 0.618).fract(), tall * (i * 0.7548).fract()]);
+    let points: Vec<[f64; 2]> = places.collect();
     let values: Vec<f64> = points.iter().map(|p| p[0] * p[1]).collect();
     let grid = Grid::from_points(&points, &values).unwrap();
     let panel = MapPanel {
         title: "estimate".into(),
         value: Quantity::new("f", "Pa"),
         scale: ColourScale::sequential(&values),
-        contours: vec![("half".into(), grid.clone(), 0.5)],
+        contours: vec![("half".into(), grid.clone(), 0.5 * wide * tall)],
         grid,
     };
-    let map = FieldMap {
+    FieldMap {
         title: "a map".into(),
         subtitle: "from a cloud".into(),
         x: Quantity::new("x", "m"),
         y: Quantity::new("y", "m"),
         outline: vec![],
         panels: vec![panel],
-    };
+    }
+}
+
+#[test]
+fn maps_of_scattered_points_are_drawn() {
+    let map = scattered([1.0, 1.0]);
     let svg = field_map(&map).unwrap().svg().to_string();
     assert!(svg.contains("data:image/png;base64,") && svg.contains("f [Pa]") && !svg.contains("NaN"));
     assert!(field_map(&FieldMap { panels: vec![], ..map }).is_err());
+}
+
+/// Two tenths of a metre over a hundred seconds fill the map as a square metre does: axes that share no scale have one each.
+#[test]
+fn maps_over_quantities_of_two_kinds_fill_their_frame() {
+    let share = |spans: [f64; 2]| {
+        let svg = field_map(&scattered(spans)).unwrap().svg().to_string();
+        let image = &svg[svg.find("<image").unwrap()..];
+        let number = |name: &str| -> f64 {
+            let text = &image[image.find(name).unwrap() + name.len()..];
+            text[..text.find('"').unwrap()].parse().unwrap()
+        };
+        (number(" width=\""), number(" height=\""))
+    };
+    let (side, _) = share([1.0, 1.0]);
+    for spans in [[0.2, 100.0], [100.0, 0.2]] {
+        let (width, height) = share(spans);
+        assert!(width > 0.9 * side && height > 0.6 * side, "{width} {height} beside {side}");
+    }
 }
 
 #[test]

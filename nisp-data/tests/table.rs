@@ -67,6 +67,9 @@ fn another_unit_is_refused_even_where_the_column_is_chosen() {
     // A quantity of the same name is not meant by another.
     let strange = table.quantity("psi", "rad").unwrap_err().to_string();
     assert!(strange.contains("choose one, with --column psi=HEADER"), "{strange}");
+    // Nor is a time by a temperature, where a longer name is there.
+    let warm = parse("x,t,temp\n0,1,2\n1,2,3\n").quantity("T", "K").unwrap_err().to_string();
+    assert!(warm.contains("for instance with --column T=temp"), "{warm}");
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use super::axis::{Panel, Scale, x_axis_height, y_axis_width};
 use super::canvas::{Anchor, Canvas, Frame, Stroke};
 use super::contour::level_line;
-use super::grid::Grid;
+use super::grid::{Grid, is_stretched};
 use super::legend::{self, Swatch};
 use super::line_plot::extent;
 use super::quantity::Shown;
@@ -44,6 +44,8 @@ pub struct MapPanel {
     pub contours: Vec<(String, Grid, f64)>,
 }
 
+/// Height over width of a map whose axes have a scale each.
+const STRETCHED: f64 = 0.75;
 /// A lone map need not fill the page.
 const WIDEST: f64 = 560.0;
 
@@ -61,7 +63,9 @@ pub fn field_map(map: &FieldMap) -> Result<Picture, DataError> {
     // Maps side by side span two columns of a page.
     let page = WIDTH * (0.75 + 0.25 * count);
     let width = ((page - left - 1.8 * MARGIN - gap * (count - 1.0)) / count).min(WIDEST);
-    let height = (width * (high_y - low_y) / (right_x - left_x)).min(page);
+    let stretched = is_stretched(right_x - left_x, high_y - low_y);
+    let ratio = if stretched { STRETCHED } else { (high_y - low_y) / (right_x - left_x) };
+    let height = (width * ratio).min(page);
 
     let mut canvas = Canvas::new();
     let mut top = MARGIN;
@@ -91,9 +95,12 @@ pub fn field_map(map: &FieldMap) -> Result<Picture, DataError> {
 }
 
 fn shown_axes(map: &FieldMap, x: [f64; 2], y: [f64; 2]) -> (Shown, Shown) {
-    let size = |range: [f64; 2]| range[0].abs().max(range[1].abs());
+    let [size_x, size_y] = [x, y].map(|range| range[0].abs().max(range[1].abs()));
+    if is_stretched(x[1] - x[0], y[1] - y[0]) {
+        return (map.x.shown(size_x), map.y.shown(size_y));
+    }
     // Both axes have one scale, so they should have one unit.
-    let largest = size(x).max(size(y));
+    let largest = size_x.max(size_y);
     (map.x.shown(largest), map.y.shown(largest))
 }
 
@@ -106,8 +113,9 @@ fn region(map: &FieldMap) -> Option<([f64; 2], [f64; 2])> {
         extent(nodes.chain(edge)).filter(|(low, high)| low < high)
     };
     let ((left, right), (low, high)) = (span(0)?, span(1)?);
-    let air = 0.02 * (right - left).max(high - low);
-    Some(([left - air, right + air], [low - air, high + air]))
+    let (wide, tall) = (right - left, high - low);
+    let [air_x, air_y] = if is_stretched(wide, tall) { [wide, tall] } else { [wide.max(tall); 2] }.map(|x| 0.02 * x);
+    Some(([left - air_x, right + air_x], [low - air_y, high + air_y]))
 }
 
 fn contour_names(map: &FieldMap) -> Vec<&str> {

@@ -6,6 +6,14 @@ use crate::export::triangulate;
 /// Nodes along the longer side when scattered points are interpolated.
 const NODES: usize = 160;
 
+/// Ratio of two spans from which on they are of quantities that share no scale, like metres and seconds.
+const ALIKE: f64 = 8.0;
+
+/// Whether spans of this ratio have a scale each.
+pub(super) fn is_stretched(wide: f64, tall: f64) -> bool {
+    wide.max(tall) > ALIKE * wide.min(tall)
+}
+
 /// Values on a regular grid. NaN where there is nothing.
 #[derive(Debug, Clone)]
 pub struct Grid {
@@ -57,18 +65,23 @@ impl Grid {
             (low, high)
         };
         let ((left, right), (bottom, top)) = (span(0), span(1));
-        let step = (right - left).max(top - bottom) / (NODES - 1) as f64;
-        let along = |low: f64, high: f64| -> Vec<f64> {
-            (0..=((high - low) / step).round() as usize).map(|index| low + step * index as f64).collect()
-        };
-        if step <= 0.0 {
+        let (wide, tall) = (right - left, top - bottom);
+        if wide.max(tall) <= 0.0 {
             return Err(DataError::invalid("all points of the map coincide"));
         }
-        let (x, y) = (along(left, right), along(bottom, top));
+        // Neighbours are near on the picture.
+        let [by_x, by_y] = if wide.min(tall) > 0.0 && is_stretched(wide, tall) { [wide, tall] } else { [1.0; 2] };
+        let points: Vec<[f64; 2]> = points.iter().map(|[x, y]| [(x - left) / by_x, (y - bottom) / by_y]).collect();
+        let (wide, tall) = (wide / by_x, tall / by_y);
+        let step = wide.max(tall) / (NODES - 1) as f64;
+        let along = |length: f64| (0..=(length / step).round() as usize).map(|index| step * index as f64).collect();
+        let (x, y): (Vec<f64>, Vec<f64>) = (along(wide), along(tall));
         let mut grid = Grid { values: vec![f64::NAN; x.len() * y.len()], x, y };
-        for corners in triangulate(points, None)? {
+        for corners in triangulate(&points, None)? {
             grid.fill_triangle(corners.map(|index| points[index]), corners.map(|index| values[index]));
         }
+        grid.x.iter_mut().for_each(|x| *x = left + by_x * *x);
+        grid.y.iter_mut().for_each(|y| *y = bottom + by_y * *y);
         Ok(grid)
     }
 

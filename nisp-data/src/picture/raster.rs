@@ -3,7 +3,7 @@
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 
-use super::grid::Grid;
+use super::grid::{Grid, is_stretched};
 use crate::DataError;
 use crate::colour::ColourScale;
 
@@ -20,7 +20,8 @@ pub(super) fn field(
     holes: bool,
 ) -> Result<String, DataError> {
     let (wide, tall) = (high[0] - low[0], high[1] - low[1]);
-    let pixels = |length: f64| (PIXELS * length / wide.max(tall)).round().max(1.0) as usize;
+    let share = |length: f64| if is_stretched(wide, tall) { 1.0 } else { length / wide.max(tall) };
+    let pixels = |length: f64| (PIXELS * share(length)).round().max(1.0) as usize;
     let (width, height) = (pixels(wide), pixels(tall));
     let filled = grid.spread();
     let mut rgba = Vec::with_capacity(4 * width * height);

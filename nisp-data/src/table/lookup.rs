@@ -215,12 +215,15 @@ impl Table {
         DataError::Column { path: self.path.clone(), what }
     }
 
-    /// The header most like the name among those that pass, if it may be meant: `psi` is not meant by `phi`, but `time` by `t`.
+    /// The header most like the name among those that pass, if it may be meant: `psi` is not meant by `phi`, but `time` by `t`. A
+    /// letter in the other case is another quantity, and meant only where nothing else is.
     fn nearest(&self, name: &str, passes: &dyn Fn(&str) -> bool) -> Option<&str> {
         let likeness = |header: &str| likeness(base(header), name);
         let meant =
             |header: &&str| header.to_lowercase().starts_with(&name.to_lowercase()) || likeness(header) >= ALIKE;
-        self.headers().filter(meant).filter(|header| passes(header)).max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+        let is_other = |header: &str| base(header).len() == 1 && base(header) != name;
+        let by_likeness = |a: &&str, b: &&str| is_other(b).cmp(&is_other(a)).then(likeness(a).total_cmp(&likeness(b)));
+        self.headers().filter(meant).filter(|header| passes(header)).max_by(by_likeness)
     }
 }
 

@@ -118,7 +118,8 @@ pub(crate) fn solve(
             Status::Converged => (solver, run, points) = (finer, found, more),
             Status::NotConverged => break,
             status => {
-                run.status = status;
+                // If the last lattice did not help, this one's answer stands without the next.
+                run.status = if idle == 0 || status == Status::Interrupted { status } else { run.status };
                 (run.checkpoint, run.state.step) = (found.checkpoint, found.state.step);
                 break;
             }
