@@ -95,7 +95,7 @@ fn a_force_that_drowns_in_noise_is_not_called_found() {
     let mut solution = solve(&record(scene::<mass::recover::Scene>(), 40, 1.0, |t| -0.002 * (3.0 * t).sin()));
     assert_eq!(solution.status, Status::Inconsistent);
     let failed: Vec<&str> = solution.verdict.failed().map(|check| check.check).collect();
-    assert_eq!(failed, ["told"]);
+    assert_eq!(failed, ["noise", "told"]);
     assert!(solution.evaluate_with_errors(&times(5)).iter().all(|estimate| estimate.deviations.is_none()));
 }
 
