@@ -19,8 +19,8 @@ const HELD: f64 = 0.02;
 const HEAVY: f64 = 2.0;
 /// Share of the values that may be outliers.
 const LEFT: f64 = 0.25;
-/// Values up to which noise may be a source that changes faster than they come, and the share of their spread that it may be. Of
-/// simulated answers with so few values and so much noise nine in ten had taken a source for it.
+/// Values up to which noise may be a source that changes faster than they come, where nothing else is measured, and the share of
+/// their spread that it may be. All simulated answers with so few values and so much noise had taken a source for it.
 const FEW: usize = 100;
 const NOISY: f64 = 0.25;
 /// Digits that numbers in files may be rounded to, as a share of their spread: nothing smaller is an outlier's measure.
@@ -53,7 +53,10 @@ fn of(left: &Misfits, finer: &str) -> Vec<Check> {
 
 /// Whether what is taken for noise may be a source, of few values whose noise is not declared.
 fn noisy(left: &Misfits) -> Option<Check> {
-    let has_source = left.bound.problem.scene().schema.heads.iter().any(|head| head.source);
+    let schema = left.bound.problem.scene().schema;
+    let measured = schema.groups.iter().flat_map(|group| group.terms);
+    let is_alone = measured.filter(|term| term.kind == TermKind::Observation).count() == 1;
+    let has_source = is_alone && schema.heads.iter().any(|head| head.source);
     let is_few = left.count() <= FEW && left.term.within.is_none() && !left.is_robust && !left.is_exact();
     // A single value does not vary.
     let spread = Some(left.spread()).filter(|spread| has_source && is_few && *spread > 0.0)?;

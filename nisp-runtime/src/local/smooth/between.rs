@@ -16,6 +16,9 @@ const FEWEST_OTHERS: usize = 1000;
 const MOST_OTHERS: usize = 4000;
 /// How much farther a neighbour may be than its own neighbour in the opposite direction is, as squares.
 const MUTUAL: f64 = 9.0;
+/// Pairs of points that are looked at, about, to find neighbours; and points at least whose neighbours are looked for.
+const PAIRS: usize = 40_000_000;
+const FEWEST_BASES: usize = 200;
 /// Seeds of places that equations are asked at, and of others.
 const ASKED: u64 = 0;
 const OTHERS: u64 = 1;
@@ -103,8 +106,9 @@ fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
     // Start from the equation's own points only. Starting from conditions too would crowd the places along edges that have many
     // points.
     let bases = own.len() / inputs;
-    let chosen: Vec<usize> = (0..more.min(bases)).map(|number| number * bases / more.min(bases)).collect();
-    let mut ends: Vec<Vec<(f64, usize)>> = chosen.par_iter().map(|&at| nearest(at)).collect();
+    let few = more.min(bases).min((PAIRS / count).max(FEWEST_BASES));
+    let chosen: Vec<usize> = (0..few).map(|number| number * bases / few).collect();
+    let ends: Vec<Vec<(f64, usize)>> = chosen.par_iter().map(|&at| nearest(at)).collect();
     // Across a notch or a hole the one is the nearest to the other, but the other has nearer ones in that direction.
     let mut others: Vec<usize> = ends.iter().flatten().map(|(_, other)| *other).collect();
     others.sort_unstable();
@@ -113,13 +117,13 @@ fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
     let is_across = |direction: usize, (apart, other): (f64, usize)| {
         others.binary_search(&other).is_ok_and(|found| apart > MUTUAL * back[found][direction ^ 1].0)
     };
-    let mut near = |(at, ends): (&usize, &mut Vec<(f64, usize)>)| {
-        let ends = ends.iter().enumerate().filter(|(direction, end)| end.1 != *at && !is_across(*direction, **end));
+    let near = |(&at, ends): (&usize, &Vec<(f64, usize)>)| {
+        let ends = ends.iter().enumerate().filter(|(direction, end)| end.1 != at && !is_across(*direction, **end));
         let mut found: Vec<usize> = ends.map(|(_, end)| end.1).collect();
-        found.extend(found.is_empty().then_some(*at));
+        found.extend(found.is_empty().then_some(at));
         found
     };
-    let neighbours: Vec<Vec<usize>> = chosen.iter().zip(&mut ends).map(&mut near).collect();
+    let neighbours: Vec<Vec<usize>> = chosen.iter().zip(&ends).map(near).collect();
     let mut random = StdRng::seed_from_u64(seed);
     let mut place = |number: usize| {
         let (at, near) = (chosen[number % chosen.len()], &neighbours[number % chosen.len()]);
