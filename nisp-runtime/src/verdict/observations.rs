@@ -90,7 +90,10 @@ fn misfit(left: &Misfits, finer: &str) -> Option<Check> {
     let (scale, limit) = if left.is_exact() {
         (noise.spread, EXACT)
     } else {
-        (noise.deviation, MISFIT.max(left.by_chance()) * left.doubt())
+        // What equations may leave beside the noise, or what chance and the doubt of the noise make up. Outliers raise the noise that
+        // neighbours show.
+        let chance = left.by_chance() * left.doubt();
+        (noise.deviation, if left.is_robust { MISFIT * left.doubt() } else { MISFIT }.max(chance))
     };
     // Data that do not vary are met exactly or not at all.
     let value = match rms {
