@@ -130,6 +130,10 @@ fn settings(options: &Options, usual: Duration) -> Result<Settings, String> {
     }
     let optimizer = Optimizer::from_name(&options.optimizer).unwrap_or(Optimizer::Auto);
     let activation = options.activation.as_deref().and_then(Activation::from_name);
+    let trained = [(optimizer != Optimizer::Auto, "optimizer"), (activation.is_some(), "activation")];
+    if let Some((_, option)) = trained.iter().find(|(given, _)| *given && options.carrier == "splines") {
+        return Err(format!("--carrier splines takes no --{option}, which is of networks; leave one of the two out"));
+    }
     let carrier = match options.carrier.as_str() {
         "network" => Carrier::Network,
         "splines" => Carrier::Splines,

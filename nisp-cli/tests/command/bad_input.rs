@@ -129,6 +129,7 @@ fn values() {
         ("--layers 0", &["--layers", "from 1 to"]),
         ("--threads 0", &["--threads", "from 1 to"]),
         ("--threads 5000", &["at most 1024"]),
+        ("--optimizer lm --carrier splines", &["--carrier splines takes no --optimizer"]),
         ("--iterations 0", &["--iterations", "from 1 to"]),
         ("--budget -3", &["--budget", "positive number of seconds"]),
         ("--budget 0", &["positive number of seconds"]),
