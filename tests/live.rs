@@ -43,6 +43,20 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// A spring that nobody knows, under an unknown force.
+    mod spring {
+        units: off;
+        coordinates: t;
+        fields: y;
+        sources: u;
+        parameters: c > 0 = 1, k > 0 = 10;
+        on motion { balance: d(y, t, 2) + c * d(y, t) + k * y == u; }
+        on samples { observe y; }
+        scene recover { learn c, k; }
+    }
+}
+
+nisp::pde! {
     /// An oscillator that is left to itself.
     mod free {
         units: off;
@@ -157,6 +171,31 @@ fn a_drive_that_sets_in_with_the_record_is_within_its_bars() {
         let (value, deviation) = found.heads[1];
         assert!((value - exact).abs() < 4.0 * deviation, "{}: {value} +- {deviation} for {exact}", found.at);
     }
+}
+
+/// A force that steps tells the spring by its ringing, to a window whose force is as rough all along as well.
+#[test]
+fn a_spring_is_learned_from_the_steps_of_its_force() {
+    let (stiffness, steps) = (16.0_f64, [(0.0, 1.6), (6.0, 6.4), (13.0, -12.0)]);
+    let frequency = (stiffness - 0.09).sqrt();
+    let sum = |t: f64, of: &dyn Fn(f64) -> f64| -> f64 {
+        steps.iter().filter(|(from, _)| *from <= t).map(|(from, size)| size * of(t - from)).sum()
+    };
+    let rings = |t: f64| {
+        let swing = (frequency * t).cos() + 0.3 / frequency * (frequency * t).sin();
+        (1.0 - (-0.3 * t).exp() * swing) / stiffness
+    };
+    let mut noise = noise(9);
+    // It begins away from rest.
+    let motion = |t: f64| 0.4 * (1.0 - stiffness * rings(t)) + sum(t, &rings);
+    let times = (0..600).map(|i| f64::from(i) / 30.0);
+    let rows: Vec<(f64, f64)> = times.map(|t| (t, motion(t) + 0.003 * noise())).collect();
+    let found = smoothed(&mut smoother(scene::<spring::recover::Scene>(), LagSettings::default()), &rows);
+    let is_quiet = |found: &&Smoothed| steps.iter().all(|(from, _)| (found.at - from).abs() > 0.6);
+    let quiet: Vec<&Smoothed> = found[200..590].iter().filter(is_quiet).collect();
+    let is_off = |found: &&&Smoothed| (found.heads[1].0 - sum(found.at, &|_| 1.0)).abs() > 4.0 * found.heads[1].1;
+    let off = quiet.iter().filter(is_off).count();
+    assert!(20 * off < quiet.len(), "{off} of {}", quiet.len());
 }
 
 /// A wrong stiffness has nothing to hide behind where the drive is known to be zero: there is no source then.

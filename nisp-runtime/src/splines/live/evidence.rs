@@ -62,6 +62,12 @@ impl Stretch {
         let status = run.go(&mut solver, &mut place, &Place::save)?;
         let best = place.best().filter(|_| status == Status::Converged).cloned();
         let Tried { kind, state, .. } = best.ok_or(LiveError::Open)?;
+        // The window's sources are as rough all along. Scalars that are learned beside them need not believe so.
+        let mut learned = state.learned.clone();
+        if !learned.is_empty() && solver.has_sources() {
+            run.vary(&mut solver, &mut place, &Place::save)?;
+            learned = place.best().map_or(learned, |best| best.state.learned.clone());
+        }
         solver.set_smoothness(KINDS[kind], &state);
         let classes = state.classes.clone();
         let (state, found, _) = solver.doubted(state, &[])?.ok_or(LiveError::Open)?;
@@ -70,7 +76,7 @@ impl Stretch {
             kind,
             sigma: sigma(&solver, &state),
             sizes: (0..solver.heads.bases.len()).map(|head| solver.source_sizes(&state, head)).collect(),
-            scalars: solver.scalars(&state.learned).to_vec(),
+            scalars: solver.scalars(&learned).to_vec(),
             noise,
             classes,
         };
