@@ -46,8 +46,8 @@ pub(crate) const EITHER_WAY: [f64; 3] = [-1e-3, 0.0, 1e-3];
 /// Difference of the changes either way, over the changes, that is none.
 const ALIKE: f64 = 1e-3;
 
-/// Whether no step leaves a head's value: what it changes, or what it changes of the data, it changes alike either way, as a square
-/// does at zero. By term, whether it is an observation, and its rows at the values of [`EITHER_WAY`].
+/// Whether steps cannot move a head, because all rows that it changes, or all rows of data, change alike either way, as a square does
+/// at zero. By term, whether it is an observation, and its rows at the head's values of [`EITHER_WAY`].
 pub(crate) fn sleeps(terms: &[(bool, [Vec<f64>; 3])]) -> bool {
     let largest = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     let changed: Vec<(bool, bool)> = terms

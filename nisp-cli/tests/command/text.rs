@@ -106,7 +106,7 @@ fn a_domain_says_where_groups_lie() {
     assert_eq!(grid.len(), inside.count());
 }
 
-/// `u = sin(pi x) sin(pi y)` is zero on all edges of an L. What the splines are in its notch says nothing of the answer.
+/// `u = sin(pi x) sin(pi y)` is zero on all edges of an L. Values of the splines in its notch are not part of the answer.
 #[test]
 fn an_answer_over_an_l_is_not_judged_in_the_notch() {
     let place = Place::new();

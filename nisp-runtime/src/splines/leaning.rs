@@ -1,8 +1,8 @@
 //! What learned scalars lean on, where a source stands beside them.
 //!
-//! A source of its own makes up for any value of a scalar: what is learned of the scalar is then which value leaves the source
-//! smallest and smoothest. That tells much where the source is zero or constant over parts of the record, and nothing where it
-//! follows what is measured. The two are told apart by letting the source be larger: much that is told stays where it was.
+//! For any value of a scalar there is a source that fits the data. The value that is learned is the one whose source is smallest and
+//! smoothest. That is right where the source is zero or constant over parts of the record, and means nothing where the source
+//! follows what is measured. To tell the two apart the source may be larger: a scalar that the data tell stays where it was.
 
 use super::iterate::{Phase, State};
 use super::prior::Smoothness;

@@ -56,7 +56,7 @@ impl Solver<'_> {
         state.theta.fill(level);
     }
 
-    /// Heads that no step leaves a state by: the sign of what they become is open.
+    /// Heads that Gauss-Newton steps cannot move from a state, since rows change alike either way: the data leave their sign open.
     pub(super) fn asleep(&self, state: &State) -> Vec<usize> {
         let sleeps = |head: &usize| {
             let at = start::EITHER_WAY.map(|by| {

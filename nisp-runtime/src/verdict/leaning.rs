@@ -8,7 +8,7 @@ use crate::problem::Bound;
 /// constant over parts of a record scalars move by less than a hundredth, where they follow what is measured by a fifth and more.
 const FARTHEST: f64 = 0.1;
 
-/// Checks of all learned scalars, which move so far.
+/// A check for every learned scalar, of how far it moves.
 pub(super) fn checks(bound: &Bound, leaning: &[f64]) -> Vec<Check> {
     let schema = bound.problem.scene().schema;
     let check = |(learned, &moved): (&crate::engine::Learned, &f64)| {

@@ -29,7 +29,7 @@ pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
     ahead.into_iter().chain(moved).chain(strain).map(check).collect()
 }
 
-/// That a carrier came to its end where another one had failed before it: an answer that is not finished settles nothing then.
+/// The check that fails where the budget ended an answer before its steps did, after another carrier had failed.
 pub(crate) fn unfinished() -> Check {
     let said = "the budget ended this answer before its steps did, and what was tried first failed: give a larger budget, or \
                 check the parameters and the data";
