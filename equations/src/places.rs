@@ -10,6 +10,9 @@ use nisp_data::{DataError, Table};
 
 /// Points on a line, over an area and in a volume, or in more dimensions, for equations of second order.
 const POINTS: [usize; 3] = [160, 800, 2000];
+/// How many more there are of an edge over one coordinate: cells get finer than those of an area's own points, and what a condition
+/// does not say between its points nothing says.
+const EDGE: usize = 4;
 
 /// A domain whose regions have been checked.
 pub(crate) struct Body {
@@ -66,8 +69,15 @@ impl Body {
     pub(crate) fn sample(&self, portion: Portion, count: usize) -> Placed {
         match portion {
             Portion::Inside => {
-                let sites = inside(&self.factors, count);
-                Placed { points: weighted(sites, &self.factors), normals: Vec::new() }
+                let last = self.layer(count);
+                let mut points = weighted(inside(&self.factors, count - last), &self.factors);
+                if last > 0 {
+                    let end = self.end(last, true).points;
+                    // The others fill the whole already.
+                    points.weights.extend(vec![0.0; end.weights.len()]);
+                    points.coordinates.extend(end.coordinates);
+                }
+                Placed { points, normals: Vec::new() }
             }
             Portion::Boundary => self.boundary(count),
             Portion::Start => self.end(count, false),
@@ -79,14 +89,25 @@ impl Body {
     pub(crate) fn usual(&self, portion: Portion, order: usize) -> usize {
         let dimensions = self.factors.iter().map(Domain::dim).sum::<usize>();
         let last = self.factors.last().map_or(0, Domain::dim);
-        count(
-            match portion {
-                Portion::Inside => dimensions,
-                Portion::Boundary => dimensions.saturating_sub(1),
-                Portion::Start | Portion::End => dimensions - last,
-            },
-            order,
-        )
+        let of_edge =
+            |dimensions: usize| if dimensions == 1 { EDGE * count(1, order) } else { count(dimensions, order) };
+        match portion {
+            Portion::Inside => count(dimensions, order),
+            Portion::Boundary => of_edge(dimensions.saturating_sub(1)),
+            Portion::Start | Portion::End => of_edge(dimensions - last),
+        }
+    }
+
+    /// How many of so many points within lie where the last of several regions, an interval, ends: no condition says anything there,
+    /// and an equation that is not asked there leaves a strip free.
+    fn layer(&self, count: usize) -> usize {
+        let dimensions = self.factors.iter().map(Domain::dim).sum::<usize>() as f64;
+        match self.factors.last() {
+            Some(last) if last.dim() == 1 && self.factors.len() > 1 => {
+                (count as f64).powf((dimensions - 1.0) / dimensions) as usize
+            }
+            _ => 0,
+        }
     }
 
     /// The edge of the first region, over all of the others.

@@ -89,7 +89,8 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
     for check in solution.verdict.failed() {
         line(format!("failed: {}", check.message));
     }
-    for warning in warnings {
+    let is_said = |warning: &&String| solution.verdict.failed().any(|check| check.message == **warning);
+    for warning in warnings.iter().filter(|warning| !is_said(warning)) {
         line(format!("warning: {warning}"));
     }
     line(run.files_in_words());

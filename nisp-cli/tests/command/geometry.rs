@@ -11,12 +11,6 @@ fn object(ran: &Ran) -> Value {
     serde_json::from_str(&ran.stdout).unwrap_or_else(|_| panic!("{}", ran.stderr))
 }
 
-/// The rows of a CSV without its header.
-fn rows(place: &Place, file: &str) -> Vec<Vec<f64>> {
-    let text = fs::read_to_string(place.path(file)).unwrap();
-    text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
-}
-
 const STEADY: &str = "
     units: off;
     coordinates: x, t: time;
@@ -42,7 +36,7 @@ fn a_steady_source_is_the_same_at_all_times() {
     place.put("u.csv", &format!("x,t,u\n{table}"));
     let ran = place.run("solve bar.pde --data u.csv --grid 11x4 --budget 40 --json");
     assert!(matches!(ran.code, Some(0 | 3)), "{}", ran.stderr);
-    let found = rows(&place, "nisp-out/source.csv");
+    let found = place.rows("nisp-out/source.csv");
     assert_eq!(found.len(), 44);
     for (at, row) in found.iter().enumerate() {
         let (x, q) = (row[0], row[2]);
@@ -71,7 +65,7 @@ fn a_ring_is_a_disc_minus_a_disc() {
     place.put("at.csv", "x_m,y_m\n1.5,0\n0,-1.2\n1.2,1.2\n");
     let ran = place.run("solve ring.pde --at at.csv --budget 25 --points inner=90 --json");
     assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
-    for row in rows(&place, "nisp-out/state.csv") {
+    for row in place.rows("nisp-out/state.csv") {
         let r = row[0].hypot(row[1]);
         let exact = 4.0 - r * r + 2.0 * (2.0 / r).ln() / 2.0_f64.ln();
         assert!((row[2] - exact).abs() < 0.01, "{row:?} instead of {exact}");
@@ -110,7 +104,7 @@ fn regions_are_read_from_files_beside_the_text() {
     assert!(checked.code == Some(2) && checked.stderr.contains("skin.csv"), "{}", checked.stderr);
     let ran = place.run("solve part/part.pde --iterations 2 --grid 5x5x5 --json");
     assert_eq!(ran.code, Some(3), "{}", ran.stderr);
-    let points = rows(&place, "nisp-out/state.csv");
+    let points = place.rows("nisp-out/state.csv");
     // One point of the grid is within x + y + z <= 2 mm, 34 are on its faces: whether these are inside is left open.
     assert!((1..=35).contains(&points.len()), "{}", ran.stdout);
     assert!(points.iter().all(|row| row[0] + row[1] + row[2] <= 2e-3 * (1.0 + 1e-9)), "{points:?}");
@@ -133,7 +127,7 @@ fn regions_are_read_from_files_beside_the_text() {
     );
     place.put("outline.csv", "x [mm],y [mm]\n0,0\n1000,0\n1000,500\n0,500\n");
     let ran = place.run("solve plate.pde --iterations 2 --grid 3x3 --out plate");
-    assert!(rows(&place, "plate/state.csv").iter().all(|row| row[0] <= 1.0 && row[1] <= 0.5), "{}", ran.stderr);
+    assert!(place.rows("plate/state.csv").iter().all(|row| row[0] <= 1.0 && row[1] <= 0.5), "{}", ran.stderr);
 }
 
 /// A cloud of a paraboloid over a disc: the load that bends a membrane so is even.
@@ -154,7 +148,7 @@ fn a_text_takes_a_cloud() {
     place.put("scan.csv", &format!("x,y,z\n{}", (0..400).map(sunflower).collect::<String>()));
     let ran = place.run("solve drum.pde --data scan.csv --unit mm --grid 9x9 --budget 20 --json");
     assert!(matches!(ran.code, Some(0 | 3)), "{}", ran.stderr);
-    let off = rows(&place, "nisp-out/state.csv").into_iter().map(|row| {
+    let off = place.rows("nisp-out/state.csv").into_iter().map(|row| {
         let exact = 10.0 * (1.0 - (row[0] * row[0] + row[1] * row[1]) / 0.01);
         (row[2] - exact).abs()
     });

@@ -8,6 +8,7 @@ mod contact;
 mod contract;
 mod eval;
 mod folders;
+mod forward;
 mod gaps;
 mod geometry;
 mod interrupt;

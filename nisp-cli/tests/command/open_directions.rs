@@ -62,6 +62,6 @@ fn a_plate_without_a_slope_at_its_edge_is_open() {
     let open = ended("plate --scene edge_only", 3);
     let checks = open["verdict"].as_array().unwrap();
     assert!(checks.iter().any(|check| check["check"] == "determined" && check["passed"] == false), "{checks:?}");
-    assert!(open["warnings"].to_string().contains("the data do not determine `w`"));
+    assert!(open["warnings"].to_string().contains("equations and conditions do not determine `w`"));
     assert!(!warnings_of("plate --scene clamped").contains("do not determine"));
 }

@@ -10,12 +10,6 @@ fn object(ran: &Ran) -> Value {
     serde_json::from_str(&ran.stdout).unwrap_or_else(|_| panic!("{}", ran.stderr))
 }
 
-/// The rows of a CSV without its header.
-fn rows(place: &Place, file: &str) -> Vec<Vec<f64>> {
-    let text = fs::read_to_string(place.path(file)).unwrap();
-    text.lines().skip(1).map(|line| line.split(',').map(|cell| cell.parse().unwrap()).collect()).collect()
-}
-
 #[test]
 fn a_shipped_equation_in_a_text_has_the_same_answer() {
     const SOURCE: &str = include_str!("../../../equations/src/rlc.rs");
@@ -95,11 +89,11 @@ fn a_domain_says_where_groups_lie() {
     assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
     // k (r^2 - |x - c|^2) / 4
     let exact = [4.0, 3.0, 4.0 - 1.44];
-    for (row, exact) in rows(&place, "nisp-out/state.csv").iter().zip(exact) {
+    for (row, exact) in place.rows("nisp-out/state.csv").iter().zip(exact) {
         assert!((row[2] - exact).abs() < 1e-4, "{row:?}");
     }
     let ran = place.run("solve disc.pde --grid 9x5 --iterations 2 --out grid");
-    let grid = rows(&place, "grid/state.csv");
+    let grid = place.rows("grid/state.csv");
     assert!(ran.code == Some(3) && grid.iter().all(|row| (row[0] - 0.5).hypot(row[1]) <= 2.0), "{}", ran.stderr);
     // Points of the grid that lie in the disc.
     let inside = (0..45).filter(|i| (f64::from(i % 9) * 0.5 - 2.0).hypot(f64::from(i / 9) - 2.0) <= 2.0);
@@ -159,7 +153,7 @@ fn what_is_missing_is_named() {
     assert_eq!(place.names(), ["plate.pde", "u.csv"]);
     let ran = place.run("solve plate.pde --data u.csv --data inside=u.csv --data edge=u.csv --grid 3x3 --iterations 2");
     assert_eq!(ran.code, Some(3), "{}", ran.stderr);
-    assert_eq!(rows(&place, "nisp-out/source.csv").len(), 9);
+    assert_eq!(place.rows("nisp-out/source.csv").len(), 9);
 }
 
 /// Over three coordinates the answer is drawn in planes.
@@ -174,7 +168,7 @@ fn a_slab_is_drawn_in_planes() {
     place.put("slab.pde", text);
     let ran = place.run("solve slab.pde --iterations 2 --width 6 --grid 3x3x2");
     assert_eq!(ran.code, Some(3), "{}", ran.stderr);
-    assert_eq!(rows(&place, "nisp-out/state.csv").len(), 18);
+    assert_eq!(place.rows("nisp-out/state.csv").len(), 18);
     let plot = fs::read_to_string(place.path("nisp-out/plot.svg")).unwrap();
     assert!(["t = 0 s", "t = 2.5 s", "t = 5 s"].iter().all(|title| plot.contains(title)));
 }

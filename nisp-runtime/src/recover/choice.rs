@@ -7,12 +7,15 @@ use super::on_splines::OnSplines;
 use super::settings::{Carrier, Optimizer, Settings};
 use crate::local::{Local, smooth};
 use crate::problem::Bound;
-use crate::schema::{Scene, TermKind};
+use crate::schema::Scene;
 use crate::solve::state::State;
 use crate::splines;
 
 /// Rows from which on a network takes longer than anybody waits.
 const MANY: usize = 5000;
+
+/// Share of the budget that a lattice may take where a network can be tried after it.
+const FIRST: f64 = 0.4;
 
 /// Which carrier: the only place that tells them apart.
 #[derive(Clone, Copy, PartialEq)]
@@ -30,6 +33,8 @@ pub(super) struct Attempt {
     pub(super) carrier: Box<dyn carried::Carrier>,
     pub(super) seed: u64,
     pub(super) why: String,
+    /// What it may take of the budget, as a share.
+    pub(super) share: f64,
 }
 
 impl Attempt {
@@ -40,7 +45,7 @@ impl Attempt {
             Chosen::Lattice => Box::new(OnLattice),
             Chosen::Local(local) => Box::new(local),
         };
-        Self { carrier, seed, why }
+        Self { carrier, seed, why, share: 1.0 }
     }
 }
 
@@ -58,12 +63,14 @@ pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>)
     if let Some(chosen) = from.map(saved) {
         return (Attempt::new(chosen, seed, why), Vec::new());
     }
+    let is_measured = !bound.problem.scene().schema.observed().is_empty();
     let after = |what: &str| format!("what was tried first ended inconsistent; {what}");
     let network = |seed: u64, what: &str| Attempt::new(Chosen::Network, seed, after(what));
     let is_free = settings.carrier == Carrier::Auto && settings.optimizer == Optimizer::Auto;
     let can_splines = splines::refused(bound.problem.scene().schema).is_none();
     let others = match chosen {
         _ if !is_free => Vec::new(),
+        Chosen::Lattice if !is_measured => vec![network(seed, "a network instead of splines")],
         Chosen::Local(_) | Chosen::Lattice => Vec::new(),
         Chosen::Splines if most_rows(bound) > MANY => Vec::new(),
         Chosen::Splines => vec![network(seed, "a network instead of splines")],
@@ -72,7 +79,9 @@ pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>)
         }
         Chosen::Network => vec![network(seed.wrapping_add(1), "another seed")],
     };
-    (Attempt::new(chosen, seed, why), others)
+    // A lattice may get finer and finer for a layer that a network follows.
+    let share = if chosen == Chosen::Lattice && !others.is_empty() { FIRST } else { 1.0 };
+    (Attempt { share, ..Attempt::new(chosen, seed, why) }, others)
 }
 
 /// The carrier of a problem, and why.
@@ -104,7 +113,6 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
     if schema.coordinates.len() > 1 {
         return match smooth::refused(schema) {
             Some(what) => (Chosen::Network, format!("splines do not do {what}")),
-            None if !is_measured(schema) => (Chosen::Network, "nothing is measured".into()),
             None => (Chosen::Lattice, format!("{} coordinates", schema.coordinates.len())),
         };
     }
@@ -113,12 +121,6 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
         (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short")),
         (None, None) => (Chosen::Splines, "one coordinate".into()),
     }
-}
-
-/// True if an observation or a cloud compares with data.
-fn is_measured(schema: &Scene) -> bool {
-    let mut terms = schema.groups.iter().flat_map(|group| group.terms);
-    terms.any(|term| matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. }))
 }
 
 /// A source of which an equation reads a derivative.

@@ -177,13 +177,16 @@ fn solve(
         let mut first: Option<Solution> = None;
         loop {
             let settings = &Settings { seed: attempt.seed, ..settings.clone() };
+            let limits = Limits { budget: limits.budget.map(|budget| budget.mul_f64(attempt.share)), ..limits };
             let course = Course::new(fingerprint, limits, start, from, &mut *monitor);
             let is_witness = attempt.carrier.is_witness();
             let solved = attempt.carrier.solve(bound, settings, course)?;
             let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
             let contradicts = is_witness && solution.verdict.contradicts();
             let is_over = solution.is_clear() || contradicts || solution.status == Status::Interrupted;
-            let is_unfinished = first.is_some() && is_over && solution.status == Status::Budget;
+            // Where nothing is measured, what is left of the equations tells all.
+            let is_judged = !bound.problem.scene().schema.observed().is_empty();
+            let is_unfinished = is_judged && first.is_some() && is_over && solution.status == Status::Budget;
             let mut solution = if is_over { solution } else { first.take().unwrap_or(solution) };
             solution.verdict.checks.extend(is_unfinished.then(settled::unfinished));
             solution.wall_s = start.elapsed().as_secs_f64();

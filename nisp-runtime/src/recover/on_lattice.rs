@@ -28,6 +28,10 @@ impl Carrier for OnLattice {
         smooth::METHOD
     }
 
+    fn is_witness(&self) -> bool {
+        true
+    }
+
     fn solve(&self, bound: &Bound, _: &Settings, mut course: Course<'_, '_>) -> Result<Solved, RecoverError> {
         if let Some(what) = smooth::refused(bound.problem.scene().schema) {
             return Err(RecoverError::Splines(what));

@@ -113,7 +113,7 @@ const FOLLOWED: &str = "it goes on from the answer before";
 const SOUGHT: &str = "there was no answer to go on from";
 
 fn attempt(local: Local, settings: &Settings, why: &str) -> Attempt {
-    Attempt { carrier: Box::new(local), seed: settings.seed, why: why.into() }
+    Attempt { carrier: Box::new(local), seed: settings.seed, why: why.into(), share: 1.0 }
 }
 
 impl Kept {

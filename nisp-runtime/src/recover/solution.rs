@@ -164,8 +164,7 @@ impl Solution {
 
     /// What is left open where nothing is measured: any answer would be as good, and no error bars say so.
     fn left_open(&self) -> Option<Check> {
-        let mut terms = self.scene().groups.iter().flat_map(|group| group.terms);
-        if terms.any(|term| matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. })) {
+        if !self.scene().observed().is_empty() || self.status == Status::NotConverged {
             return None;
         }
         let warning = self.warnings.iter().find(|warning| warning.kind == WarningKind::Undetermined)?;

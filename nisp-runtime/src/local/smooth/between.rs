@@ -2,6 +2,7 @@
 //! is asked, and whether an answer holds its equations is told by places that it was not asked at.
 
 use rand::rngs::StdRng;
+use rand::seq::index::sample;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
@@ -22,6 +23,9 @@ const FEWEST_BASES: usize = 200;
 /// Seeds of places that equations are asked at, and of others.
 const ASKED: u64 = 0;
 const OTHERS: u64 = 1;
+const PICKED: u64 = 2;
+/// Exact measurements to a point of the equations at most: as many more than unknowns as these points are.
+const MEASURED: usize = 2;
 
 /// How many points an equation is asked at before it is known whether these are enough. A source of all coordinates may be
 /// anything between the given ones.
@@ -42,6 +46,30 @@ pub(super) fn filled(bound: &Bound, points: usize) -> Option<Bound> {
     let mut filled = bound.clone();
     filled.coordinates[at].extend(between(bound, at, points - count(bound, at), ASKED));
     Some(filled)
+}
+
+/// The problem with no more measurements than an answer can use where equations are asked at so many points; nothing where it has no
+/// more. Measurements must be exact: many noisy ones tell more than few.
+pub(super) fn thinned(bound: &Bound, points: usize) -> Option<Bound> {
+    let schema = bound.problem.scene().schema;
+    let measures = |at: &usize| schema.groups[*at].terms.iter().all(|term| term.kind == TermKind::Observation);
+    let most = (MEASURED * points).max(ENOUGH);
+    let large: Vec<usize> = (0..schema.groups.len()).filter(measures).filter(|&at| count(bound, at) > most).collect();
+    if large.is_empty() {
+        return None;
+    }
+    let (inputs, mut thinned) = (schema.coordinates.len(), bound.clone());
+    for at in large {
+        // Measurements in rows, evenly picked, may all be of one place.
+        let mut chosen = sample(&mut StdRng::seed_from_u64(PICKED), count(bound, at), most).into_vec();
+        chosen.sort_unstable();
+        let coordinates = chosen.iter().flat_map(|&p| &bound.coordinates[at][p * inputs..][..inputs]);
+        thinned.coordinates[at] = coordinates.copied().collect();
+        for (own, all) in thinned.columns[at].iter_mut().zip(&bound.columns[at]) {
+            *own = chosen.iter().map(|&p| all[p]).collect();
+        }
+    }
+    Some(thinned)
 }
 
 /// The problem with the equation of [`filled`] at other places, and which group that is.

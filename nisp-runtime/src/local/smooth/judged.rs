@@ -16,8 +16,10 @@ use crate::solve::vector::root_mean_square;
 const TENSE: f64 = 0.2;
 /// Distances to a cloud that splines do not follow, as a share of a cell: they are of high degree.
 const UNRESOLVED: f64 = 3e-3;
-/// What may be left of an equation between the points that it was asked at, over its size.
+/// What may be left of an equation between the points that it was asked at, over its size; and where nothing is noisy, so that only
+/// the cells keep an answer from being exact.
 const BETWEEN: f64 = 0.03;
+const EXACT: f64 = 1e-3;
 /// Noise that is found, beside what neighbouring measurements say, from which on these are missed.
 pub(super) const MISSED: f64 = 1.3;
 /// The same ratio above which the cells are taken to be too coarse for what is measured.
@@ -58,7 +60,7 @@ impl Solver<'_> {
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state.
-    fn deviations(&mut self, state: &State) -> Option<Deviations> {
+    pub(super) fn deviations(&mut self, state: &State) -> Option<Deviations> {
         let slopes = self.set_learned(&state.learned);
         self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
         let assembled = self.assemble(state, &slopes);
@@ -86,9 +88,28 @@ impl Solver<'_> {
             equations.flat_map(|term| term.first..term.first + term.rows).map(of_row).fold(0.0, f64::max)
         };
         let asked = self.groups.iter().map(|group| left(group, &|row| TENSE * group.sigma[row]));
+        let share = if noise.is_there(self.schema()) { BETWEEN } else { EXACT };
         let between = others(&self.bound)
-            .map_or(0.0, |(at, bound)| left(&groups(&bound, &self.heads)[at], &|row| BETWEEN * self.sizes[at][row]));
+            .map_or(0.0, |(at, bound)| left(&groups(&bound, &self.heads)[at], &|row| share * self.sizes[at][row]));
         asked.chain([between, self.missed(state, noise) / MISSED]).fold(0.0, f64::max)
+    }
+
+    /// How far an answer is from one on another lattice, at most: heads at the points of equations and data over their size, or learned
+    /// scalars.
+    pub(super) fn apart(&self, state: &State, other: &Solver<'_>, before: &State) -> f64 {
+        let schema = self.schema();
+        let of = |head: usize| {
+            let seen = schema.groups.iter().zip(&self.bound.coordinates);
+            let points = seen.filter(|(group, _)| group.jets.iter().any(|jet| jet.head == head));
+            let points: Vec<f64> = points.flat_map(|(_, points)| points.iter().copied()).collect();
+            let (own, others) =
+                (self.heads.values(head, &points, &state.theta), other.heads.values(head, &points, &before.theta));
+            let change = root_mean_square(own.iter().zip(&others).map(|(a, b)| a - b));
+            if change > 0.0 { change / root_mean_square(own) } else { 0.0 }
+        };
+        let value = |at: usize, state: &State| self.bound.learned[at].map.at(state.learned[at]).0;
+        let learned = (0..self.bound.learned.len()).map(|at| (value(at, before) / value(at, state) - 1.0).abs());
+        (0..schema.heads.len()).map(of).chain(learned).fold(0.0, f64::max)
     }
 
     /// How much larger the measurements' noise is, as found here, than that which neighbouring ones say, at most.

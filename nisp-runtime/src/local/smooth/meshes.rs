@@ -13,15 +13,20 @@ const SMOOTH: usize = 3;
 const SMOOTHER: usize = 5;
 /// Points of an equation to an unknown of a field, at least: as many more as let no pattern of coefficients escape.
 const POINTS: f64 = 2.0;
-/// Functions that hardly any point sees, as a share of what the others see, are left out.
+/// Functions of whose highest derivative hardly any point sees anything, as a share of what the others show, are left out.
 const UNSEEN: f64 = 1e-9;
 /// Cells along a coordinate at most.
 const MOST_CELLS: usize = 80;
 
+/// Order of a head's highest derivative.
+fn order(schema: &schema::Scene, head: usize) -> usize {
+    let jets = schema.groups.iter().flat_map(|group| group.jets).filter(|jet| jet.head == head);
+    jets.map(|jet| jet.degree.iter().map(|&n| usize::from(n)).sum()).max().unwrap_or(0)
+}
+
 /// Degree of a head's splines, or nothing if it would be too high.
 pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
-    let jets = schema.groups.iter().flat_map(|group| group.jets).filter(|jet| jet.head == head);
-    let order = jets.map(|jet| jet.degree.iter().map(|&n| usize::from(n)).sum::<usize>()).max().unwrap_or(0);
+    let order = order(schema, head);
     let smoother = order + if schema.coordinates.len() == 2 { SMOOTHER } else { SMOOTH };
     (order + SMOOTH <= HIGHEST_DEGREE).then(|| smoother.min(HIGHEST_DEGREE))
 }
@@ -47,7 +52,9 @@ pub(super) fn lattices(bound: &Bound) -> (Vec<Lattice>, Vec<usize>) {
             schema.groups.iter().zip(&bound.coordinates).filter(|(g, _)| g.jets.iter().any(|jet| jet.head == head));
         let points = seen.flat_map(|(_, points)| points.chunks_exact(inputs));
         let places: Vec<Place> = points.map(|point| lattice.place(point)).collect();
-        lattice.keep(places.into_iter(), UNSEEN);
+        // What a cell's corner shows of a spline falls with its degree, and of a derivative with the degree less its order.
+        let power = lattice.degree as f64 / (lattice.degree - order(schema, head)) as f64;
+        lattice.keep(places.into_iter(), UNSEEN.powf(power));
         lattice
     };
     ((0..schema.heads.len()).map(lattice).collect(), base.cells.clone())

@@ -16,6 +16,7 @@ mod starts;
 mod state;
 mod step;
 mod told;
+mod undetermined;
 mod unmeasured;
 
 use std::time::Instant;
@@ -49,6 +50,8 @@ const MORE: usize = 2;
 const EASED: f64 = 0.9;
 /// Finer lattices that may not help, one after the other, where measurements are missed by far.
 const PATIENCE: usize = 2;
+/// Change of sources, fields and learned scalars from a lattice to a finer one, as a share, that is none.
+const SAME: f64 = 0.01;
 /// How much longer a finer lattice takes at least. Where it does not end within the budget, nothing is lost but time.
 const SLOWER: f64 = 1.0;
 
@@ -83,13 +86,14 @@ pub(crate) fn solve(
         state.restore(saved).map_err(LocalError::Fault)?;
     }
     let mut run = Run::go(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
-    let (mut strain, mut idle) = (f64::INFINITY, 0);
+    let is_noisy = noise.is_there(bound.problem.scene().schema);
+    let (mut strain, mut idle, mut changed) = (f64::INFINITY, 0, f64::INFINITY);
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
         let missed = solver.missed(&run.state, noise);
         let is_missed = missed > MISSED;
         // Where cells miss measurements, which then count as noise, one finer lattice may be too coarse as well.
-        let patience = if is_missed { PATIENCE } else { 1 };
+        let patience = if is_missed || !is_noisy { PATIENCE } else { 1 };
         idle = if strain > EASED * before { idle + 1 } else { 0 };
         if strain < 1.0 || idle >= patience {
             break;
@@ -114,6 +118,8 @@ pub(crate) fn solve(
         let classes = if is_missed { first.classes } else { run.state.known() };
         let first = State { classes, ..first };
         let Ok(found) = Run::go(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
+        // Steps on a finer lattice begin anew, so that what agrees before they end agrees all the more.
+        changed = finer.apart(&found.state, &solver, &run.state);
         match found.status {
             Status::Converged => (solver, run, points) = (finer, found, more),
             Status::NotConverged => break,
@@ -125,7 +131,7 @@ pub(crate) fn solve(
             }
         }
     }
-    finish(bound, solver, run, noise, &clock)
+    finish(bound, solver, run, noise, (&clock, changed))
 }
 
 /// Points of the largest equation in a saved state.
@@ -133,13 +139,13 @@ fn saved_points(saved: &Saved) -> Result<usize, Fault> {
     saved.counter("points").map(|points| points as usize)
 }
 
-/// Error bars, and what the verdict is made from.
+/// Error bars, and what the verdict is made from, of an answer that the last of its lattices has changed by this share.
 fn finish(
     bound: &Bound,
     mut solver: Solver<'_>,
     run: Run,
     noise: &Noise,
-    clock: &Clock,
+    (clock, changed): (&Clock, f64),
 ) -> Result<LocalSolution, LocalError> {
     let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
     let mut warnings = Vec::new();
@@ -156,7 +162,12 @@ fn finish(
     };
     let sources = bound.problem.scene().schema.heads.iter().enumerate();
     warnings.extend(sources.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
-    let strain = (status == Status::Budget).then(|| solver.strain(&state, noise));
+    if bound.problem.scene().schema.observed().is_empty() && clock.has_time(longest) {
+        warnings.extend(solver.undetermined(&state));
+    }
+    // What a finer lattice has hardly changed, another one will not.
+    let is_open = status == Status::Budget && changed > SAME;
+    let strain = is_open.then(|| solver.strain(&state, noise));
     solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
     answer.strain = strain;

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::between::filled;
+use super::between::{filled, thinned};
 use super::freedom::{Freedom, Unmeasured};
 use super::meshes::{lattices, together};
 use super::prior::Prior;
@@ -68,7 +68,9 @@ fn freedom(heads: &Heads, head: usize, prior: &Prior) -> Result<Freedom, LocalEr
 impl<'a> Solver<'a> {
     /// With equations asked at so many points at least. The scene must not be refused.
     pub(super) fn new(problem: &'a Bound, points: usize, noise: &Noise) -> Result<Self, LocalError> {
-        let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
+        let few = if noise.is_there(problem.problem.scene().schema) { None } else { thinned(problem, points) };
+        let few = few.map_or(Cow::Borrowed(problem), Cow::Owned);
+        let bound = filled(&few, points).map_or(few, Cow::Owned);
         let schema = bound.problem.scene().schema;
         let (lattices, cells) = lattices(&bound);
         let heads = Heads::new(&bound, lattices);

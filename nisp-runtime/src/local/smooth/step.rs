@@ -3,6 +3,7 @@
 use faer::Mat;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
+use rayon::prelude::*;
 
 use super::freedom::Unmeasured;
 use super::solver::Solver;
@@ -336,12 +337,13 @@ fn is_any(counts: &[Vec<bool>]) -> bool {
 /// How many unknowns rows settle, in the mean over random combinations of them (Hutchinson); of so many coefficients and learned
 /// scalars.
 fn used(rows: &[(&Block, usize)], factor: &Factor, lens: (usize, usize), random: &mut StdRng) -> Option<f64> {
-    let mut probe = || {
+    let signs: Vec<Vec<bool>> = (0..PROBES).map(|_| rows.iter().map(|_| random.random()).collect()).collect();
+    let probe = |signs: &Vec<bool>| {
         let (mut by, mut below) = (vec![0.0; lens.0], vec![0.0; lens.1]);
-        rows.iter().for_each(|(block, row)| block.add_signed(*row, random.random(), &mut by, &mut below));
+        rows.iter().zip(signs).for_each(|((block, row), sign)| block.add_signed(*row, *sign, &mut by, &mut below));
         (by, below)
     };
-    let (probes, below): (Vec<Vec<f64>>, Vec<Vec<f64>>) = (0..PROBES).map(|_| probe()).unzip();
+    let (probes, below): (Vec<Vec<f64>>, Vec<Vec<f64>>) = signs.par_iter().map(probe).unzip();
     let probes = Mat::from_fn(lens.0, PROBES, |row, column| probes[column][row]);
     Some(factor.products(&probes, &below)?.iter().sum::<f64>() / PROBES as f64)
 }

@@ -1,0 +1,59 @@
+//! What equations and conditions leave open where nothing is measured: no error bars say so there.
+
+use super::solver::Solver;
+use super::state::State;
+use crate::schema;
+use crate::solve::driver::{Warning, WarningKind};
+use crate::solve::vector::{largest, root_mean_square};
+use crate::tolerance::LOOSE;
+
+/// Deviation of a field over its size from which on it is open, where equations are off by [`LOOSE`].
+const OPEN: f64 = 0.5;
+/// Size of a field or of an equation's terms over the natural one up to which it is zero.
+const ZERO: f64 = 1e-4;
+/// Points that are looked at, at most.
+const MOST: usize = 500;
+
+impl Solver<'_> {
+    /// The fields of an answer that may be otherwise, and where most of all.
+    pub(super) fn undetermined(&mut self, state: &State) -> Vec<Warning> {
+        // Beside strict equations rounding would hold what nothing else does.
+        let loose = State { tolerance: LOOSE, ..state.clone() };
+        // Terms of what is at rest have no size.
+        let terms = self.schema().groups.iter().zip(&self.bound.sizes);
+        for (own, (term, natural)) in self.sizes.iter_mut().zip(terms.map(|(group, natural)| (group.terms, natural))) {
+            for (term, natural) in term.iter().zip(natural) {
+                let rows = own[term.first..term.first + term.rows].iter_mut();
+                rows.filter(|size| **size < ZERO * natural).for_each(|size| *size = *natural);
+            }
+        }
+        self.set_sigmas(&loose);
+        let Some(deviations) = self.deviations(&loose) else { return Vec::new() };
+        let (schema, inputs) = (self.schema(), self.schema().coordinates.len());
+        let points: Vec<f64> =
+            self.bound.coordinates.iter().max_by_key(|points| points.len()).cloned().unwrap_or_default();
+        let step = (points.len() / inputs).div_ceil(MOST).max(1);
+        let points: Vec<&[f64]> = points.chunks_exact(inputs).step_by(step).collect();
+        let open = |(head, declared): (usize, &schema::Head)| {
+            let deviation = |point: &&[f64]| root_mean_square(self.heads.drawn(head, point, &deviations.coefficients));
+            let deviations: Vec<f64> = points.iter().map(deviation).collect();
+            let size = root_mean_square(self.heads.values(head, &points.concat(), &state.theta));
+            let natural = self.heads.scale[head];
+            let size = if size > ZERO * natural { size } else { natural };
+            if root_mean_square(deviations.iter().copied()) <= OPEN * size {
+                return None;
+            }
+            let most = largest(&deviations);
+            let off = deviations[most] * self.bound.system.outward(&declared.unit);
+            let message = format!(
+                "equations and conditions do not determine `{}`: it may be off by about {} at {}; give the conditions that are \
+                 missing",
+                declared.name,
+                format!("{off:.1e} {}", declared.unit.text).trim_end(),
+                self.bound.place(points[most]),
+            );
+            Some(Warning { kind: WarningKind::Undetermined, message })
+        };
+        schema.heads.iter().enumerate().filter_map(open).collect()
+    }
+}
