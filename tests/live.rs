@@ -69,6 +69,23 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// A stirred tank that heats itself, and an unknown heater.
+    mod tank {
+        coordinates: t [min];
+        fields: c [mol/l], T [K];
+        sources: q [K/min];
+        parameters: cold [K] = 300;
+        let rate = 5e9 [1/min] * exp(-7500 [K] / T) * c;
+        on tank {
+            mass: d(c, t) == 0.1 [1/min] * (2 [mol/l] - c) - rate;
+            heat: d(T, t) == 0.1 [1/min] * (cold - T) + 60 [K l/mol] * rate + q;
+        }
+        on samples { observe T; }
+        scene recover { }
+    }
+}
+
 /// Numbers of deviation one, the same every time: sums of twelve uniform ones (a linear congruential generator, Knuth).
 fn noise(seed: u64) -> impl FnMut() -> f64 {
     let mut state = seed;
@@ -196,6 +213,63 @@ fn a_spring_is_learned_from_the_steps_of_its_force() {
     let is_off = |found: &&&Smoothed| (found.heads[1].0 - sum(found.at, &|_| 1.0)).abs() > 4.0 * found.heads[1].1;
     let off = quiet.iter().filter(is_off).count();
     assert!(20 * off < quiet.len(), "{off} of {}", quiet.len());
+}
+
+/// An oscillator at rest until it is driven: `y = 1 - cos 3 s` for the time `s` after that. The first rows say that there is no drive.
+#[test]
+fn a_drive_that_sets_in_late_is_found() {
+    let (begins, sigma) = (8.5, 0.01);
+    let since = |t: f64| (t - begins).max(0.0);
+    let drive = |t: f64| match since(t) {
+        s if s > 0.0 => 4.0 + 5.0 * (3.0 * s).cos() + 1.2 * (3.0 * s).sin(),
+        _ => 0.0,
+    };
+    let mut noise = noise(4);
+    let times = (0..1000).map(|i| 0.02 * f64::from(i));
+    let rows: Vec<(f64, f64)> = times.map(|t| (t, 1.0 - (3.0 * since(t)).cos() + sigma * noise())).collect();
+    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    assert_eq!(found.len(), rows.len());
+    assert!(found.iter().zip(&rows).all(|(found, row)| (found.at - row.0).abs() < 1e-9), "every row once, in order");
+    let driven = &found[430..990];
+    let sound: Vec<&Smoothed> = driven.iter().filter(|found| found.is_sound()).collect();
+    assert!(10 * sound.len() > 8 * driven.len(), "{} of {} rows are sound", sound.len(), driven.len());
+    let off = sound.iter().filter(|found| (found.heads[1].0 - drive(found.at)).abs() > 4.0 * found.heads[1].1).count();
+    assert!(20 * off < sound.len(), "{off} of {} rows are off", sound.len());
+}
+
+/// Where a reaction depends on the temperature as `exp(-E / T)`, a whole step may lead to where nothing has a value. The truth is by
+/// Runge and Kutta.
+#[test]
+fn a_tank_that_heats_itself_is_followed() {
+    let heater = |t: f64| if (21.0..36.0).contains(&t) { 3.0 } else { 0.0 };
+    let slope = |t: f64, [c, hot]: [f64; 2]| {
+        let rate = 5e9 * (-7500.0 / hot).exp() * c;
+        [0.1 * (2.0 - c) - rate, 0.1 * (300.0 - hot) + 60.0 * rate + heater(t)]
+    };
+    let step = 0.001;
+    let next = |t: f64, y: [f64; 2]| {
+        let ahead = |k: [f64; 2], by: f64| [y[0] + by * k[0], y[1] + by * k[1]];
+        let k1 = slope(t, y);
+        let k2 = slope(t + step / 2.0, ahead(k1, step / 2.0));
+        let k3 = slope(t + step / 2.0, ahead(k2, step / 2.0));
+        let k4 = slope(t + step, ahead(k3, step));
+        std::array::from_fn(|i| y[i] + step / 6.0 * (k1[i] + 2.0 * k2[i] + 2.0 * k3[i] + k4[i]))
+    };
+    let mut noise = noise(5);
+    let (mut state, mut rows) = ([2.0, 300.0], Vec::new());
+    for i in 0..60_000 {
+        let t = f64::from(i) * step;
+        if i % 60 == 0 {
+            rows.push((t, state[1] + 0.03 * noise()));
+        }
+        state = next(t, state);
+    }
+    let found = smoothed(&mut smoother(scene::<tank::recover::Scene>(), LagSettings::default()), &rows);
+    let driven = &found[430..990];
+    let sound: Vec<&Smoothed> = driven.iter().filter(|found| found.is_sound()).collect();
+    assert!(10 * sound.len() > 7 * driven.len(), "{} of {} rows are sound", sound.len(), driven.len());
+    let off = sound.iter().filter(|found| (found.heads[2].0 - heater(found.at)).abs() > 4.0 * found.heads[2].1).count();
+    assert!(20 * off < sound.len(), "{off} of {} rows are off", sound.len());
 }
 
 /// A wrong stiffness has nothing to hide behind where the drive is known to be zero: there is no source then.

@@ -115,7 +115,8 @@ Rows of a record:
   CSV as for `nisp solve`: names and units in the header, empty or nan cells where nothing was measured, times that rise.
   The first 200 rows say how large the noise is, how smooth the sources are, and which lag is worth waiting for; then
   they are all answered, and every later row when the record is a lag farther. Where the record ends the last rows are
-  answered at shorter lags. After a gap longer than the lag it begins anew with the next 200 rows. A row that cannot be
+  answered at shorter lags. After a gap longer than the lag it begins anew with the next 200 rows. Where answers no longer
+  fit the rows (a source sets in after quiet ones) the last 400 are solved as the first ones were. A row that cannot be
   taken (time that goes back, a word for a number) gets a line that says so, and the next one is waited for.
 
 Answers to rows, one JSON object a line:

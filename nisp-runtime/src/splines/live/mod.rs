@@ -5,6 +5,7 @@
 //! how smooth the sources are, and after which lag a longer wait would tell little more. Later parts of the record are asked
 //! again, on a thread of their own.
 
+mod again;
 mod evidence;
 mod grid;
 mod opening;

@@ -3,6 +3,7 @@
 use std::collections::VecDeque;
 use std::thread::{self, JoinHandle};
 
+use super::again::Patience;
 use super::evidence::{Stretch, Weights};
 use super::grid::Grid;
 use super::opening::Opening;
@@ -21,6 +22,8 @@ const NEAR: f64 = 1.05;
 /// Steps over the first cells at most, and the change that no longer matters.
 const FIRST_STEPS: usize = 20;
 const SETTLED: f64 = 1e-8;
+const MORE_STEPS: usize = 5;
+const SMALL: f64 = 0.5;
 /// Rows of a later stretch that is asked for noise and smoothness, at most, and rows between such stretches, at most.
 const STRETCH: usize = 1000;
 const BETWEEN: usize = 4000;
@@ -39,17 +42,18 @@ const SLACK: f64 = 1e-6;
 /// Work and memory of a row are bounded, whatever the length of the record. The same rows give the same answers.
 pub struct FixedLagSmoother {
     problem: Problem,
-    settings: LagSettings,
+    pub(super) settings: LagSettings,
     layout: Layout,
     /// Place of the last row, in the declared unit.
     last: Option<f64>,
     /// Rows in declared units until noise and smoothness are known.
     waiting: Vec<MeasuredRow>,
-    live: Option<Live>,
+    pub(super) live: Option<Live>,
+    pub(super) patience: Patience,
 }
 
 /// Rows under way.
-struct Live {
+pub(super) struct Live {
     window: Window,
     /// The answer to the first rows, while one of them waits.
     opening: Option<Opening>,
@@ -88,7 +92,15 @@ impl FixedLagSmoother {
             return Err(LiveError::Scene(what));
         }
         let layout = Layout::of(&problem)?;
-        Ok(Self { problem, settings, layout, last: None, waiting: Vec::new(), live: None })
+        Ok(Self {
+            problem,
+            settings,
+            layout,
+            last: None,
+            waiting: Vec::new(),
+            live: None,
+            patience: Patience::default(),
+        })
     }
 
     /// What every row has a number for, in this order.
@@ -98,7 +110,7 @@ impl FixedLagSmoother {
 
     /// How long answers wait for later rows, in the coordinate's declared unit; nothing before the first rows have said so.
     pub fn lag(&self) -> Option<f64> {
-        self.live.as_ref().map(|live| live.lag / live.inward.0)
+        self.live.as_ref().map(Live::declared_lag)
     }
 
     /// Takes a row: its place, and a number for each of [`FixedLagSmoother::columns`], NaN where nothing was measured. Gives the
@@ -114,9 +126,14 @@ impl FixedLagSmoother {
         let mut found = Vec::new();
         if let Some(live) = &mut self.live {
             let row = live.inward(at, values);
-            match live.push(&self.layout, row, &|_, _| None, &mut found)? {
-                Reach::Whole => return Ok(found),
-                Reach::Gap => {
+            self.patience.row();
+            match live.push(&self.layout, row, &|_, _| None, &mut found) {
+                Ok(Reach::Whole) => {
+                    found.extend(self.recover());
+                    return Ok(found);
+                }
+                Err(error) => return self.begin_again().ok_or(error),
+                Ok(Reach::Gap) => {
                     found.extend(live.finish());
                     self.live = None;
                 }
@@ -124,7 +141,7 @@ impl FixedLagSmoother {
         }
         self.waiting.push(MeasuredRow { at, values: values.to_vec() });
         if self.waiting.len() >= self.settings.first_rows.max(FEWEST) {
-            found.extend(self.begin(false)?);
+            found.extend(self.begin(1.0)?);
         }
         Ok(found)
     }
@@ -139,7 +156,7 @@ impl FixedLagSmoother {
             if self.waiting.len() < FEWEST {
                 return Err(LiveError::FewRows { rows: self.waiting.len(), least: FEWEST });
             }
-            found = self.begin(true)?;
+            found = self.begin(0.0)?;
         }
         found.extend(self.live.as_mut().map_or_else(Vec::new, Live::finish));
         Ok(found)
@@ -163,9 +180,20 @@ impl FixedLagSmoother {
         }
     }
 
-    /// Finds noise, smoothness and lag from the rows that wait, and answers them: all of them that no later row tells more of.
-    fn begin(&mut self, has_ended: bool) -> Result<Vec<Smoothed>, LiveError> {
+    /// Begins with the rows that wait.
+    fn begin(&mut self, open: f64) -> Result<Vec<Smoothed>, LiveError> {
         let rows = std::mem::take(&mut self.waiting);
+        self.begin_with(rows, self.settings.lag, open)
+    }
+
+    /// Finds noise, smoothness and, where it is not given, the lag from rows in declared units, and answers them as a whole, but for the
+    /// last ones, of which later rows tell more: `open` is that stretch over the lag.
+    pub(super) fn begin_with(
+        &mut self,
+        rows: Vec<MeasuredRow>,
+        lag: Option<f64>,
+        open: f64,
+    ) -> Result<Vec<Smoothed>, LiveError> {
         let bound = self.layout.bound(&self.problem, &rows)?;
         let (stretch, opening) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
         let stretch = stretch?;
@@ -173,14 +201,14 @@ impl FixedLagSmoother {
         let system = bound.system;
         let by = system.inward(&schema.coordinates[0].unit);
         let inward = (by, self.layout.columns.iter().map(|column| system.inward(&column.unit)).collect::<Vec<_>>());
-        let rows: Vec<MeasuredRow> = rows.iter().map(|row| inward_row(&inward, row.at, &row.values)).collect();
+        let rows: Vec<MeasuredRow> = rows.iter().map(|row| scaled_row(&inward, row.at, &row.values)).collect();
         let (start, end) = (rows[0].at, rows[rows.len() - 1].at);
         let width = width(&rows);
         let sought: Vec<usize> = sought(&bound);
         let settled = settled_lag(&stretch, &sought, (start, end), width);
         // Rows that a value says something of.
         let reach = (settled / width).round() as usize;
-        let lag = match self.settings.lag {
+        let lag = match lag {
             Some(lag) if lag * by > MOST_CELLS as f64 * width => {
                 return Err(LiveError::Lag { lag, most: MOST_CELLS });
             }
@@ -207,7 +235,7 @@ impl FixedLagSmoother {
         window.guess(&known);
         let mut live = Live {
             window,
-            opening: opening.map(|opening| opening.until(if has_ended { end } else { end - lag })),
+            opening: opening.map(|opening| opening.until(end - open * lag)),
             inward,
             outward,
             lag,
@@ -254,7 +282,7 @@ enum Reach {
 
 impl Live {
     fn inward(&self, at: f64, values: &[f64]) -> MeasuredRow {
-        inward_row(&self.inward, at, values)
+        scaled_row(&self.inward, at, values)
     }
 
     /// Takes the first rows, whose first cells are found together.
@@ -332,7 +360,12 @@ impl Live {
         let grid = self.window.grid();
         let wanted = self.pending.front().map_or(grid.tail_start(), |(at, _)| grid.cell(*at));
         let from = wanted.min(grid.tail_start()).max(grid.begun());
-        self.window.solve(from).map(|_| ())
+        for _ in 0..MORE_STEPS {
+            if self.window.solve(from)? < SMALL {
+                break;
+            }
+        }
+        Ok(())
     }
 
     /// Answers the rows that have waited for a lag.
@@ -341,6 +374,39 @@ impl Live {
         while self.pending.front().is_some_and(|(at, _)| *at <= self.last - self.lag + slack) {
             found.extend(self.answer_next());
         }
+    }
+
+    /// True where equations and data no longer agree.
+    pub(super) fn is_lost(&self) -> bool {
+        let nearby = self.nearby[..1].iter().map(|nearby| nearby.square.sqrt());
+        nearby.fold(0.0, f64::max) > Smoothed::NEARBY || self.square.sqrt() > Smoothed::MISFIT
+    }
+
+    /// So many of the last rows at most, in declared units.
+    pub(super) fn last_rows(&self, most: usize) -> Vec<MeasuredRow> {
+        let (by, factors) = &self.inward;
+        let outward: (f64, Vec<f64>) = (by.recip(), factors.iter().map(|factor| factor.recip()).collect());
+        let left_out = self.recent.len().saturating_sub(most);
+        self.recent.iter().skip(left_out).map(|row| scaled_row(&outward, row.at, &row.values)).collect()
+    }
+
+    /// The lag, and the place of the first row without an answer, in the declared unit.
+    pub(super) fn declared_lag(&self) -> f64 {
+        self.lag / self.inward.0
+    }
+
+    pub(super) fn first_waiting(&self) -> Option<f64> {
+        self.pending.front().map(|(at, _)| at / self.inward.0)
+    }
+
+    /// Answers the rows that wait before a place in the declared unit.
+    pub(super) fn answer_before(&mut self, place: f64) -> Vec<Smoothed> {
+        let place = place * self.inward.0;
+        let mut found = Vec::new();
+        while self.pending.front().is_some_and(|(at, _)| *at < place) {
+            found.extend(self.answer_next());
+        }
+        found
     }
 
     fn answer_next(&mut self) -> Option<Smoothed> {
@@ -408,7 +474,7 @@ fn count(
     }
 }
 
-fn inward_row((by, factors): &(f64, Vec<f64>), at: f64, values: &[f64]) -> MeasuredRow {
+fn scaled_row((by, factors): &(f64, Vec<f64>), at: f64, values: &[f64]) -> MeasuredRow {
     MeasuredRow { at: at * by, values: values.iter().zip(factors).map(|(value, factor)| value * factor).collect() }
 }
 

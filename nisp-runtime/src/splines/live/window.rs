@@ -23,6 +23,9 @@ use crate::splines::triangle::{Row, Triangle};
 /// Noise below this share of the data's spread is rounding.
 const ROUNDING: f64 = 1e-5;
 
+/// Largest change of a coefficient in a step, in natural sizes: rows about a state say little of what is farther off.
+const FARTHEST: f64 = 1.0;
+
 /// Something that is asked for at a place: what was measured there, a condition, or an equation.
 #[derive(Clone, Debug)]
 pub(super) struct Event {
@@ -201,13 +204,11 @@ impl Window {
         if !self.all.solve_from(from, &mut self.step) {
             return Err(Fault::unsolved("the latest rows"));
         }
-        let mut change = 0.0_f64;
+        let whole = |at: usize| self.reference[at] + self.step[at] - self.theta[at];
+        let change = (first.max(from)..self.theta.len()).fold(0.0, |most: f64, at| most.max(whole(at).abs()));
+        let share = (FARTHEST / change).min(1.0);
         for at in from..self.theta.len() {
-            let next = self.reference[at] + self.step[at];
-            if at >= first {
-                change = change.max((next - self.theta[at]).abs());
-            }
-            self.theta[at] = next;
+            self.theta[at] += share * (self.reference[at] + self.step[at] - self.theta[at]);
         }
         Ok(change)
     }

@@ -1,0 +1,68 @@
+//! When a window has lost its record it begins again: a source that sets in after quiet rows is rougher than they said, and steps that
+//! led nowhere lead nowhere from there. The last rows are solved as the first ones were.
+
+use super::Smoothed;
+use super::smoother::{FixedLagSmoother, Live};
+
+/// Rows after a beginning before the next one, at least and at most: equations that are wrong stay wrong.
+const SOON: usize = 50;
+const LATE: usize = 4000;
+/// Beginnings that are this many waits apart have helped.
+const HELPED: usize = 4;
+/// Rows that a beginning is made from, beside the first ones.
+const ROWS: usize = 2;
+
+/// What of the lag is left to later rows when the last ones are answered as a whole.
+const OPEN: f64 = 0.5;
+
+/// How many rows go by before the window may begin again.
+pub(super) struct Patience {
+    since: usize,
+    wait: usize,
+}
+
+impl Default for Patience {
+    fn default() -> Self {
+        Self { since: 0, wait: SOON }
+    }
+}
+
+impl Patience {
+    pub(super) fn row(&mut self) {
+        self.since += 1;
+    }
+
+    fn is_over(&self) -> bool {
+        self.since >= self.wait
+    }
+
+    fn begun(&mut self) {
+        self.wait = if self.since < HELPED * self.wait { (2 * self.wait).min(LATE) } else { SOON };
+        self.since = 0;
+    }
+}
+
+impl FixedLagSmoother {
+    /// Begins again where the window is lost and has had its time: the answers of the rows that wait.
+    pub(super) fn recover(&mut self) -> Vec<Smoothed> {
+        let is_due = self.patience.is_over() && self.live.as_ref().is_some_and(Live::is_lost);
+        if is_due { self.begin_again().unwrap_or_default() } else { Vec::new() }
+    }
+
+    /// Begins again: the answers of the rows that wait. What cannot be solved anew stays as it is, and nothing comes of it.
+    pub(super) fn begin_again(&mut self) -> Option<Vec<Smoothed>> {
+        let mut lost = self.live.take()?;
+        self.patience.begun();
+        let rows = lost.last_rows(ROWS * self.settings.first_rows);
+        // The lag stays what it was said to be.
+        let (start, lag) = (rows[0].at, lost.declared_lag());
+        let Ok(answers) = self.begin_with(rows, Some(lag), OPEN) else {
+            self.live = Some(lost);
+            return None;
+        };
+        let first = lost.first_waiting();
+        let mut found = lost.answer_before(start);
+        found.extend(answers.into_iter().filter(|answer| first.is_some_and(|first| answer.at >= first)));
+        Some(found)
+    }
+}
