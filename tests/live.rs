@@ -43,6 +43,19 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// The first one, with a drive that is known beside the unknown one.
+    mod fed {
+        units: off;
+        coordinates: t;
+        fields: y;
+        sources: u;
+        on motion { columns: fed; balance: d(y, t, 2) + 0.4 * d(y, t) + 4 * y == u + fed; }
+        on samples { observe y; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
     /// A spring that nobody knows, under an unknown force.
     mod spring {
         units: off;
@@ -272,6 +285,36 @@ fn a_tank_that_heats_itself_is_followed() {
     assert!(20 * off < sound.len(), "{off} of {} rows are off", sound.len());
 }
 
+/// Where equations come with columns they hold up to the last row and no farther.
+#[test]
+fn a_known_column_is_taken_with_its_rows() {
+    let rows: Vec<(f64, [f64; 2])> =
+        record(1000, 0.05, 0.01).into_iter().map(|(t, y)| (t, [(0.9 * t).sin(), y])).collect();
+    let mut smoother = smoother(scene::<fed::recover::Scene>(), LagSettings::default());
+    let mut found = Vec::new();
+    rows.iter().for_each(|(t, values)| found.extend(smoother.push(*t, values).unwrap()));
+    found.extend(smoother.finish().unwrap());
+    assert_eq!(found.len(), rows.len());
+    let is_right = |found: &&Smoothed| {
+        let exact = drive(found.at, 0.0) - (0.9 * found.at).sin();
+        found.is_sound() && (found.heads[1].0 - exact).abs() < 4.0 * found.heads[1].1
+    };
+    let right = found[..980].iter().filter(is_right).count();
+    assert!(right > 960, "{right} of 980 rows are sound and within four deviations");
+}
+
+/// A slow force and the spring that it bends tell one ratio, and not the stiffness.
+#[test]
+fn a_stiffness_that_rests_on_a_small_force_is_not_called_sound() {
+    let mut noise = noise(6);
+    let times = (0..600).map(|i| 0.05 * f64::from(i));
+    let rows: Vec<(f64, f64)> = times.map(|t| (t, 0.5 * (0.3 * t).sin() + 0.003 * noise())).collect();
+    let found = smoothed(&mut smoother(scene::<spring::recover::Scene>(), LagSettings::default()), &rows);
+    // Later rows are asked anew.
+    let sound = found[..400].iter().filter(|found| found.is_sound()).count();
+    assert!(sound == 0, "{sound} of 400 rows are sound");
+}
+
 /// A wrong stiffness has nothing to hide behind where the drive is known to be zero: there is no source then.
 #[test]
 fn a_wrong_equation_is_told_from_a_right_one() {
@@ -348,6 +391,19 @@ fn gaps_and_bursts_are_taken_as_they_are() {
     let inside = |found: &&Smoothed| (found.heads[1].0 - drive(found.at, 0.0)).abs() < 2.0 * found.heads[1].1;
     let within = found.iter().filter(inside).count();
     assert!(within > 1100, "{within} of 1200 within two deviations");
+}
+
+/// Two rows between two gaps are answered too, and those behind the second gap.
+#[test]
+fn no_row_is_lost_between_gaps() {
+    let blocks = [(0.0, 300), (40.0, 2), (80.0, 300)];
+    let times = blocks.iter().flat_map(|&(from, rows)| (0..rows).map(move |i| from + 0.1 * f64::from(i)));
+    let mut noise = noise(8);
+    let rows: Vec<(f64, f64)> = times.map(|t| (t, motion(t) + 0.01 * noise())).collect();
+    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let places = |at: f64| rows.iter().filter(|row| (row.0 - at).abs() < 1e-9).count();
+    assert_eq!(found.len(), rows.len());
+    assert!(found.iter().all(|found| places(found.at) == 1));
 }
 
 #[test]

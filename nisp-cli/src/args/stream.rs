@@ -125,7 +125,9 @@ Answers to rows, one JSON object a line:
   sources     by name: value and sd, its standard deviation
   state       the same of what is described, measured or not
   misfit      what observations are off, over the noise that neighbouring rows show; about 1 where the equation is right
-  status      converged, inconsistent (misfit above 1.6: equation or parameters do not fit), or error (`error` says why)
+  leaning     how far a learned parameter moves where sources may be larger, as a share of itself
+  status      converged, inconsistent (misfit above 1.6: equation or parameters do not fit; leaning above .1: little is
+              known of what is learned), or error (`error` says why)
   latency_ms  work of the row that brought the answer
 
 Answers to frames, one JSON object a line:

@@ -169,7 +169,7 @@ impl Answers {
             };
             heads.map(member).collect()
         };
-        json!({
+        let mut line = json!({
             self.scene.coordinates[0].name: found.at,
             "lag": found.lag,
             "status": if found.is_sound() { "converged" } else { "inconsistent" },
@@ -177,6 +177,10 @@ impl Answers {
             "state": of(false),
             "misfit": found.misfit,
             "nearby": found.nearby,
-        })
+        });
+        if found.leaning > 0.0 {
+            line["leaning"] = json!(found.leaning);
+        }
+        line
     }
 }

@@ -135,7 +135,7 @@ pub(crate) fn solve(
     settings: &Local,
     limits: Limits,
     from: Option<&State>,
-    monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
+    monitor: &mut (dyn FnMut(Progress<'_>) -> Flow + Send),
 ) -> Result<(LocalSolution, Live), LocalError> {
     let start = Instant::now();
     let coarse = settings.cells.div_ceil(settings.coarser.max(1)).max(FEWEST).min(settings.cells);
@@ -150,12 +150,14 @@ pub(crate) fn solve(
         None => solver.first(),
         Some(state) => solver.restore(state).map_err(LocalError::Fault)?,
     };
-    let mut end = solver.run(place, first_is_coarse, &mut stage)?;
+    // Places and patterns of the fine lattice do not wait for an answer on the coarse one.
+    let set_up = || first_is_coarse.then(|| Solver::new(bound, settings, settings.cells)).transpose();
+    let (end, fine) = rayon::join(|| solver.run(place, first_is_coarse, &mut stage), set_up);
+    let mut end = end?;
     let goes_on = end.iterations < limits.iterations && stage.has_time(FINER * end.longest);
     if first_is_coarse && end.status != Status::Interrupted && !goes_on {
         end.stay_coarse();
-    } else if first_is_coarse && end.status != Status::Interrupted {
-        let mut fine = Solver::new(bound, settings, settings.cells)?;
+    } else if let (Some(mut fine), true) = (fine?, end.status != Status::Interrupted) {
         let place = fine.taken_over(&solver.heads, &end.state)?;
         (stage.before, stage.lattice) = (end.iterations, 1);
         end = fine.run(place, false, &mut stage)?;
@@ -202,7 +204,7 @@ struct Stage<'a> {
     /// Steps on lattices before.
     before: u64,
     lattice: u64,
-    monitor: &'a mut dyn FnMut(Progress<'_>) -> Flow,
+    monitor: &'a mut (dyn FnMut(Progress<'_>) -> Flow + Send),
 }
 
 impl Stage<'_> {

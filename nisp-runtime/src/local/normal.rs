@@ -134,8 +134,8 @@ impl Normal {
     /// Adds the rows of blocks.
     pub(super) fn add_all(&mut self, blocks: &[Block]) {
         let sorted: Vec<Sorted> = blocks.par_iter().map(Sorted::of).collect();
-        for (block, sorted) in blocks.iter().zip(&sorted) {
-            self.add_gradient(block, sorted);
+        for block in blocks {
+            self.add_corner(block);
             if let Some(draws) = &mut self.draws {
                 (0..block.misfits.len()).for_each(|row| draws.add_row(block, row));
             }
@@ -143,20 +143,25 @@ impl Normal {
         self.add_products(&Sorted::together(sorted));
     }
 
-    /// Adds the products of the rows' slopes, piece by piece of the matrix: every entry is summed up in the order of the blocks.
+    /// Adds the products of the rows' slopes with each other, and with what is on the right and in the border, piece by piece of the
+    /// matrix: every entry is summed up in the order of the blocks.
     fn add_products(&mut self, blocks: &[Sorted]) {
         let (starts, indices) = (self.pattern.starts(), self.pattern.rows());
         let columns = self.gradient.len();
         let mut pieces = Vec::new();
         let (mut rest, mut first) = (self.values.as_mut_slice(), 0);
+        let mut beside: Vec<&mut [f64]> = vec![&mut self.gradient];
+        beside.extend(self.border.iter_mut().take(self.learned).map(Vec::as_mut_slice));
         for piece in 1..=PIECES {
             let end = starts.partition_point(|&start| start < indices.len() * piece / PIECES).min(columns);
             let (own, others) = rest.split_at_mut(starts[end] - starts[first]);
-            pieces.push((first..end, own));
+            let sums: Vec<&mut [f64]> =
+                beside.iter_mut().map(|rest| rest.split_off_mut(..end - first).unwrap_or_default()).collect();
+            pieces.push((first..end, own, sums));
             (rest, first) = (others, end);
         }
         let isa = Isa::detect();
-        pieces.into_par_iter().for_each(|(columns, values)| {
+        pieces.into_par_iter().for_each(|(columns, values, mut sums)| {
             let origin = starts[columns.start];
             let mut line = Vec::new();
             for block in blocks {
@@ -166,6 +171,7 @@ impl Normal {
                     if column >= columns.end {
                         break;
                     }
+                    block.beside(at, sums.iter_mut().map(|sum| &mut sum[column - columns.start]));
                     block.products(isa, at, &mut line);
                     let range = starts[column]..starts[column + 1];
                     let values = &mut values[range.start - origin..range.end - origin];
@@ -175,17 +181,8 @@ impl Normal {
         });
     }
 
-    /// Adds what rows say of the gradient, the border and the corner.
-    fn add_gradient(&mut self, block: &Block, sorted: &Sorted) {
-        for (row, slopes) in sorted.slopes.chunks_exact(sorted.dofs.len().max(1)).enumerate() {
-            let by = &block.by_learned[row * self.learned..(row + 1) * self.learned];
-            for (&column, slope) in sorted.dofs.iter().zip(slopes) {
-                self.gradient[column as usize] += slope * block.misfits[row];
-                for (border, by) in self.border.iter_mut().zip(by) {
-                    border[column as usize] += slope * by;
-                }
-            }
-        }
+    /// Adds what rows say of the learned scalars alone.
+    fn add_corner(&mut self, block: &Block) {
         for (row, misfit) in block.misfits.iter().enumerate() {
             let by = &block.by_learned[row * self.learned..(row + 1) * self.learned];
             for (i, a) in by.iter().enumerate() {
@@ -199,7 +196,7 @@ impl Normal {
 
     /// Adds `weight / 2` times the square of a coefficient to the quadratic form.
     pub(super) fn add_stiffness(&mut self, at: usize, weight: f64) {
-        self.add_entry(at, at, weight);
+        self.add_diagonal(at, weight);
         if let Some(draws) = &mut self.draws {
             draws.add(&[(at, weight.sqrt())]);
         }
@@ -209,8 +206,8 @@ impl Normal {
     pub(super) fn add_difference(&mut self, [i, j]: [usize; 2], weight: f64, difference: f64) {
         self.gradient[i] -= weight * difference;
         self.gradient[j] += weight * difference;
-        self.add_entry(i, i, weight);
-        self.add_entry(j, j, weight);
+        self.add_diagonal(i, weight);
+        self.add_diagonal(j, weight);
         self.add_entry(i.max(j), i.min(j), -weight);
         if let Some(draws) = &mut self.draws {
             draws.add(&[(i, -weight.sqrt()), (j, weight.sqrt())]);
@@ -224,6 +221,11 @@ impl Normal {
         let mut seen: Vec<f64> = range.map(|at| self.values[starts[at]]).filter(|&value| value > 0.0).collect();
         seen.sort_by(f64::total_cmp);
         seen.get(seen.len() / 2).copied().unwrap_or(0.0)
+    }
+
+    /// Adds to an entry of the diagonal, the first of its column in a lower triangle.
+    fn add_diagonal(&mut self, at: usize, value: f64) {
+        self.values[self.pattern.starts()[at]] += value;
     }
 
     /// Adds to an entry, `row >= column`.

@@ -6,6 +6,7 @@
 //! Steps are no longer than the model may be trusted.
 
 use nalgebra::Vector3;
+use rayon::prelude::*;
 
 use super::block::Block;
 use super::normal::Factor;
@@ -119,8 +120,8 @@ impl Solver {
         let evaluated = group.evaluate(&self.heads, &state.theta, &self.scalars, true);
         let blocks = group.blocks(&self.heads, &evaluated, learned);
         let weights = group.root_weights(&group.over_tolerances(&evaluated));
-        for sums in all {
-            let Known::Scalar(slot) = sums.known else { continue };
+        all.par_iter_mut().for_each(|sums| {
+            let Known::Scalar(slot) = sums.known else { return };
             let with = |share: f64| {
                 let mut scalars = self.scalars.clone();
                 scalars[slot] *= 1.0 + share;
@@ -141,7 +142,7 @@ impl Solver {
                 sums.below[first + number] += by;
                 sums.square += (by / group.integral_tolerance(number)).powi(2);
             }
-        }
+        });
         group.sums(&evaluated, &self.scalars).len()
     }
 
@@ -150,7 +151,7 @@ impl Solver {
         let group = &self.groups[surface.group];
         let sigma = surface.sigma(state.noise);
         let blocks = surface.blocks(group, &self.heads, &state.theta, &self.scalars, learned, sigma);
-        for sums in all {
+        all.par_iter_mut().for_each(|sums| {
             let moved: Vec<Vector3<f64>> = match sums.known {
                 Known::Scalar(slot) => {
                     let with = |share: f64| {
@@ -164,7 +165,7 @@ impl Solver {
                 Known::Place { cloud, .. } | Known::Direction { cloud, .. } | Known::Size { cloud }
                     if !std::ptr::eq(surface, &self.surfaces[cloud]) =>
                 {
-                    continue;
+                    return;
                 }
                 Known::Place { axis, .. } => surface.moved(|_, radius| -Vector3::ith(axis, radius)),
                 Known::Direction { axis, .. } => surface.moved(|arm, _| -Vector3::ith(axis, 1.0).cross(arm)),
@@ -172,6 +173,6 @@ impl Solver {
             };
             let by = surface.changes(&moved, sigma);
             blocks.iter().zip(by).for_each(|(block, by)| sums.add(block, &[by]));
-        }
+        });
     }
 }

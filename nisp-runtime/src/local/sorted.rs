@@ -11,7 +11,9 @@ pub(super) struct Sorted {
     /// By coefficient: where the run of consecutive numbers that it is in ends.
     runs: Vec<u32>,
     /// `[row][coefficient]`
-    pub(super) slopes: Vec<f64>,
+    slopes: Vec<f64>,
+    /// By row: its misfit, then its derivatives by the learned scalars.
+    beside: Vec<f64>,
 }
 
 impl Sorted {
@@ -25,7 +27,11 @@ impl Sorted {
         for at in (1..dofs.len()).rev() {
             runs[at - 1] = if dofs[at - 1] + 1 == dofs[at] { runs[at] } else { at as u32 };
         }
-        Self { dofs, runs, slopes }
+        let learned = block.by_learned.len() / block.misfits.len().max(1);
+        let beside = block.misfits.iter().enumerate().flat_map(|(row, misfit)| {
+            std::iter::once(misfit).chain(&block.by_learned[row * learned..(row + 1) * learned]).copied()
+        });
+        Self { dofs, runs, slopes, beside: beside.collect() }
     }
 
     /// The same rows, where those of blocks over the same coefficients stand in one block: their sums go to the matrix at once.
@@ -36,11 +42,24 @@ impl Sorted {
             let (Some(&first), Some(&last)) = (block.dofs.first(), block.dofs.last()) else { continue };
             let place = *places.entry((first, last, block.dofs.len())).or_insert(together.len());
             match together.get_mut(place) {
-                Some(own) if own.dofs == block.dofs => own.slopes.extend(block.slopes),
+                Some(own) if own.dofs == block.dofs => {
+                    own.slopes.extend(block.slopes);
+                    own.beside.extend(block.beside);
+                }
                 _ => together.push(block),
             }
         }
         together
+    }
+
+    /// Adds the products of a coefficient's slopes with the rows' misfits and with their derivatives by each learned scalar.
+    pub(super) fn beside<'a>(&self, at: usize, sums: impl Iterator<Item = &'a mut f64>) {
+        let width = self.dofs.len();
+        let rows = self.slopes.len() / width;
+        let each = self.beside.len() / rows.max(1);
+        for (number, sum) in sums.enumerate() {
+            *sum += (0..rows).map(|row| self.slopes[row * width + at] * self.beside[row * each + number]).sum::<f64>();
+        }
     }
 
     /// Products of a coefficient's slopes with its own and those of all after it, summed over the rows.

@@ -6,7 +6,7 @@ use crate::problem::Bound;
 
 /// How far a scalar may move, as a share of itself or of its natural size, where sources may be larger. Where sources are zero or
 /// constant over parts of a record scalars move by less than a hundredth, where they follow what is measured by a fifth and more.
-const FARTHEST: f64 = 0.1;
+pub(crate) const FARTHEST: f64 = 0.1;
 
 /// A check for every learned scalar, of how far it moves.
 pub(super) fn checks(bound: &Bound, leaning: &[f64]) -> Vec<Check> {

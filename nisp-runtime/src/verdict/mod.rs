@@ -9,7 +9,7 @@ mod equations;
 mod gathered;
 mod held;
 mod known;
-mod leaning;
+pub(crate) mod leaning;
 mod learned;
 mod misfits;
 mod observations;

@@ -1,6 +1,5 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
-use super::between::others;
 use super::prior::unresolved;
 use super::solver::{Solver, groups};
 use super::state::{Phase, State};
@@ -9,6 +8,7 @@ use crate::local::draws::{Deviations, Draws};
 use crate::local::group::Group;
 use crate::local::misfits::Misfits;
 use crate::noise::{Noise, ObservationNoise};
+use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::solve::vector::root_mean_square;
 
@@ -89,8 +89,9 @@ impl Solver<'_> {
         };
         let asked = self.groups.iter().map(|group| left(group, &|row| TENSE * group.sigma[row]));
         let share = if noise.is_there(self.schema()) { BETWEEN } else { EXACT };
-        let between = others(&self.bound)
-            .map_or(0.0, |(at, bound)| left(&groups(&bound, &self.heads)[at], &|row| share * self.sizes[at][row]));
+        let of_others =
+            |(at, bound): &(usize, Bound)| left(&groups(bound, &self.heads)[*at], &|row| share * self.sizes[*at][row]);
+        let between = self.others.as_ref().map_or(0.0, of_others);
         asked.chain([between, self.missed(state, noise) / MISSED]).fold(0.0, f64::max)
     }
 
@@ -129,8 +130,9 @@ impl Solver<'_> {
         self.set_learned(&state.learned);
         self.find_feet(state);
         let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta)).collect();
-        let others = others(&self.bound);
-        let between = others.map(|(at, bound)| (at, groups(&bound, &self.heads)[at].facts(&self.heads, &state.theta)));
+        let of_others =
+            |(at, bound): &(usize, Bound)| (*at, groups(bound, &self.heads)[*at].facts(&self.heads, &state.theta));
+        let between = self.others.as_ref().map(of_others);
         Answer {
             facts,
             between,

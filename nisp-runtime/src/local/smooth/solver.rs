@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::between::{filled, thinned};
+use super::between::{filled, others, thinned};
 use super::freedom::{Freedom, Unmeasured};
 use super::meshes::{lattices, together};
 use super::prior::Prior;
@@ -31,6 +31,8 @@ const STRAIGHT: f64 = 1e-4;
 /// A problem on its lattices.
 pub(super) struct Solver<'a> {
     pub(super) bound: Cow<'a, Bound>,
+    /// A group of equations at other places than it is asked at, and its number.
+    pub(super) others: Option<(usize, Bound)>,
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
     pub(super) surfaces: Vec<Surface>,
@@ -93,6 +95,7 @@ impl<'a> Solver<'a> {
         let scalars = bound.scalars.clone();
         Ok(Self {
             bound,
+            others: others(problem),
             heads,
             groups,
             surfaces,

@@ -2,6 +2,7 @@
 //! led nowhere lead nowhere from there. The last rows are solved as the first ones were.
 
 use super::Smoothed;
+use super::record::MeasuredRow;
 use super::smoother::{FixedLagSmoother, Live};
 
 /// Rows after a beginning before the next one, at least and at most: equations that are wrong stay wrong.
@@ -12,6 +13,8 @@ const HELPED: usize = 4;
 /// Rows that a beginning is made from, beside the first ones.
 const ROWS: usize = 2;
 
+/// How far from its neighbours a value stands alone, over how far most are.
+const STRAY: f64 = 12.0;
 /// What of the lag is left to later rows when the last ones are answered as a whole.
 const OPEN: f64 = 0.5;
 
@@ -42,6 +45,27 @@ impl Patience {
     }
 }
 
+/// Rows of which those say nothing that have a value which stands alone: far from the line between its neighbours, and farther than
+/// these are. A window that began with it would follow it.
+fn without_strays(mut rows: Vec<MeasuredRow>) -> Vec<MeasuredRow> {
+    for column in 0..rows[0].values.len() {
+        let off = |at: usize| {
+            let [before, own, after] = [at - 1, at, at + 1].map(|at| (rows[at].at, rows[at].values[column]));
+            let share = (own.0 - before.0) / (after.0 - before.0);
+            (own.1 - before.1 - share * (after.1 - before.1)).abs()
+        };
+        let off: Vec<f64> = (1..rows.len() - 1).map(off).collect();
+        let mut known: Vec<f64> = off.iter().copied().filter(|off| !off.is_nan()).collect();
+        known.sort_by(f64::total_cmp);
+        let Some(usual) = known.get(known.len() / 2).copied() else { continue };
+        let beside = |at: usize| off[at.saturating_sub(1)..(at + 2).min(off.len())].iter().copied().fold(0.0, f64::max);
+        let strays: Vec<usize> =
+            (0..off.len()).filter(|&at| off[at] > STRAY * usual && off[at] == beside(at)).collect();
+        strays.into_iter().for_each(|at| rows[at + 1].values.fill(f64::NAN));
+    }
+    rows
+}
+
 impl FixedLagSmoother {
     /// Begins again where the window is lost and has had its time: the answers of the rows that wait.
     pub(super) fn recover(&mut self) -> Vec<Smoothed> {
@@ -53,7 +77,7 @@ impl FixedLagSmoother {
     pub(super) fn begin_again(&mut self) -> Option<Vec<Smoothed>> {
         let mut lost = self.live.take()?;
         self.patience.begun();
-        let rows = lost.last_rows(ROWS * self.settings.first_rows);
+        let rows = without_strays(lost.last_rows(ROWS * self.settings.first_rows));
         // The lag stays what it was said to be.
         let (start, lag) = (rows[0].at, lost.declared_lag());
         let Ok(answers) = self.begin_with(rows, Some(lag), OPEN) else {

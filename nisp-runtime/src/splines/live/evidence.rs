@@ -25,6 +25,8 @@ pub(super) struct Weights {
     pub(super) sizes: Vec<Option<(f64, f64)>>,
     /// Scalars that programs read, the learned ones as they were found.
     pub(super) scalars: Vec<f64>,
+    /// How far a learned scalar moves where sources may be larger, at most, as a share of itself.
+    pub(super) leaning: f64,
     /// Noise that differences of neighbours show.
     pub(super) noise: Noise,
     /// The classes to start from the next time.
@@ -63,10 +65,13 @@ impl Stretch {
         let best = place.best().filter(|_| status == Status::Converged).cloned();
         let Tried { kind, state, .. } = best.ok_or(LiveError::Open)?;
         // The window's sources are as rough all along. Scalars that are learned beside them need not believe so.
-        let mut learned = state.learned.clone();
+        let (mut learned, mut leaning) = (state.learned.clone(), 0.0);
         if !learned.is_empty() && solver.has_sources() {
             run.vary(&mut solver, &mut place, &Place::save)?;
-            learned = place.best().map_or(learned, |best| best.state.learned.clone());
+            if let Some(best) = place.best() {
+                learned.clone_from(&best.state.learned);
+                leaning = solver.leaning(KINDS[best.kind], &best.state)?.into_iter().fold(0.0, f64::max);
+            }
         }
         solver.set_smoothness(KINDS[kind], &state);
         let classes = state.classes.clone();
@@ -77,6 +82,7 @@ impl Stretch {
             sigma: sigma(&solver, &state),
             sizes: (0..solver.heads.bases.len()).map(|head| solver.source_sizes(&state, head)).collect(),
             scalars: solver.scalars(&learned).to_vec(),
+            leaning,
             noise,
             classes,
         };

@@ -18,6 +18,7 @@ use thiserror::Error;
 use crate::problem::BindError;
 use crate::schema::Unit;
 use crate::solve::fault::Fault;
+use crate::verdict::leaning;
 
 pub use smoother::FixedLagSmoother;
 
@@ -51,6 +52,9 @@ pub struct Smoothed {
     pub misfit: f64,
     /// The same over a dozen values or so about the place: a contact that the source follows too slowly shows there alone.
     pub nearby: f64,
+    /// How far a learned scalar moves where sources may be larger, at most, as a share of itself: little is known of one that moves far,
+    /// and of the sources beside it. Zero where nothing is learned.
+    pub leaning: f64,
 }
 
 impl Smoothed {
@@ -59,9 +63,12 @@ impl Smoothed {
     /// The same of a dozen values: chance makes more of few.
     pub const NEARBY: f64 = 2.0;
 
-    /// True where equations and data agree.
+    /// How far a learned scalar may move.
+    pub const LEANING: f64 = leaning::FARTHEST;
+
+    /// True where equations and data agree, and learned scalars do not rest on how large sources are taken to be.
     pub fn is_sound(&self) -> bool {
-        self.misfit <= Self::MISFIT && self.nearby <= Self::NEARBY
+        self.misfit <= Self::MISFIT && self.nearby <= Self::NEARBY && self.leaning <= Self::LEANING
     }
 }
 

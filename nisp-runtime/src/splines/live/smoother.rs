@@ -152,11 +152,12 @@ impl FixedLagSmoother {
     /// Fewer rows than it takes to tell noise from a source.
     pub fn finish(&mut self) -> Result<Vec<Smoothed>, LiveError> {
         let mut found = Vec::new();
-        if !self.waiting.is_empty() {
+        // Rows behind a gap wait again.
+        while !self.waiting.is_empty() {
             if self.waiting.len() < FEWEST {
                 return Err(LiveError::FewRows { rows: self.waiting.len(), least: FEWEST });
             }
-            found = self.begin(0.0)?;
+            found.extend(self.begin(0.0)?);
         }
         found.extend(self.live.as_mut().map_or_else(Vec::new, Live::finish));
         Ok(found)
@@ -250,8 +251,13 @@ impl FixedLagSmoother {
             asked: None,
         };
         let mut found = Vec::new();
-        live.replay(&self.layout, rows, &known, &mut found)?;
-        self.live = Some(live);
+        let behind = live.replay(&self.layout, rows, &known, &mut found)?;
+        if behind.is_empty() {
+            self.live = Some(live);
+            return Ok(found);
+        }
+        found.extend(live.finish());
+        self.waiting = live.outward(behind.iter());
         Ok(found)
     }
 }
@@ -285,14 +291,14 @@ impl Live {
         scaled_row(&self.inward, at, values)
     }
 
-    /// Takes the first rows, whose first cells are found together.
+    /// Takes the first rows, whose first cells are found together. Gives back those behind a gap.
     fn replay(
         &mut self,
         layout: &Layout,
         rows: Vec<MeasuredRow>,
         known: Known<'_>,
         found: &mut Vec<Smoothed>,
-    ) -> Result<(), LiveError> {
+    ) -> Result<Vec<MeasuredRow>, LiveError> {
         let right = self.window.grid().right();
         let mut rows = rows.into_iter().peekable();
         while let Some(row) = rows.next_if(|row| row.at <= right) {
@@ -305,7 +311,12 @@ impl Live {
             }
         }
         self.answer(found);
-        rows.try_for_each(|row| self.push(layout, row, known, found).map(|_| ()))
+        while let Some(row) = rows.next() {
+            if let Reach::Gap = self.push(layout, row.clone(), known, found)? {
+                return Ok(std::iter::once(row).chain(rows).collect());
+            }
+        }
+        Ok(Vec::new())
     }
 
     fn ask(&mut self, layout: &Layout, row: MeasuredRow) {
@@ -384,10 +395,14 @@ impl Live {
 
     /// So many of the last rows at most, in declared units.
     pub(super) fn last_rows(&self, most: usize) -> Vec<MeasuredRow> {
+        self.outward(self.recent.iter().skip(self.recent.len().saturating_sub(most)))
+    }
+
+    /// Rows in declared units.
+    fn outward<'a>(&self, rows: impl Iterator<Item = &'a MeasuredRow>) -> Vec<MeasuredRow> {
         let (by, factors) = &self.inward;
         let outward: (f64, Vec<f64>) = (by.recip(), factors.iter().map(|factor| factor.recip()).collect());
-        let left_out = self.recent.len().saturating_sub(most);
-        self.recent.iter().skip(left_out).map(|row| scaled_row(&outward, row.at, &row.values)).collect()
+        rows.map(|row| scaled_row(&outward, row.at, &row.values)).collect()
     }
 
     /// The lag, and the place of the first row without an answer, in the declared unit.
@@ -426,7 +441,8 @@ impl Live {
         let heads = self.outward.iter().enumerate().map(read).collect();
         let outward = self.inward.0.recip();
         let nearby = self.nearby.iter().map(|nearby| nearby.square.sqrt()).fold(0.0, f64::max);
-        Some(Smoothed { at: at * outward, lag: (self.last - at) * outward, heads, misfit: self.square.sqrt(), nearby })
+        let (lag, misfit, leaning) = ((self.last - at) * outward, self.square.sqrt(), self.window.weights().leaning);
+        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, leaning })
     }
 
     /// Answers all rows that wait.

@@ -10,7 +10,7 @@ use super::evidence::Weights;
 use super::grid::Grid;
 use crate::kernel::GroupKernel;
 use crate::problem::Bound;
-use crate::schema::TermKind;
+use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 use crate::splines::KINDS;
 use crate::splines::assembly::RIDGE;
@@ -24,7 +24,7 @@ use crate::splines::triangle::{Row, Triangle};
 const ROUNDING: f64 = 1e-5;
 
 /// Largest change of a coefficient in a step, in natural sizes: rows about a state say little of what is farther off.
-const FARTHEST: f64 = 1.0;
+const FARTHEST: f64 = 3.0;
 
 /// Something that is asked for at a place: what was measured there, a condition, or an equation.
 #[derive(Clone, Debug)]
@@ -59,6 +59,9 @@ pub(super) struct Window {
     places: Vec<f64>,
     /// What is asked for in the tail, in the order of the coordinate.
     events: VecDeque<Event>,
+    /// Whether equations hold up to the end of the newest cell. Where they come with columns they hold up to the last row, and the
+    /// newest coefficients may go anywhere.
+    reaches_the_end: bool,
     /// Whether a cell has left the tail since the last step.
     has_left: bool,
     kernels: Vec<GroupKernel<f64>>,
@@ -93,6 +96,8 @@ impl Window {
         let equation = |&at: &usize| (at, Group::new(&schema.groups[at], kernels[at], &heads, &places, &[]));
         let equations = continuous.iter().map(equation).collect();
         let triangle = Triangle::new(unknowns, heads.band, 0);
+        let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
+        let reaches_the_end = schema.groups.iter().all(|group| group.columns.is_empty() || !is_equation(group));
         Self {
             weights,
             theta: vec![0.0; unknowns],
@@ -102,6 +107,7 @@ impl Window {
             equations,
             places,
             events: VecDeque::new(),
+            reaches_the_end,
             has_left: false,
             kernels,
             step: vec![0.0; unknowns],
@@ -204,11 +210,15 @@ impl Window {
         if !self.all.solve_from(from, &mut self.step) {
             return Err(Fault::unsolved("the latest rows"));
         }
-        let whole = |at: usize| self.reference[at] + self.step[at] - self.theta[at];
-        let change = (first.max(from)..self.theta.len()).fold(0.0, |most: f64, at| most.max(whole(at).abs()));
-        let share = (FARTHEST / change).min(1.0);
+        let pinned = if self.reaches_the_end { self.theta.len() } else { self.first(self.grid.cells) };
+        let mut change = 0.0_f64;
         for at in from..self.theta.len() {
-            self.theta[at] += share * (self.reference[at] + self.step[at] - self.theta[at]);
+            let step = self.reference[at] + self.step[at] - self.theta[at];
+            if at >= first {
+                change = change.max(step.abs());
+            }
+            let farthest = if at < pinned { FARTHEST } else { f64::INFINITY };
+            self.theta[at] += step.clamp(-farthest, farthest);
         }
         Ok(change)
     }
