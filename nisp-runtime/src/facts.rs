@@ -225,6 +225,8 @@ pub(crate) struct Answer {
     pub(crate) moved: Option<f64>,
     /// How far the cells hold the answer back, over what may be, where the budget ended before finer ones were tried.
     pub(crate) strain: Option<f64>,
+    /// How much the last finer lattice has changed an answer without noise, as a share; nothing where there was none.
+    pub(crate) refined: Option<f64>,
     /// What to do where the carrier may be too coarse.
     pub(crate) finer: &'static str,
 }

@@ -62,3 +62,49 @@ on ends boundary of rod { held: u == x; }
         assert!((row[2] - exact).abs() < 1e-7, "{row:?} for {exact}");
     }
 }
+
+/// Slopes at the edge leave a constant open.
+#[test]
+fn slopes_alone_leave_a_potential_open() {
+    let place = Place::new();
+    let text = "units: off;
+coordinates: x, y;
+fields: u;
+domains: room = box(0 .. 1, 0 .. 1);
+let known = cos(3.141592653589793 * x) * cos(3.141592653589793 * y);
+on inside in room { balance: d(u, x, 2) + d(u, y, 2) == laplacian(known); }
+on edge boundary of room { columns: normal: vector [1]; tight: dot(grad(u), normal) == 0; }
+";
+    let (code, report) = solved(&place, text);
+    let open = report["verdict"].as_array().unwrap().iter().any(|check| check["check"] == "determined");
+    assert!(code == Some(3) && open, "{}", report["verdict"]);
+    let held = format!("{text}on corners {{ held: u == known; }}\n");
+    place.put("corner.csv", "x,y\n0,0\n1,1\n");
+    place.put("equation.pde", &held);
+    let ran = place.run("solve equation.pde --data corners=corner.csv --budget 60 --out out");
+    assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
+    for row in place.rows("out/state.csv") {
+        let exact = (std::f64::consts::PI * row[0]).cos() * (std::f64::consts::PI * row[1]).cos();
+        assert!((row[2] - exact).abs() < 1e-6, "{row:?} for {exact}");
+    }
+}
+
+/// What grows a hundred million times is not found by equations that hold to a small part of their largest value.
+#[test]
+fn what_grows_is_not_called_right() {
+    let place = Place::new();
+    let text = "units: off;
+coordinates: x, t: time;
+fields: u;
+domains: rod = 0 .. 1 times 0 .. 1;
+on inside in rod { balance: d(u, t) == 0.01 * d(u, x, 2) + 20 * u; }
+on ends boundary of rod { held: u == 0; }
+on begin start of rod { first: u == 1e-6 * sin(3.141592653589793 * x); }
+";
+    let (code, report) = solved(&place, text);
+    assert_eq!(code, Some(3), "{}", report["verdict"]);
+    let grown = |t: f64| 1e-6 * ((20.0 - 0.01 * std::f64::consts::PI.powi(2)) * t).exp();
+    let off =
+        |row: &Vec<f64>| (row[2] - grown(row[1]) * (std::f64::consts::PI * row[0]).sin()).abs() > 0.1 * grown(1.0);
+    assert!(place.rows("out/state.csv").iter().any(off), "the answer is right, and is not called so");
+}

@@ -33,6 +33,7 @@ impl Engine<f64> {
             ahead: None,
             moved: None,
             strain: None,
+            refined: None,
             finer: "more --budget, more --width or another --seed",
         }
     }

@@ -24,6 +24,7 @@ impl Solver {
             ahead: None,
             moved: None,
             strain: None,
+            refined: None,
             finer: OTHER_THAN_SPLINES,
         }
     }

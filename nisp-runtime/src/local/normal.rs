@@ -223,6 +223,13 @@ impl Normal {
         seen.get(seen.len() / 2).copied().unwrap_or(0.0)
     }
 
+    /// Adds a share of its own to the stiffness of every coefficient.
+    pub(super) fn lift(&mut self, share: f64) {
+        for at in 0..self.gradient.len() {
+            self.add_stiffness(at, share * self.values[self.pattern.starts()[at]]);
+        }
+    }
+
     /// Adds to an entry of the diagonal, the first of its column in a lower triangle.
     fn add_diagonal(&mut self, at: usize, value: f64) {
         self.values[self.pattern.starts()[at]] += value;

@@ -187,7 +187,8 @@ fn solve(
             // Where nothing is measured, what is left of the equations tells all.
             let is_judged = !bound.problem.scene().schema.observed().is_empty();
             let is_unfinished = is_judged && first.is_some() && is_over && solution.status == Status::Budget;
-            let mut solution = if is_over { solution } else { first.take().unwrap_or(solution) };
+            let is_worse = |before: &Solution| is_judged || before.verdict.worst() <= solution.verdict.worst();
+            let mut solution = first.take_if(|before| !is_over && is_worse(before)).unwrap_or(solution);
             solution.verdict.checks.extend(is_unfinished.then(settled::unfinished));
             solution.wall_s = start.elapsed().as_secs_f64();
             match attempts.next().filter(|_| !is_over && has_time_again(settings, start)) {

@@ -5,6 +5,7 @@ use super::carried::{Carried, Values, heads};
 use crate::carrier::Kept;
 use crate::engine::Engine;
 use crate::facts::Answer;
+use crate::local::smooth;
 use crate::network::Architecture;
 use crate::problem::Bound;
 use crate::saved::KeptNetwork;
@@ -79,7 +80,14 @@ impl Carried for Trained {
     }
 
     fn answer(&mut self, bound: &Bound) -> Answer {
-        self.engine.answer(&self.theta, &bound.clouds)
+        let mut answer = self.engine.answer(&self.theta, &bound.clouds);
+        // Where nothing is measured, points of the equations are all that a network was shown.
+        let others = bound.problem.scene().schema.observed().is_empty().then(|| smooth::others(bound)).flatten();
+        answer.between = others.and_then(|(at, others)| {
+            let mut engine: Engine<f64> = others.engine(self.architecture).ok()?;
+            Some((at, engine.facts(at, &self.theta)))
+        });
+        answer
     }
 
     fn kept(&mut self, bars: bool) -> Box<dyn Kept> {

@@ -230,6 +230,7 @@ pub(crate) fn solve(
         ahead,
         moved: None,
         strain: None,
+        refined: None,
         finer: OTHER_THAN_SPLINES,
     };
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })

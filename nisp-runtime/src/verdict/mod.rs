@@ -66,15 +66,21 @@ impl Verdict {
     }
 
     /// True where an answer holds its equations firmly and misses the data: these equations do not describe the data, and another
-    /// answer could only fit them by bending the equations. Also where the data leave a source or a learned scalar open: so does
+    /// answer could only fit them by bending the equations. Or where finer cells change it all the same: equations that are held say
+    /// little of it. Also where the data leave a source or a learned scalar open: so does
     /// any other answer.
     pub(crate) fn contradicts(&self) -> bool {
         if self.failed().any(|check| matches!(check.check, "determined" | "leaning")) {
             return true;
         }
-        let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");
+        let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm" | "refined");
         let mut equations = self.checks.iter().filter(|check| check.check == "equation");
         self.failed().any(misses) && equations.all(|check| check.value <= FIRM * check.limit)
+    }
+
+    /// By how much a check is missed, at most.
+    pub(crate) fn worst(&self) -> f64 {
+        self.failed().map(|check| check.value / check.limit).fold(0.0, f64::max)
     }
 
     /// The checks that do not pass.

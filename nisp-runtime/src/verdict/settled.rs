@@ -1,4 +1,4 @@
-//! What the budget ended too early: steps that still changed learned scalars or sources, and cells that were too coarse.
+//! What ended too early: steps that still changed learned scalars or sources, and cells that were too coarse.
 
 use super::Check;
 use crate::facts::Answer;
@@ -10,6 +10,8 @@ const NEAR: f64 = 1e-2;
 const MOVED: f64 = 0.1;
 /// How far cells may hold an answer back.
 const STRAINED: f64 = 1.0;
+/// How much the last finer cells may have changed an answer without noise.
+const REFINED: f64 = 0.05;
 
 /// The checks of an answer whose steps did not come to their end; none of one whose did.
 pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
@@ -26,7 +28,18 @@ pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
         let said = format!("the run ended while {said}: give a larger budget, or more iterations");
         Check::new("settled", ("", ""), (value, limit), said)
     };
-    ahead.into_iter().chain(moved).chain(strain).map(check).collect()
+    ahead.into_iter().chain(moved).chain(strain).map(check).chain(refined(answer)).collect()
+}
+
+/// Whether a finer lattice still changed an answer without noise.
+fn refined(answer: &Answer) -> Option<Check> {
+    let refined = answer.refined?;
+    let said = format!(
+        "finer cells changed the answer by {:.0} %: a small error grows along the equations, or the answer has layers thinner than \
+         cells; give more points (--points), or conditions that hold it where it grows",
+        100.0 * refined
+    );
+    Some(Check::new("refined", ("", ""), (refined, REFINED), said))
 }
 
 /// The check that fails where the budget ended an answer before its steps did, after another carrier had failed.

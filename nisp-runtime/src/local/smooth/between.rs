@@ -73,7 +73,7 @@ pub(super) fn thinned(bound: &Bound, points: usize) -> Option<Bound> {
 }
 
 /// The problem with the equation of [`filled`] at other places, and which group that is.
-pub(super) fn others(bound: &Bound) -> Option<(usize, Bound)> {
+pub(crate) fn others(bound: &Bound) -> Option<(usize, Bound)> {
     let at = largest(bound)?;
     let mut others = bound.clone();
     let many = count(bound, at).clamp(FEWEST_OTHERS, MOST_OTHERS);

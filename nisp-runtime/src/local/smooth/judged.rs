@@ -60,7 +60,7 @@ impl Solver<'_> {
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state.
-    pub(super) fn deviations(&mut self, state: &State) -> Option<Deviations> {
+    fn deviations(&mut self, state: &State) -> Option<Deviations> {
         let slopes = self.set_learned(&state.learned);
         self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
         let assembled = self.assemble(state, &slopes);
@@ -144,6 +144,7 @@ impl Solver<'_> {
             ahead: None,
             moved: None,
             strain: None,
+            refined: None,
             finer: OTHER_THAN_SPLINES,
         }
     }

@@ -21,6 +21,7 @@ mod unmeasured;
 
 use std::time::Instant;
 
+pub(crate) use between::others;
 use judged::{FAR, MISSED};
 
 use super::{KeptLattices, LocalError, LocalSolution, refuse};
@@ -50,6 +51,8 @@ const MORE: usize = 2;
 const EASED: f64 = 0.9;
 /// Finer lattices that may not help, one after the other, where measurements are missed by far.
 const PATIENCE: usize = 2;
+/// What of the strain is left where cells hold an answer without noise back by nothing.
+const EXACT: f64 = 0.01;
 /// Change of sources, fields and learned scalars from a lattice to a finer one, as a share, that is none.
 const SAME: f64 = 0.01;
 /// How much longer a finer lattice takes at least. Where it does not end within the budget, nothing is lost but time.
@@ -87,7 +90,8 @@ pub(crate) fn solve(
     }
     let mut run = Run::go(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
     let is_noisy = noise.is_there(bound.problem.scene().schema);
-    let (mut strain, mut idle, mut changed) = (f64::INFINITY, 0, f64::INFINITY);
+    let (mut strain, mut idle) = (f64::INFINITY, 0);
+    let mut change = Change::default();
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
         let missed = solver.missed(&run.state, noise);
@@ -95,7 +99,9 @@ pub(crate) fn solve(
         // Where cells miss measurements, which then count as noise, one finer lattice may be too coarse as well.
         let patience = if is_missed || !is_noisy { PATIENCE } else { 1 };
         idle = if strain > EASED * before { idle + 1 } else { 0 };
-        if strain < 1.0 || idle >= patience {
+        // What grows makes much of little: without noise it is a finer lattice that tells how far an answer is off.
+        let is_seen = is_noisy || strain < EXACT || change.last < SAME;
+        if strain < 1.0 && is_seen || idle >= patience {
             break;
         }
         let bars = BARS * run.longest;
@@ -119,9 +125,12 @@ pub(crate) fn solve(
         let first = State { classes, ..first };
         let Ok(found) = Run::go(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
         // Steps on a finer lattice begin anew, so that what agrees before they end agrees all the more.
-        changed = finer.apart(&found.state, &solver, &run.state);
+        change.last = finer.apart(&found.state, &solver, &run.state);
         match found.status {
-            Status::Converged => (solver, run, points) = (finer, found, more),
+            Status::Converged => {
+                change.taken = Some(change.last);
+                (solver, run, points) = (finer, found, more);
+            }
             Status::NotConverged => break,
             status => {
                 // If the last lattice did not help, this one's answer stands without the next.
@@ -131,7 +140,21 @@ pub(crate) fn solve(
             }
         }
     }
-    finish(bound, solver, run, noise, (&clock, changed))
+    finish(bound, solver, run, noise, (&clock, change))
+}
+
+/// How much finer lattices changed the answer.
+struct Change {
+    /// The last one, whether its steps came to their end or not.
+    last: f64,
+    /// The one that has the answer; nothing if it is the first.
+    taken: Option<f64>,
+}
+
+impl Default for Change {
+    fn default() -> Self {
+        Self { last: f64::INFINITY, taken: None }
+    }
 }
 
 /// Points of the largest equation in a saved state.
@@ -139,13 +162,13 @@ fn saved_points(saved: &Saved) -> Result<usize, Fault> {
     saved.counter("points").map(|points| points as usize)
 }
 
-/// Error bars, and what the verdict is made from, of an answer that the last of its lattices has changed by this share.
+/// Error bars, and what the verdict is made from, of an answer that finer lattices have changed so much.
 fn finish(
     bound: &Bound,
     mut solver: Solver<'_>,
     run: Run,
     noise: &Noise,
-    (clock, changed): (&Clock, f64),
+    (clock, change): (&Clock, Change),
 ) -> Result<LocalSolution, LocalError> {
     let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
     let mut warnings = Vec::new();
@@ -163,14 +186,16 @@ fn finish(
     let sources = bound.problem.scene().schema.heads.iter().enumerate();
     warnings.extend(sources.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
     if bound.problem.scene().schema.observed().is_empty() && clock.has_time(longest) {
-        warnings.extend(solver.undetermined(&state));
+        warnings.extend(solver.undetermined(&state, status == Status::Converged));
     }
     // What a finer lattice has hardly changed, another one will not.
-    let is_open = status == Status::Budget && changed > SAME;
+    let is_open = status == Status::Budget && change.last > SAME;
     let strain = is_open.then(|| solver.strain(&state, noise));
     solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
     answer.strain = strain;
+    // Noise may fall differently on other cells; without it they are all that changes an answer.
+    answer.refined = change.taken.filter(|_| !is_noisy);
     if status != Status::Converged {
         (answer.ahead, answer.moved) = (Some(ahead), Some(moved));
     }

@@ -1,13 +1,21 @@
 //! What equations and conditions leave open where nothing is measured: no error bars say so there.
+//!
+//! A little stiffness is given to every coefficient, just above what rounding gives to it. What equations and conditions determine does
+//! not mind how little; deviations of what they leave open go with its root.
 
 use super::solver::Solver;
 use super::state::State;
+use crate::local::draws::{Deviations, Draws};
 use crate::schema;
 use crate::solve::driver::{Warning, WarningKind};
 use crate::solve::vector::{largest, root_mean_square};
 use crate::tolerance::LOOSE;
 
-/// Deviation of a field over its size from which on it is open, where equations are off by [`LOOSE`].
+/// Stiffness of every coefficient beside its own, and ten times that.
+const LIFTS: [f64; 2] = [1e-13, 1e-12];
+/// How much a field's deviations may fall from the one to the other. Where it is open they fall by the root of ten.
+const FALL: f64 = 2.2;
+/// Deviation of a field over its size from which on it is open too, where equations are off by [`LOOSE`].
 const OPEN: f64 = 0.5;
 /// Size of a field or of an equation's terms over the natural one up to which it is zero.
 const ZERO: f64 = 1e-4;
@@ -15,8 +23,9 @@ const ZERO: f64 = 1e-4;
 const MOST: usize = 500;
 
 impl Solver<'_> {
-    /// The fields of an answer that may be otherwise, and where most of all.
-    pub(super) fn undetermined(&mut self, state: &State) -> Vec<Warning> {
+    /// The fields of an answer that may be otherwise, and where most of all. Cells that are too coarse for it leave more open than the
+    /// problem does.
+    pub(super) fn undetermined(&mut self, state: &State, is_resolved: bool) -> Vec<Warning> {
         // Beside strict equations rounding would hold what nothing else does.
         let loose = State { tolerance: LOOSE, ..state.clone() };
         // Terms of what is at rest have no size.
@@ -28,19 +37,24 @@ impl Solver<'_> {
             }
         }
         self.set_sigmas(&loose);
-        let Some(deviations) = self.deviations(&loose) else { return Vec::new() };
+        let Some([deviations, stiffer]) = self.lifted(&loose) else { return Vec::new() };
         let (schema, inputs) = (self.schema(), self.schema().coordinates.len());
         let points: Vec<f64> =
             self.bound.coordinates.iter().max_by_key(|points| points.len()).cloned().unwrap_or_default();
         let step = (points.len() / inputs).div_ceil(MOST).max(1);
         let points: Vec<&[f64]> = points.chunks_exact(inputs).step_by(step).collect();
         let open = |(head, declared): (usize, &schema::Head)| {
-            let deviation = |point: &&[f64]| root_mean_square(self.heads.drawn(head, point, &deviations.coefficients));
-            let deviations: Vec<f64> = points.iter().map(deviation).collect();
+            let of = |draws: &Deviations| -> Vec<f64> {
+                let deviation = |point: &&[f64]| root_mean_square(self.heads.drawn(head, point, &draws.coefficients));
+                points.iter().map(deviation).collect()
+            };
+            let [deviations, stiffer] = [of(&deviations), of(&stiffer)];
+            let [soft, stiff] = [&deviations, &stiffer].map(|all| root_mean_square(all.iter().copied()));
             let size = root_mean_square(self.heads.values(head, &points.concat(), &state.theta));
             let natural = self.heads.scale[head];
             let size = if size > ZERO * natural { size } else { natural };
-            if root_mean_square(deviations.iter().copied()) <= OPEN * size {
+            let is_large = is_resolved && soft > OPEN * size;
+            if !is_large && soft <= FALL * stiff {
                 return None;
             }
             let most = largest(&deviations);
@@ -55,5 +69,19 @@ impl Solver<'_> {
             Some(Warning { kind: WarningKind::Undetermined, message })
         };
         schema.heads.iter().enumerate().filter_map(open).collect()
+    }
+
+    /// Deviations of all unknowns about a state, with little stiffness of their own and with more of it.
+    fn lifted(&mut self, state: &State) -> Option<[Deviations; 2]> {
+        let slopes = self.set_learned(&state.learned);
+        let mut with = |lift: f64| {
+            self.normal.draws = Some(Draws::new(state.theta.len(), state.learned.len()));
+            let assembled = self.assemble(state, &slopes);
+            self.normal.lift(lift);
+            let draws = self.normal.draws.take()?;
+            assembled.ok()?;
+            self.normal.factor()?.deviations(&draws)
+        };
+        Some([with(LIFTS[0])?, with(LIFTS[1])?])
     }
 }
