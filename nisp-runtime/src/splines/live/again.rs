@@ -1,9 +1,7 @@
 //! When a window has lost its record it begins again: a source that sets in after quiet rows is rougher than they said, and steps that
 //! led nowhere lead nowhere from there. The last rows are solved as the first ones were.
 
-use super::Smoothed;
 use super::record::MeasuredRow;
-use super::smoother::{FixedLagSmoother, Live};
 
 /// Rows after a beginning before the next one, at least and at most: equations that are wrong stay wrong.
 const SOON: usize = 50;
@@ -11,12 +9,12 @@ const LATE: usize = 4000;
 /// Beginnings that are this many waits apart have helped.
 const HELPED: usize = 4;
 /// Rows that a beginning is made from, beside the first ones.
-const ROWS: usize = 2;
+pub(super) const ROWS: usize = 2;
 
 /// How far from its neighbours a value stands alone, over how far most are.
 const STRAY: f64 = 12.0;
 /// What of the lag is left to later rows when the last ones are answered as a whole.
-const OPEN: f64 = 0.5;
+pub(super) const OPEN: f64 = 0.5;
 
 /// How many rows go by before the window may begin again.
 pub(super) struct Patience {
@@ -35,11 +33,11 @@ impl Patience {
         self.since += 1;
     }
 
-    fn is_over(&self) -> bool {
+    pub(super) fn is_over(&self) -> bool {
         self.since >= self.wait
     }
 
-    fn begun(&mut self) {
+    pub(super) fn begun(&mut self) {
         self.wait = if self.since < HELPED * self.wait { (2 * self.wait).min(LATE) } else { SOON };
         self.since = 0;
     }
@@ -47,7 +45,7 @@ impl Patience {
 
 /// Rows of which those say nothing that have a value which stands alone: far from the line between its neighbours, and farther than
 /// these are. A window that began with it would follow it.
-fn without_strays(mut rows: Vec<MeasuredRow>) -> Vec<MeasuredRow> {
+pub(super) fn without_strays(mut rows: Vec<MeasuredRow>) -> Vec<MeasuredRow> {
     for column in 0..rows[0].values.len() {
         let off = |at: usize| {
             let [before, own, after] = [at - 1, at, at + 1].map(|at| (rows[at].at, rows[at].values[column]));
@@ -64,29 +62,4 @@ fn without_strays(mut rows: Vec<MeasuredRow>) -> Vec<MeasuredRow> {
         strays.into_iter().for_each(|at| rows[at + 1].values.fill(f64::NAN));
     }
     rows
-}
-
-impl FixedLagSmoother {
-    /// Begins again where the window is lost and has had its time: the answers of the rows that wait.
-    pub(super) fn recover(&mut self) -> Vec<Smoothed> {
-        let is_due = self.patience.is_over() && self.live.as_ref().is_some_and(Live::is_lost);
-        if is_due { self.begin_again().unwrap_or_default() } else { Vec::new() }
-    }
-
-    /// Begins again: the answers of the rows that wait. What cannot be solved anew stays as it is, and nothing comes of it.
-    pub(super) fn begin_again(&mut self) -> Option<Vec<Smoothed>> {
-        let mut lost = self.live.take()?;
-        self.patience.begun();
-        let rows = without_strays(lost.last_rows(ROWS * self.settings.first_rows));
-        // The lag stays what it was said to be.
-        let (start, lag) = (rows[0].at, lost.declared_lag());
-        let Ok(answers) = self.begin_with(rows, Some(lag), OPEN) else {
-            self.live = Some(lost);
-            return None;
-        };
-        let first = lost.first_waiting();
-        let mut found = lost.answer_before(start);
-        found.extend(answers.into_iter().filter(|answer| first.is_some_and(|first| answer.at >= first)));
-        Some(found)
-    }
 }

@@ -11,6 +11,7 @@ mod grid;
 mod opening;
 mod record;
 mod smoother;
+mod under_way;
 mod window;
 
 use thiserror::Error;

@@ -1,0 +1,294 @@
+//! Rows under way: what waits for its answer, what was asked last, and how well rows are met.
+
+use std::collections::VecDeque;
+use std::thread::{self, JoinHandle};
+
+use super::evidence::{Stretch, Weights};
+use super::opening::Opening;
+use super::record::{Layout, MeasuredRow};
+use super::window::{Event, Known, Window};
+use super::{LiveError, Smoothed};
+use crate::solve::fault::Fault;
+
+/// Steps over the first cells at most, and the change that no longer matters.
+const FIRST_STEPS: usize = 20;
+const SETTLED: f64 = 1e-8;
+/// Steps at a row at most, and the largest change of a coefficient, in natural sizes, after which one is enough.
+const MORE_STEPS: usize = 5;
+const SMALL: f64 = 0.5;
+/// Rows of a later stretch that is asked for noise and smoothness, at most, and rows between such stretches, at most.
+const STRETCH: usize = 1000;
+const BETWEEN: usize = 4000;
+/// Values that the running mean of misfits looks back over, and the square that one may count for: a value that stands alone
+/// does not make equations wrong.
+const LOOKED_BACK: f64 = 100.0;
+const LARGEST_SQUARE: f64 = 16.0;
+/// The same about a place: answers beside a value that stands alone are wrong.
+const NEARBY: f64 = 12.0;
+const LARGEST_NEARBY: f64 = 200.0;
+/// Share of a cell by which a place may miss the lag.
+pub(super) const SLACK: f64 = 1e-6;
+
+/// Rows under way.
+pub(super) struct Live {
+    pub(super) window: Window,
+    /// The answer to the first rows, while one of them waits.
+    pub(super) opening: Option<Opening>,
+    /// From declared units to the engine's: of the coordinate, and of each column.
+    pub(super) inward: (f64, Vec<f64>),
+    pub(super) outward: Vec<f64>,
+    pub(super) lag: f64,
+    /// Places of rows that have no answer yet, with what was measured there.
+    pub(super) pending: VecDeque<(f64, Vec<Event>)>,
+    /// Conditions at places that the record has not reached yet.
+    pub(super) conditions: VecDeque<Event>,
+    pub(super) last: f64,
+    /// Running mean of the squares of misfits over the noise, of rows that have an answer.
+    pub(super) square: f64,
+    /// The same of fewer rows, up to the one that is answered and up to two behind it: a value that stands alone, or a source that
+    /// is followed too slowly, spoils answers on both of its sides.
+    pub(super) nearby: [Nearby; 3],
+    /// The last rows, for the next stretch.
+    pub(super) recent: VecDeque<MeasuredRow>,
+    pub(super) rows: usize,
+    /// Number of the row at which a stretch is asked next, or its answer taken over.
+    pub(super) due: usize,
+    pub(super) asked: Option<JoinHandle<Result<Weights, LiveError>>>,
+}
+
+/// A running mean of squares up to a row that waits.
+pub(super) struct Nearby {
+    /// How many rows that is behind the one that is answered.
+    ahead: usize,
+    square: f64,
+    /// Rows that wait and have been counted.
+    counted: usize,
+}
+
+impl Nearby {
+    /// Of the rows up to the one that is so many behind the answered one.
+    pub(super) fn ahead(ahead: usize) -> Self {
+        Self { ahead, square: 1.0, counted: 0 }
+    }
+
+    fn count_up(&mut self, answers: (&Window, Option<&Opening>), pending: &VecDeque<(f64, Vec<Event>)>) {
+        for (_, events) in pending.iter().take(self.ahead + 1).skip(self.counted) {
+            count(answers, events, &mut self.square, (NEARBY, LARGEST_NEARBY));
+            self.counted += 1;
+        }
+    }
+}
+
+/// Whether a row could be reached from the last one.
+pub(super) enum Reach {
+    Whole,
+    Gap,
+}
+
+impl Live {
+    pub(super) fn inward(&self, at: f64, values: &[f64]) -> MeasuredRow {
+        scaled_row(&self.inward, at, values)
+    }
+
+    /// Takes the first rows, whose first cells are found together. Gives back those behind a gap.
+    pub(super) fn replay(
+        &mut self,
+        layout: &Layout,
+        rows: Vec<MeasuredRow>,
+        known: Known<'_>,
+        found: &mut Vec<Smoothed>,
+    ) -> Result<Vec<MeasuredRow>, LiveError> {
+        let right = self.window.grid().right();
+        let mut rows = rows.into_iter().peekable();
+        while let Some(row) = rows.next_if(|row| row.at <= right) {
+            self.ask(layout, row);
+        }
+        self.ask_conditions();
+        for _ in 0..FIRST_STEPS {
+            if self.window.solve(self.window.grid().begun())? < SETTLED {
+                break;
+            }
+        }
+        self.answer(found);
+        while let Some(row) = rows.next() {
+            if let Reach::Gap = self.push(layout, row.clone(), known, found)? {
+                return Ok(std::iter::once(row).chain(rows).collect());
+            }
+        }
+        Ok(Vec::new())
+    }
+
+    fn ask(&mut self, layout: &Layout, row: MeasuredRow) {
+        let events: Vec<Event> = layout.events(&row).collect();
+        events.iter().for_each(|event| self.window.ask(event.clone()));
+        self.last = row.at;
+        self.rows += 1;
+        self.pending.push_back((row.at, events));
+        self.recent.push_back(row);
+        if self.recent.len() > STRETCH {
+            self.recent.pop_front();
+        }
+    }
+
+    fn ask_conditions(&mut self) {
+        let right = self.window.grid().right();
+        while let Some(condition) = self.conditions.pop_front_if(|condition| condition.at <= right) {
+            self.window.ask(condition);
+        }
+    }
+
+    pub(super) fn push(
+        &mut self,
+        layout: &Layout,
+        row: MeasuredRow,
+        known: Known<'_>,
+        found: &mut Vec<Smoothed>,
+    ) -> Result<Reach, LiveError> {
+        self.renew(layout)?;
+        let (right, width) = (self.window.grid().right(), self.window.grid().width);
+        let cells = ((row.at - right) / width - SLACK).ceil().max(0.0);
+        if cells > self.window.grid().cells as f64 {
+            return Ok(Reach::Gap);
+        }
+        for cell in 1..=cells as usize {
+            self.window.advance(known);
+            self.ask_conditions();
+            if cell < cells as usize {
+                self.last = self.window.grid().right();
+                self.solve()?;
+                self.answer(found);
+            }
+        }
+        self.ask(layout, row);
+        self.solve()?;
+        self.answer(found);
+        Ok(Reach::Whole)
+    }
+
+    /// A step, down to the first row that waits.
+    fn solve(&mut self) -> Result<(), Fault> {
+        let grid = self.window.grid();
+        let wanted = self.pending.front().map_or(grid.tail_start(), |(at, _)| grid.cell(*at));
+        let from = wanted.min(grid.tail_start()).max(grid.begun());
+        for _ in 0..MORE_STEPS {
+            if self.window.solve(from)? < SMALL {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Answers the rows that have waited for a lag.
+    fn answer(&mut self, found: &mut Vec<Smoothed>) {
+        let slack = SLACK * self.window.grid().width;
+        while self.pending.front().is_some_and(|(at, _)| *at <= self.last - self.lag + slack) {
+            found.extend(self.answer_next());
+        }
+    }
+
+    /// True where equations and data no longer agree.
+    pub(super) fn is_lost(&self) -> bool {
+        let nearby = self.nearby[..1].iter().map(|nearby| nearby.square.sqrt());
+        nearby.fold(0.0, f64::max) > Smoothed::NEARBY || self.square.sqrt() > Smoothed::MISFIT
+    }
+
+    /// So many of the last rows at most, in declared units.
+    pub(super) fn last_rows(&self, most: usize) -> Vec<MeasuredRow> {
+        self.outward(self.recent.iter().skip(self.recent.len().saturating_sub(most)))
+    }
+
+    /// Rows in declared units.
+    pub(super) fn outward<'a>(&self, rows: impl Iterator<Item = &'a MeasuredRow>) -> Vec<MeasuredRow> {
+        let (by, factors) = &self.inward;
+        let outward: (f64, Vec<f64>) = (by.recip(), factors.iter().map(|factor| factor.recip()).collect());
+        rows.map(|row| scaled_row(&outward, row.at, &row.values)).collect()
+    }
+
+    /// The lag, and the place of the first row without an answer, in the declared unit.
+    pub(super) fn declared_lag(&self) -> f64 {
+        self.lag / self.inward.0
+    }
+
+    pub(super) fn first_waiting(&self) -> Option<f64> {
+        self.pending.front().map(|(at, _)| at / self.inward.0)
+    }
+
+    /// Answers the rows that wait before a place in the declared unit.
+    pub(super) fn answer_before(&mut self, place: f64) -> Vec<Smoothed> {
+        let place = place * self.inward.0;
+        let mut found = Vec::new();
+        while self.pending.front().is_some_and(|(at, _)| *at < place) {
+            found.extend(self.answer_next());
+        }
+        found
+    }
+
+    fn answer_next(&mut self) -> Option<Smoothed> {
+        let next = self.pending.front()?.0;
+        self.opening.take_if(|opening| !opening.answers(next));
+        let (window, opening) = (&mut self.window, self.opening.as_ref());
+        for nearby in &mut self.nearby {
+            nearby.count_up((window, opening), &self.pending);
+        }
+        let (at, events) = self.pending.pop_front()?;
+        self.nearby.iter_mut().for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
+        count((window, opening), &events, &mut self.square, (LOOKED_BACK, LARGEST_SQUARE));
+        let read = |(head, outward): (usize, &f64)| {
+            let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
+            (value * outward, deviation * outward)
+        };
+        let heads = self.outward.iter().enumerate().map(read).collect();
+        let outward = self.inward.0.recip();
+        let nearby = self.nearby.iter().map(|nearby| nearby.square.sqrt()).fold(0.0, f64::max);
+        let (lag, misfit, leaning) = ((self.last - at) * outward, self.square.sqrt(), self.window.weights().leaning);
+        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, leaning })
+    }
+
+    /// Answers all rows that wait.
+    pub(super) fn finish(&mut self) -> Vec<Smoothed> {
+        std::iter::from_fn(|| self.answer_next()).collect()
+    }
+
+    /// Asks the last rows for noise and smoothness now and then, on another thread. What they say is taken over at a row whose
+    /// number is known beforehand, so that answers do not depend on time.
+    fn renew(&mut self, layout: &Layout) -> Result<(), LiveError> {
+        if self.rows < self.due {
+            return Ok(());
+        }
+        let between = self.rows.min(BETWEEN);
+        match self.asked.take() {
+            Some(asked) => {
+                // A stretch that cannot be solved leaves what is known as it is.
+                if let Ok(Ok(weights)) = asked.join() {
+                    self.window.weigh(weights);
+                }
+                self.due = self.rows + between;
+            }
+            None => {
+                let stretch = layout.stretch(&self.window.bound, self.recent.make_contiguous());
+                let from = self.window.weights().clone();
+                let solve = move || Stretch::solve(&stretch, Some(&from)).map(|stretch| stretch.weights);
+                self.asked = thread::Builder::new().name("evidence".into()).spawn(solve).ok();
+                self.due = self.rows + between / 4;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Counts the misfits of a row's values in a running mean of their squares over so many values, none larger than that.
+fn count(
+    (window, opening): (&Window, Option<&Opening>),
+    events: &[Event],
+    mean: &mut f64,
+    (values, largest): (f64, f64),
+) {
+    let splines = opening.map(Opening::splines);
+    for event in events {
+        window.misfits(event, splines, &mut |misfit| *mean += ((misfit * misfit).min(largest) - *mean) / values);
+    }
+}
+
+pub(super) fn scaled_row((by, factors): &(f64, Vec<f64>), at: f64, values: &[f64]) -> MeasuredRow {
+    MeasuredRow { at: at * by, values: values.iter().zip(factors).map(|(value, factor)| value * factor).collect() }
+}
