@@ -10,8 +10,8 @@ use nisp_data::{DataError, Table};
 
 /// Points on a line, over an area and in a volume, or in more dimensions, for equations of second order.
 const POINTS: [usize; 3] = [160, 800, 2000];
-/// How many more there are of an edge over one coordinate: cells get finer than those of an area's own points, and what a condition
-/// does not say between its points nothing says.
+/// How many times more points an edge over one coordinate has. Cells may get finer than its points are apart, and between its points
+/// no condition holds.
 const EDGE: usize = 4;
 
 /// A domain whose regions have been checked.
@@ -73,7 +73,7 @@ impl Body {
                 let mut points = weighted(inside(&self.factors, count - last), &self.factors);
                 if last > 0 {
                     let end = self.end(last, true).points;
-                    // The others fill the whole already.
+                    // The weights of the others add up to the whole.
                     points.weights.extend(vec![0.0; end.weights.len()]);
                     points.coordinates.extend(end.coordinates);
                 }
@@ -98,8 +98,8 @@ impl Body {
         }
     }
 
-    /// How many of so many points within lie where the last of several regions, an interval, ends: no condition says anything there,
-    /// and an equation that is not asked there leaves a strip free.
+    /// How many of so many points within lie where the last of several regions, an interval, ends. No condition holds there, so that
+    /// without these points a strip before the end would be free.
     fn layer(&self, count: usize) -> usize {
         let dimensions = self.factors.iter().map(Domain::dim).sum::<usize>() as f64;
         match self.factors.last() {

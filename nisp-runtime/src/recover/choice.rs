@@ -79,7 +79,7 @@ pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>)
         }
         Chosen::Network => vec![network(seed.wrapping_add(1), "another seed")],
     };
-    // A lattice may get finer and finer for a layer that a network follows.
+    // For a thin layer a lattice gets finer and finer. A network may follow the layer.
     let share = if chosen == Chosen::Lattice && !others.is_empty() { FIRST } else { 1.0 };
     (Attempt { share, ..Attempt::new(chosen, seed, why) }, others)
 }

@@ -66,8 +66,8 @@ impl Verdict {
     }
 
     /// True where an answer holds its equations firmly and misses the data: these equations do not describe the data, and another
-    /// answer could only fit them by bending the equations. Or where finer cells change it all the same: equations that are held say
-    /// little of it. Also where the data leave a source or a learned scalar open: so does
+    /// answer could only fit them by bending the equations. Or where it holds them firmly and finer cells change it: another answer that
+    /// holds them is no better. Also where the data leave a source or a learned scalar open: so does
     /// any other answer.
     pub(crate) fn contradicts(&self) -> bool {
         if self.failed().any(|check| matches!(check.check, "determined" | "leaning")) {

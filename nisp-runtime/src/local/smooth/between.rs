@@ -24,7 +24,7 @@ const FEWEST_BASES: usize = 200;
 const ASKED: u64 = 0;
 const OTHERS: u64 = 1;
 const PICKED: u64 = 2;
-/// Exact measurements to a point of the equations at most: as many more than unknowns as these points are.
+/// Exact measurements for every point of the equations at most: these points are twice as many as the unknowns.
 const MEASURED: usize = 2;
 
 /// How many points an equation is asked at before it is known whether these are enough. A source of all coordinates may be

@@ -51,9 +51,9 @@ const MORE: usize = 2;
 const EASED: f64 = 0.9;
 /// Finer lattices that may not help, one after the other, where measurements are missed by far.
 const PATIENCE: usize = 2;
-/// What of the strain is left where cells hold an answer without noise back by nothing.
+/// Strain below which one lattice is enough for an answer without noise.
 const EXACT: f64 = 0.01;
-/// Change of sources, fields and learned scalars from a lattice to a finer one, as a share, that is none.
+/// Change of sources, fields and learned scalars from a lattice to a finer one, as a share, below which they are the same.
 const SAME: f64 = 0.01;
 /// How much longer a finer lattice takes at least. Where it does not end within the budget, nothing is lost but time.
 const SLOWER: f64 = 1.0;
@@ -99,8 +99,8 @@ pub(crate) fn solve(
         // Where cells miss measurements, which then count as noise, one finer lattice may be too coarse as well.
         let patience = if is_missed || !is_noisy { PATIENCE } else { 1 };
         idle = if strain > EASED * before { idle + 1 } else { 0 };
-        // What grows makes much of little: without noise it is a finer lattice that tells how far an answer is off.
-        let is_seen = is_noisy || strain < EXACT || change.last < SAME;
+        // Small errors may grow along an equation. Without noise a finer lattice tells how far an answer is off.
+        let is_seen = is_noisy || change.last < SAME || strain < EXACT && change.taken.is_none();
         if strain < 1.0 && is_seen || idle >= patience {
             break;
         }
@@ -124,7 +124,7 @@ pub(crate) fn solve(
         let classes = if is_missed { first.classes } else { run.state.known() };
         let first = State { classes, ..first };
         let Ok(found) = Run::go(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
-        // Steps on a finer lattice begin anew, so that what agrees before they end agrees all the more.
+        // Steps on a finer lattice begin anew: where they agree with the coarser answer, that is no matter of where they began.
         change.last = finer.apart(&found.state, &solver, &run.state);
         match found.status {
             Status::Converged => {

@@ -94,8 +94,8 @@ impl<'a> Solver<'a> {
         let tolerance = (SHARE * shares.fold(0.0, f64::max)).clamp(STRICTEST, EASIEST);
         let scalars = bound.scalars.clone();
         Ok(Self {
+            others: others(&bound),
             bound,
-            others: others(problem),
             heads,
             groups,
             surfaces,

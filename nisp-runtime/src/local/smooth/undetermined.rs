@@ -26,7 +26,7 @@ impl Solver<'_> {
     /// The fields of an answer that may be otherwise, and where most of all. Cells that are too coarse for it leave more open than the
     /// problem does.
     pub(super) fn undetermined(&mut self, state: &State, is_resolved: bool) -> Vec<Warning> {
-        // Beside strict equations rounding would hold what nothing else does.
+        // Beside strict equations rounding would be stiffer than that.
         let loose = State { tolerance: LOOSE, ..state.clone() };
         // Terms of what is at rest have no size.
         let terms = self.schema().groups.iter().zip(&self.bound.sizes);
