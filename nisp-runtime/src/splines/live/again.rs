@@ -55,11 +55,35 @@ pub(super) fn without_strays(mut rows: Vec<MeasuredRow>) -> Vec<MeasuredRow> {
         let off: Vec<f64> = (1..rows.len() - 1).map(off).collect();
         let mut known: Vec<f64> = off.iter().copied().filter(|off| !off.is_nan()).collect();
         known.sort_by(f64::total_cmp);
-        let Some(usual) = known.get(known.len() / 2).copied() else { continue };
+        // Values that mostly stay as they are, as rounded ones do, have no usual distance.
+        let Some(usual) = known.get(known.len() / 2).copied().filter(|usual| *usual > 0.0) else { continue };
         let beside = |at: usize| off[at.saturating_sub(1)..(at + 2).min(off.len())].iter().copied().fold(0.0, f64::max);
         let strays: Vec<usize> =
             (0..off.len()).filter(|&at| off[at] > STRAY * usual && off[at] == beside(at)).collect();
         strays.into_iter().for_each(|at| rows[at + 1].values.fill(f64::NAN));
     }
     rows
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn rows(value: impl Fn(usize) -> f64) -> Vec<MeasuredRow> {
+        (0..40).map(|i| MeasuredRow { at: i as f64, values: vec![value(i), 1.0] }).collect()
+    }
+
+    fn left_out(rows: Vec<MeasuredRow>) -> Vec<usize> {
+        let rows = without_strays(rows);
+        (0..rows.len()).filter(|&at| rows[at].values.iter().all(|value| value.is_nan())).collect()
+    }
+
+    #[test]
+    fn a_value_that_stands_alone_is_left_out_and_its_neighbours_are_not() {
+        let wave = |i: usize| (0.4 * i as f64).sin();
+        assert!(left_out(rows(wave)).is_empty());
+        assert_eq!(left_out(rows(|i| if i == 17 { 9.0 } else { wave(i) })), [17]);
+        // Rounded values stay and jump.
+        assert!(left_out(rows(|i| (i / 15) as f64)).is_empty());
+    }
 }

@@ -18,6 +18,7 @@ const FEWEST: usize = 10;
 const MOST_CELLS: usize = 20_000;
 /// How much larger a source's deviation may be at the lag than after any wait.
 const NEAR: f64 = 1.05;
+
 /// Smooths a record as it comes: every row is answered once the record is a lag farther.
 ///
 /// Work and memory of a row are bounded, whatever the length of the record. The same rows give the same answers.
@@ -32,6 +33,7 @@ pub struct FixedLagSmoother {
     live: Option<Live>,
     patience: Patience,
 }
+
 impl FixedLagSmoother {
     /// Of a problem with its parameters; groups without columns to which it has points are conditions there, all others hold
     /// along the whole record. Measured groups are not bound: their columns come with the rows.
@@ -85,7 +87,15 @@ impl FixedLagSmoother {
                     found.extend(self.recover());
                     return Ok(found);
                 }
-                Err(error) => return self.begin_again().ok_or(error),
+                Err(error) => {
+                    let is_taken = live.has(at);
+                    found.extend(self.begin_again().ok_or(error)?);
+                    if is_taken {
+                        return Ok(found);
+                    }
+                    found.extend(self.push_anew(at, values)?);
+                    return Ok(found);
+                }
                 Ok(Reach::Gap) => {
                     found.extend(live.finish());
                     self.live = None;
@@ -209,6 +219,20 @@ impl FixedLagSmoother {
         Ok(found)
     }
 
+    /// Takes a row that a window could not reach, after that has begun again.
+    fn push_anew(&mut self, at: f64, values: &[f64]) -> Result<Vec<Smoothed>, LiveError> {
+        let mut found = Vec::new();
+        let reach = self.live.as_mut().map(|live| {
+            let row = live.inward(at, values);
+            live.push(&self.layout, row, &|_, _| None, &mut found)
+        });
+        if !matches!(reach.transpose()?, Some(Reach::Whole)) {
+            found.extend(self.live.take().iter_mut().flat_map(Live::finish));
+            self.waiting.push(MeasuredRow { at, values: values.to_vec() });
+        }
+        Ok(found)
+    }
+
     /// Begins again where the window is lost and has had its time: the answers of the rows that wait.
     fn recover(&mut self) -> Vec<Smoothed> {
         let is_due = self.patience.is_over() && self.live.as_ref().is_some_and(Live::is_lost);
@@ -227,6 +251,8 @@ impl FixedLagSmoother {
             return None;
         };
         let first = lost.first_waiting();
+        // Rows behind a gap wait again, but for those that have their answer.
+        self.waiting.retain(|row| first.is_some_and(|first| row.at >= first));
         let mut found = lost.answer_before(start);
         found.extend(answers.into_iter().filter(|answer| first.is_some_and(|first| answer.at >= first)));
         Some(found)

@@ -192,6 +192,11 @@ impl Live {
         nearby.fold(0.0, f64::max) > Smoothed::NEARBY || self.square.sqrt() > Smoothed::MISFIT
     }
 
+    /// Whether the row at a place in the declared unit is among those that were taken.
+    pub(super) fn has(&self, at: f64) -> bool {
+        self.recent.back().is_some_and(|row| row.at >= at * self.inward.0)
+    }
+
     /// So many of the last rows at most, in declared units.
     pub(super) fn last_rows(&self, most: usize) -> Vec<MeasuredRow> {
         self.outward(self.recent.iter().skip(self.recent.len().saturating_sub(most)))
