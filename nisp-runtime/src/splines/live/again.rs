@@ -1,14 +1,14 @@
-//! When a window has lost its record it begins again: a source that sets in after quiet rows is rougher than they said, and steps that
-//! led nowhere lead nowhere from there. The last rows are solved as the first ones were.
+//! When a window no longer fits its rows, it begins again: the last rows are solved as the first ones were. A source that sets in after
+//! quiet rows is rougher than these said, and a state that steps have spoiled does not come back by itself.
 
 use super::record::MeasuredRow;
 
 /// Rows after a beginning before the next one, at least and at most: equations that are wrong stay wrong.
 const SOON: usize = 50;
 const LATE: usize = 4000;
-/// Beginnings that are this many waits apart have helped.
+/// A beginning has helped if the next one is due only after so many waits.
 const HELPED: usize = 4;
-/// Rows that a beginning is made from, beside the first ones.
+/// How many times the number of first rows a new beginning is made from.
 pub(super) const ROWS: usize = 2;
 
 /// How far from its neighbours a value stands alone, over how far most are.
@@ -43,8 +43,8 @@ impl Patience {
     }
 }
 
-/// Rows of which those say nothing that have a value which stands alone: far from the line between its neighbours, and farther than
-/// these are. A window that began with it would follow it.
+/// Sets all values of a row to NaN if one of them stands alone: it is far from the line between its neighbours, and farther than these
+/// are from theirs. A window that begins with such a value follows it.
 pub(super) fn without_strays(mut rows: Vec<MeasuredRow>) -> Vec<MeasuredRow> {
     for column in 0..rows[0].values.len() {
         let off = |at: usize| {
