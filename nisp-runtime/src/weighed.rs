@@ -30,8 +30,18 @@ pub(crate) struct Guess {
     pub(crate) size: f64,
     /// Worth as much as so many rows.
     pub(crate) count: f64,
+    /// True where it is worth less and less the more rows are left over, and nothing beside [`ENOUGH`] times its own: no source can
+    /// have followed what they say.
+    pub(crate) yields: bool,
     /// No size is smaller.
     pub(crate) least: f64,
+}
+
+impl Guess {
+    /// How many rows it is worth beside those that are left over.
+    fn worth(&self, left: f64) -> f64 {
+        if self.yields { (self.count - left / ENOUGH).max(0.0) } else { self.count }
+    }
 }
 
 /// Sum of squares of a class's rows at their present size, how many there are, and how many of them the answer used up: the
@@ -43,6 +53,8 @@ pub(crate) struct Tally {
     pub(crate) used: f64,
 }
 
+/// Rows left over, beside those that a guess is worth, that say all of a size where no source can follow them.
+const ENOUGH: f64 = 2.0;
 /// Rows that are left over at least, as a share: fewer say nothing of a size.
 const LEAST_LEFT: f64 = 1e-3;
 /// Farthest step of the logarithm of a size.
@@ -127,22 +139,26 @@ const NOISE_COUNT: f64 = 2.0;
 /// Least noise, as a share of the spread of the data: rounding.
 const LEAST_NOISE: f64 = 1e-10;
 
-/// Classes of all terms of a problem, group after group: sizes that are declared, and noise as neighbouring data say.
-pub(crate) fn of_terms(bound: &Bound, noise: &Noise) -> Vec<Class> {
-    let groups = bound.problem.scene().schema.groups.iter().enumerate();
+/// Classes of all terms of a problem, group after group: sizes that are declared, and noise as neighbouring data say. Rows that
+/// are left over where there are no sources say it better, down to a share `told` of the data's spread.
+pub(crate) fn of_terms(bound: &Bound, noise: &Noise, told: Option<f64>) -> Vec<Class> {
+    let schema = bound.problem.scene().schema;
+    let told = told.filter(|_| !schema.heads.iter().any(|head| head.source));
+    let yields = told.is_some();
+    let groups = schema.groups.iter().enumerate();
     let terms = groups.flat_map(|(at, group)| group.terms.iter().enumerate().map(move |(term, own)| (at, term, own)));
     let class = |(at, term, declared): (usize, usize, &schema::Term)| {
         let known = bound.sizes[at][term] / declared.weight.sqrt();
         match noise.of(at, term) {
             _ if declared.within.is_some() => Class::known(known),
             Some(found) => {
-                let least = LEAST_NOISE * found.spread.max(f64::MIN_POSITIVE);
+                let least = told.unwrap_or(LEAST_NOISE) * found.spread.max(f64::MIN_POSITIVE);
                 let size = found.deviation.max(least);
-                Class::open(size, Guess { size, count: NOISE_COUNT, least })
+                Class::open(size, Guess { size, count: NOISE_COUNT, yields, least })
             }
             None if matches!(declared.kind, TermKind::Observation | TermKind::Chamfer { .. }) => {
                 let size = 1e-2 * known;
-                Class::open(size, Guess { size, count: NOISE_COUNT, least: 1e-9 * known })
+                Class::open(size, Guess { size, count: NOISE_COUNT, yields, least: 1e-9 * known })
             }
             None => Class::known(known),
         }
@@ -164,13 +180,50 @@ impl Class {
         *self = Self { open: self.open, ..Self::known(size) };
     }
 
+    /// Rows that say how large the size is, those that the guess is worth included; nothing unless rows alone may say it.
+    pub(crate) fn told_by(&self, tally: &Tally) -> Option<f64> {
+        let guess = self.open.filter(|guess| guess.yields && tally.count > 0.0)?;
+        let left = (tally.count - tally.used).max(0.0);
+        Some(left + guess.worth(left))
+    }
+
     /// How far the logarithm of the size is from that of the mean square of the rows, where those that the answer used up do not
     /// count.
     fn wished(&self, tally: Tally) -> f64 {
         let Some(guess) = self.open.filter(|_| tally.count > 0.0) else { return 0.0 };
-        let left = (tally.count - tally.used).max(LEAST_LEFT * tally.count) + guess.count;
-        let square = (tally.squares * self.size.powi(2) + guess.count * guess.size.powi(2)) / left;
+        let left = (tally.count - tally.used).max(LEAST_LEFT * tally.count);
+        let worth = guess.worth(left);
+        let square = (tally.squares * self.size.powi(2) + worth * guess.size.powi(2)) / (left + worth);
         let step = (square.sqrt().max(guess.least) / self.size).ln();
         if step.is_finite() { step } else { 0.0 }
+    }
+}
+
+/// How much longer error bars are where the noise is an estimate from so many rows: two deviations cover what two of a normal
+/// distribution do (Student 1908; Abramowitz and Stegun 26.7.5).
+pub(crate) fn longer(rows: f64) -> f64 {
+    const TWO: f64 = 2.0;
+    let powers = |coefficients: &[f64]| coefficients.iter().rev().fold(0.0, |sum, c| sum * TWO * TWO + c) * TWO;
+    let series =
+        [powers(&[1.0, 1.0]) / 4.0, powers(&[3.0, 16.0, 5.0]) / 96.0, powers(&[-15.0, 17.0, 19.0, 3.0]) / 384.0];
+    let more: f64 = series.iter().rev().fold(0.0, |sum, term| (sum + term) / rows.max(1.0));
+    1.0 + more / TWO
+}
+
+#[cfg(test)]
+mod tests {
+    use super::longer;
+
+    /// Quantiles of Student's distribution at the normal one's of two deviations, .977250, by its closed forms for two and four
+    /// degrees of freedom; and the limit of many.
+    #[test]
+    fn bars_are_as_long_as_student_has_them() {
+        let p: f64 = 0.977_249_868_051_820_8;
+        let two = (2.0 * p - 1.0) * (2.0 / (4.0 * p * (1.0 - p))).sqrt();
+        let root = (4.0 * p * (1.0 - p)).sqrt();
+        let four = 2.0 * ((root.acos() / 3.0).cos() / root - 1.0).sqrt();
+        assert!((2.0 * longer(2.0) / two - 1.0).abs() < 0.05, "{} {two}", longer(2.0));
+        assert!((2.0 * longer(4.0) / four - 1.0).abs() < 0.01, "{} {four}", longer(4.0));
+        assert!((longer(1e9) - 1.0).abs() < 1e-8);
     }
 }

@@ -6,6 +6,7 @@ use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 mod bounded;
 mod driven;
 mod equations;
+mod few;
 #[expect(deprecated, reason = "a lint says that nothing pins a field, which is what is asked here")]
 mod free;
 mod leaning;

@@ -8,6 +8,7 @@ use super::solver::Solver;
 use super::told::{Along, told};
 use crate::facts::Told;
 use crate::solve::fault::Fault;
+use crate::weighed::longer;
 
 /// What every kind of smoothness says that the evidence does not rule out.
 pub(super) struct Bars {
@@ -35,10 +36,13 @@ impl Bars {
         let (mut open, mut is_open) = (vec![0.0; count], false);
         for (share, Tried { kind, state, .. }) in likely {
             solver.set_smoothness(KINDS[kind], &state);
-            let Some((state, found, own)) = solver.doubted(state, &rows)? else {
+            let Some((state, mut found, own)) = solver.doubted(state, &rows)? else {
                 is_open = true;
                 continue;
             };
+            if let Some(rows) = found.noisy {
+                found.covariance.multiply(longer(rows).powi(2));
+            }
             unresolved.push(solver.unresolved(&state, &found.covariance));
             for ((open, mean), left) in open.iter_mut().zip(&rows[count..]).zip(&own[count..]) {
                 *open += share * left / solver.beforehand(mean, &state);

@@ -3,6 +3,7 @@
 use super::iterate::{Phase, State};
 use super::place::Place;
 use super::solver::{SHORTEST, Solver};
+use super::step::TOLERANCE;
 use crate::noise::{Noise, ObservationNoise};
 use crate::schema::{self, TermKind};
 use crate::start::{self, QUIETER, ROUGHER};
@@ -18,8 +19,8 @@ impl Solver<'_> {
     /// as differences of the data say.
     pub(super) fn first(&mut self, noise: &Noise) -> State {
         let schema = self.bound.problem.scene().schema;
-        let mut classes = of_terms(self.bound, noise);
-        let open = |size: f64, least: f64| Class::open(size, Guess { size: 0.0, count: 0.0, least });
+        let mut classes = of_terms(self.bound, noise, Some(TOLERANCE));
+        let open = |size: f64, least: f64| Class::open(size, Guess { size: 0.0, count: 0.0, yields: false, least });
         let natural = self.length.sqrt();
         let observed = schema.observed();
         let rough = self.priors.iter().enumerate().map(|(head, prior)| {

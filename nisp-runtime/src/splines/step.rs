@@ -36,6 +36,8 @@ pub(super) struct Found {
     /// Logarithm of the evidence, up to a constant.
     pub(super) evidence: f64,
     pub(super) covariance: Covariance,
+    /// Rows that say how large the noise is, where rows alone may say it.
+    pub(super) noisy: Option<f64>,
     /// By head, how many numbers rows other than its prior say of a source.
     told: Vec<f64>,
 }
@@ -71,6 +73,8 @@ impl Solver<'_> {
             loss += 0.5 * row.value.powi(2);
         }
         let worth = self.count_priors(state, &mut tallies, phase);
+        let noisy =
+            state.classes.iter().zip(&tallies).filter_map(|(class, tally)| class.told_by(tally)).reduce(f64::min);
         let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
         let evidence = -0.5 * squares - self.log_sizes(state, &tallies) + worth - self.triangle.log_determinant();
         let (step, shared) = self.within_bounds(state, &rows, (step, shared));
@@ -105,7 +109,7 @@ impl Solver<'_> {
         let left = |class: usize| tallies[class].count - tallies[class].used;
         let told = self.roughness.iter().zip(&self.amplitude);
         let told = told.map(|(&rough, amplitude)| amplitude.map_or(0.0, |class| left(rough) + left(class))).collect();
-        Ok(Some(Found { next, loss, change, ahead, evidence, covariance, told }))
+        Ok(Some(Found { next, loss, change, ahead, evidence, covariance, noisy, told }))
     }
 
     /// By class, whether its rows are those of an equation; one more for what is known beforehand.

@@ -333,6 +333,11 @@ impl Covariance {
         [&self.rows, &self.border, &self.corner]
     }
 
+    /// Multiplies all variances and covariances.
+    pub(super) fn multiply(&mut self, by: f64) {
+        [&mut self.rows, &mut self.border, &mut self.corner].into_iter().flatten().for_each(|entry| *entry *= by);
+    }
+
     /// Adds to the variances of the unknowns.
     pub(super) fn widen(&mut self, variances: &[f64]) {
         self.rows.chunks_exact_mut(self.band).zip(variances).for_each(|(row, variance)| row[0] += variance);

@@ -117,8 +117,8 @@ impl<'a> Solver<'a> {
     /// Where the solver starts: heads at their offsets, or at another level where equations and data have no value there, and noise
     /// as neighbouring data say.
     pub(super) fn first(&mut self, noise: &Noise) -> State {
-        let mut classes = of_terms(&self.bound, noise);
-        let guess = |natural: f64| Guess { size: 0.0, count: 0.0, least: STRAIGHT * natural };
+        let mut classes = of_terms(&self.bound, noise, None);
+        let guess = |natural: f64| Guess { size: 0.0, count: 0.0, yields: false, least: STRAIGHT * natural };
         classes.extend(self.priors.iter().map(|prior| Class::open(prior.natural, guess(prior.natural))));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
