@@ -111,16 +111,20 @@ fn warnings(
         let seconds = solution.wall_s;
         warnings.push(format!("interrupted after {seconds:.1} s: this is the best state so far, without error bars"));
     }
-    warnings.extend(prepared.truth.as_ref().and_then(unscored));
+    warnings.extend(prepared.truth.iter().flat_map(|truth| unscored(truth, solution)));
     warnings.extend(found.warnings());
     warnings
 }
 
-/// What of the truth is not scored.
-fn unscored(truth: &Truth) -> Option<String> {
+/// What is not scored: rows of the truth, and sources that it has no column for.
+fn unscored<'a>(truth: &'a Truth, solution: &'a Solution) -> impl Iterator<Item = String> + 'a {
     let all = truth.points.len() + truth.outside;
-    (truth.outside > 0)
-        .then(|| format!("{} of {all} rows of the truth are outside the data's times: not scored", truth.outside))
+    let rows = (truth.outside > 0)
+        .then(|| format!("{} of {all} rows of the truth are outside the data's times: not scored", truth.outside));
+    let sources = solution.scene().heads.iter().filter(|head| head.source && truth.of(head.name).is_none());
+    rows.into_iter().chain(
+        sources.map(|head| format!("the truth has no column for the source `{}`: its error is not known", head.name)),
+    )
 }
 
 fn settings(options: &Options, usual: Duration) -> Result<Settings, String> {

@@ -92,7 +92,9 @@ impl Verdict {
 impl Check {
     fn new(check: &'static str, place: (&'static str, &'static str), (value, limit): (f64, f64), said: String) -> Self {
         let (group, term) = place;
-        Self { check, group, term, value, limit, passed: value <= limit, message: said }
+        let passed = value <= limit;
+        let message = if passed { format!("it passed: {value:.2e} of at most {limit:.2e}") } else { said };
+        Self { check, group, term, value, limit, passed, message }
     }
 }
 

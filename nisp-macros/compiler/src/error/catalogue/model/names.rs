@@ -11,10 +11,31 @@ pub(crate) fn unknown_name(name: &str, nearest: Option<&str>) -> String {
     help(format!("`{}` is not declared", shorten(name)), step)
 }
 
+/// Functions by the names that other languages have for them, and what to write instead.
+const ELSEWHERE: [(&str, &str); 14] = [
+    ("log", "ln(x)"),
+    ("log10", "ln(x) / ln(10)"),
+    ("log2", "ln(x) / ln(2)"),
+    ("pow", "x^n"),
+    ("power", "x^n"),
+    ("square", "x^2"),
+    ("cbrt", "x^(1/3)"),
+    ("arcsin", "asin(x)"),
+    ("arccos", "acos(x)"),
+    ("arctan", "atan(x)"),
+    ("sgn", "sign(x)"),
+    ("diff", "d(u, x)"),
+    ("grad2", "laplacian(u)"),
+    ("laplace", "laplacian(u)"),
+];
+
 pub(crate) fn unknown_function(name: &str, nearest: Option<&str>, declared: bool) -> String {
     if declared {
         let message = format!("`{}` is not a function", shorten(name));
         return help(message, format!("write `{name} * (...)` to multiply"));
+    }
+    if let Some((_, here)) = ELSEWHERE.iter().find(|(there, _)| *there == name) {
+        return help(format!("there is no function `{name}`"), format!("write `{here}`"));
     }
     let step = meant(
         nearest,
