@@ -33,7 +33,7 @@ pub use nisp_runtime::live::{FixedLagSmoother, LagSettings, LiveError, RowColumn
 pub use nisp_runtime::problem::{BindError, Points, Problem, Tolerance};
 pub use nisp_runtime::recover::{
     Carrier, Checkpoint, CheckpointError, LearnedValue, Misfits, Optimizer, RecoverError, Report, Session, Settings,
-    Solution, TermReport, Width, recover, resume,
+    Solution, TermReport, Width, beyond_splines, recover, resume,
 };
 pub use nisp_runtime::saved::{OpenAnswer, SavedAnswer, SavedError, SavedParameter};
 pub use nisp_runtime::verdict::{Check, Verdict};

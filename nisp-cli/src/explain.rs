@@ -3,6 +3,7 @@
 use std::fmt::Write;
 use std::process::ExitCode;
 
+use nisp::beyond_splines;
 use nisp::network::Architecture;
 use nisp::schema::{Origin, Scene, Unit};
 use nisp_equations::Entry;
@@ -19,7 +20,11 @@ pub(crate) fn explain(entry: &Entry, scene: Option<&str>, architecture: Architec
     for size in entry.sizes {
         line(format!("  {:10} {:5} {:9} {}  {}", "size", size.name, "[m]", size.usual, size.about));
     }
-    line(format!("in a network of {} layers of {} units, with gates:", architecture.layers, architecture.width));
+    let Architecture { layers, width, .. } = architecture;
+    line(match beyond_splines(schema) {
+        None => format!("carried by splines; in a network of {layers} layers of {width} units, with gates:"),
+        Some(_) => format!("in a network of {layers} layers of {width} units, with gates:"),
+    });
     for group in schema.groups {
         line(format!("group {}", group.name));
         for term in group.terms {

@@ -67,7 +67,7 @@ pub(super) fn attempts(bound: &Bound, settings: &Settings, from: Option<&State>)
     let after = |what: &str| format!("what was tried first ended inconsistent; {what}");
     let network = |seed: u64, what: &str| Attempt::new(Chosen::Network, seed, after(what));
     let is_free = settings.carrier == Carrier::Auto && settings.optimizer == Optimizer::Auto;
-    let can_splines = splines::refused(bound.problem.scene().schema).is_none();
+    let can_splines = beyond_splines(bound.problem.scene().schema).is_none();
     let others = match chosen {
         _ if !is_free => Vec::new(),
         Chosen::Lattice if !is_measured => vec![network(seed, "a network instead of splines")],
@@ -105,21 +105,21 @@ fn most_rows(bound: &Bound) -> usize {
     groups.filter(|(group, _)| !group.columns.is_empty()).map(|(_, points)| points.len()).max().unwrap_or(0)
 }
 
+/// What splines do not do of a scene; nothing where they carry it unless the settings ask for something else.
+pub fn beyond_splines(schema: &Scene) -> Option<&'static str> {
+    if schema.coordinates.len() > 1 { smooth::refused(schema) } else { splines::refused(schema) }
+}
+
 /// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. Of a source
 /// that is differentiated a network finds more on short records, where it has the time.
 fn by_data(bound: &Bound) -> (Chosen, String) {
     let schema = bound.problem.scene().schema;
     let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
-    if schema.coordinates.len() > 1 {
-        return match smooth::refused(schema) {
-            Some(what) => (Chosen::Network, format!("splines do not do {what}")),
-            None => (Chosen::Lattice, format!("{} coordinates", schema.coordinates.len())),
-        };
-    }
-    match (splines::refused(schema), differentiated) {
-        (Some(what), _) => (Chosen::Network, format!("splines do not do {what}")),
-        (None, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short")),
-        (None, None) => (Chosen::Splines, "one coordinate".into()),
+    match (beyond_splines(schema), schema.coordinates.len(), differentiated) {
+        (Some(what), ..) => (Chosen::Network, format!("splines do not do {what}")),
+        (None, 2.., _) => (Chosen::Lattice, format!("{} coordinates", schema.coordinates.len())),
+        (None, _, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short")),
+        (None, _, None) => (Chosen::Splines, "one coordinate".into()),
     }
 }
 

@@ -30,6 +30,7 @@ use std::time::Instant;
 use thiserror::Error;
 
 pub use checkpoint::{Checkpoint, CheckpointError};
+pub use choice::beyond_splines;
 pub use misfits::Misfits;
 pub use session::Session;
 pub use settings::{Carrier, Optimizer, Settings, Width};
