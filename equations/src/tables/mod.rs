@@ -78,7 +78,7 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
             Some(of) => clouds.push(CloudFile { of, path }),
             None => {
                 check::group(schema, group.as_deref(), path)?;
-                read.push((group.as_deref(), Table::read(path)?));
+                read.push((group.as_deref(), Table::read_places(path)?));
             }
         }
     }

@@ -172,3 +172,27 @@ fn a_slab_is_drawn_in_planes() {
     let plot = fs::read_to_string(place.path("nisp-out/plot.svg")).unwrap();
     assert!(["t = 0 s", "t = 2.5 s", "t = 5 s"].iter().all(|title| plot.contains(title)));
 }
+
+/// One reading of a decay from a known beginning tells its rate; nothing says where the equation holds without a domain.
+#[test]
+fn one_reading_tells_one_number() {
+    let place = Place::new();
+    let text = "units: off; coordinates: t; fields: u; parameters: k in 0.01 .. 100 = 1; domains: span = 0 .. 2;
+        on inside in span { balance: d(u, t) + k * u == 0; }
+        on first start of span { begun: u == 2; }
+        on samples { observe u; }
+        scene identify { learn k; }";
+    place.put("decay.pde", text);
+    place.put("reading.csv", "t,u\n0.5,1.3\n");
+    let ran = place.run("solve decay.pde --data reading.csv --json");
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    let rate = object(&ran)["learned"][0]["value"].as_f64().unwrap();
+    let exact = (2.0f64 / 1.3).ln() / 0.5;
+    assert!((rate - exact).abs() < 1e-3 * exact, "{rate} is not {exact}");
+    place.put(
+        "open.pde",
+        &text.replace(" in span", "").replace("domains: span = 0 .. 2;", "").replace(" start of span", ""),
+    );
+    let ran = place.run("solve open.pde --data reading.csv");
+    assert!(ran.code == Some(2) && ran.stderr.contains("nothing says where `inside` lies"), "{}", ran.stderr);
+}

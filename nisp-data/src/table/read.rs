@@ -22,7 +22,7 @@ impl Table {
         Table::parse(path, &read_bytes(path, MOST_BYTES)?)
     }
 
-    /// As [`Table::read`], for a table of places, of which one is enough.
+    /// As [`Table::read`], for a table of which one row is enough: of places, or of values beside equations that hold elsewhere too.
     pub fn read_places(path: impl AsRef<Path>) -> Result<Table, DataError> {
         let path = path.as_ref();
         Table::parse_rows(path, &read_bytes(path, MOST_BYTES)?, 1)
