@@ -3,7 +3,8 @@
 use super::basis::HIGHEST_DEGREE;
 use super::group::Group;
 use super::heads::Heads;
-use super::triangle::{Covariance, Row, Triangle};
+use super::triangle::covariance::Covariance;
+use super::triangle::{Row, Triangle};
 use crate::bounds::limits;
 use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;

@@ -4,7 +4,7 @@ use super::iterate::{Phase, State};
 use super::rows::Counted;
 use super::solver::Solver;
 use super::told::Along;
-use super::triangle::Covariance;
+use super::triangle::covariance::Covariance;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
 use crate::tolerance;

@@ -7,7 +7,7 @@
 
 use super::iterate::{Phase, State};
 use super::solver::Solver;
-use super::triangle::Covariance;
+use super::triangle::covariance::Covariance;
 use crate::solve::fault::Fault;
 
 /// Numbers of a source that are told by the innovations that are looked at together.

@@ -6,7 +6,7 @@ use super::super::cells;
 use super::super::heads::Heads;
 use super::super::iterate::State;
 use super::super::solver::Solver;
-use super::super::triangle::Covariance;
+use super::super::triangle::covariance::Covariance;
 use super::super::{KINDS, Place, Run, Tried, kinds};
 use super::LiveError;
 use crate::noise::{self, Noise};
