@@ -1,6 +1,6 @@
 //! Gauss-Newton: steps that are taken until they change nothing.
 
-use super::normal::Factor;
+use super::normal::factor::Factor;
 use super::phase::{CONVEX_STEPS, Phase, WARM_STEPS};
 use super::place::{Place, State};
 use super::solver::{LEAST_DAMPING, Solver};

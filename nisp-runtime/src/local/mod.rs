@@ -62,7 +62,7 @@ pub use prior::Patches;
 
 use course::End;
 use draws::Deviations;
-use normal::Factor;
+use normal::factor::Factor;
 use solver::Solver;
 
 /// How fine the local functions are, and what is known of the sources.

@@ -1,20 +1,20 @@
 //! Normal equations of sparse rows, bordered by the few unknowns that all rows share.
 
+pub(super) mod factor;
+
 use std::ops::Range;
 use std::sync::Arc;
 
-use faer::Mat;
-use faer::prelude::Solve;
-use faer::sparse::linalg::solvers::Llt;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use super::block::Block;
-use super::draws::{Deviations, Draws};
+use super::draws::Draws;
 use super::pattern::{Part, Pattern};
 use super::sorted::Sorted;
 use crate::simd::Isa;
 use crate::solve::vector;
+use factor::Factor;
 
 /// Pieces that the matrix is summed up in, at the same time: a fixed number, many enough for all threads.
 const PIECES: usize = 32;
@@ -42,17 +42,6 @@ pub(super) struct Sums {
     border: Vec<Vec<f64>>,
     corner: DMatrix<f64>,
     border_gradient: Vec<f64>,
-}
-
-/// The factorised normal matrix.
-pub(super) struct Factor {
-    factor: Llt<usize, f64>,
-    part: Option<Arc<Part>>,
-    /// `H^-1` times the border.
-    solved: Vec<Vec<f64>>,
-    border: Vec<Vec<f64>>,
-    schur: DMatrix<f64>,
-    learned: usize,
 }
 
 impl Normal {
@@ -316,96 +305,5 @@ impl Normal {
             slopes.iter_mut().zip(column).for_each(|(slope, entry)| *slope += entry * shared);
         }
         slopes
-    }
-}
-
-impl Factor {
-    /// Solves the bordered system: the coefficients, then the learned scalars and the multipliers of integrals.
-    pub(super) fn solve(&self, right: &[f64], below: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let mut step = self.solve_free(right);
-        let shared = self.share(&mut step, below)?;
-        Some((step, shared))
-    }
-
-    /// From a solution without the border to one with it; returns the unknowns of the border.
-    fn share(&self, step: &mut [f64], below: &[f64]) -> Option<Vec<f64>> {
-        let rest = DVector::from_iterator(
-            self.border.len(),
-            self.border.iter().zip(below).map(|(column, b)| b - vector::dot(column, step)),
-        );
-        let shared = if rest.is_empty() { rest } else { self.schur.clone().lu().solve(&rest)? };
-        for (solved, shared) in self.solved.iter().zip(shared.iter()) {
-            step.iter_mut().zip(solved).for_each(|(step, solved)| *step -= solved * shared);
-        }
-        Some(shared.iter().copied().collect())
-    }
-
-    /// Solutions for all right-hand sides, drawn from the posterior.
-    pub(super) fn deviations(&self, draws: &Draws) -> Option<Deviations> {
-        let solutions = self.solutions(&draws.matrix());
-        let mut deviations = Deviations::default();
-        for draw in 0..solutions.ncols() {
-            let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
-            let mut below = draws.below(draw);
-            below.resize(self.border.len(), 0.0);
-            let mut shared = self.share(&mut coefficients, &below)?;
-            shared.truncate(self.learned);
-            deviations.learned.push(shared);
-            deviations.coefficients.push(coefficients);
-        }
-        Some(deviations)
-    }
-
-    /// `vector . H^-1 vector` of several vectors, of the coefficients alone.
-    pub(super) fn inner(&self, vectors: &[Vec<f64>]) -> Vec<f64> {
-        let len = vectors.first().map_or(0, Vec::len);
-        let solutions = self.solutions(&Mat::from_fn(len, vectors.len(), |row, column| vectors[column][row]));
-        let inner = |(column, vector): (usize, &Vec<f64>)| {
-            vector.iter().enumerate().map(|(row, x)| x * solutions[(row, column)]).sum::<f64>()
-        };
-        vectors.iter().enumerate().map(inner).collect()
-    }
-
-    /// The products of right-hand sides with their solutions: the columns of a matrix, and what is on the right of the border.
-    pub(super) fn products(&self, right: &Mat<f64>, below: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let solutions = self.solutions(right);
-        let product = |(column, below): (usize, &Vec<f64>)| {
-            let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
-            let shared = self.share(&mut own, below)?;
-            let along = own.iter().enumerate().map(|(row, x)| x * right[(row, column)]).sum::<f64>();
-            Some(along + vector::dot(&shared, below))
-        };
-        below.iter().enumerate().map(product).collect()
-    }
-
-    /// Unknowns of the border.
-    pub(super) fn below(&self) -> usize {
-        self.border.len()
-    }
-
-    /// Variance of a sum of coefficients, each times its weight.
-    pub(super) fn variance_of_sum(&self, weights: &[f64]) -> Option<f64> {
-        let (solution, _) = self.solve(weights, &vec![0.0; self.border.len()])?;
-        Some(vector::dot(&solution, weights))
-    }
-
-    /// Variance of a learned scalar's parameter.
-    pub(super) fn learned_variance(&self, at: usize) -> Option<f64> {
-        let unit = DVector::from_fn(self.schur.nrows(), |row, _| f64::from(u8::from(row == at)));
-        self.schur.clone().lu().solve(&unit).map(|column| column[at])
-    }
-
-    /// Solutions without the border, for the columns of a matrix.
-    fn solutions(&self, right: &Mat<f64>) -> Mat<f64> {
-        match &self.part {
-            Some(part) => part.solve(&self.factor, right),
-            None => self.factor.solve(right),
-        }
-    }
-
-    /// The solution without the border.
-    fn solve_free(&self, right: &[f64]) -> Vec<f64> {
-        let solution = self.solutions(&Mat::from_fn(right.len(), 1, |i, _| right[i]));
-        (0..solution.nrows()).map(|i| solution[(i, 0)]).collect()
     }
 }

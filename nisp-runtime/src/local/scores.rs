@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::block::Block;
-use super::normal::Factor;
+use super::normal::factor::Factor;
 use super::phase::Phase;
 use super::place::State;
 use super::solver::Solver;

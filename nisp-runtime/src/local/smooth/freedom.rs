@@ -6,7 +6,8 @@ use rand::{RngExt, SeedableRng};
 
 use super::prior::Prior;
 use crate::local::block::Block;
-use crate::local::normal::{Factor, Normal};
+use crate::local::normal::Normal;
+use crate::local::normal::factor::Factor;
 
 /// Random combinations of the prior's rows: a count of ten is known to a twentieth.
 const PROBES: usize = 64;

@@ -6,7 +6,7 @@ use super::solver::Solver;
 use super::state::{Phase, State};
 use crate::carrier::Progress;
 use crate::local::LocalError;
-use crate::local::normal::Factor;
+use crate::local::normal::factor::Factor;
 use crate::noise::Noise;
 use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::state::State as Saved;

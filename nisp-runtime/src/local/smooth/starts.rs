@@ -3,7 +3,7 @@
 use super::solver::Solver;
 use super::state::{Ended, Phase, State};
 use crate::local::block::Block;
-use crate::local::normal::Factor;
+use crate::local::normal::factor::Factor;
 use crate::noise::{Noise, ObservationNoise};
 use crate::schema::TermKind;
 use crate::solve::dense;

@@ -10,7 +10,7 @@ use super::solver::Solver;
 use super::state::{Phase, State};
 use crate::local::LocalError;
 use crate::local::block::Block;
-use crate::local::normal::Factor;
+use crate::local::normal::factor::Factor;
 use crate::local::rows::Evaluated;
 use crate::local::surface::Surface;
 use crate::local::unseen::Unseen;

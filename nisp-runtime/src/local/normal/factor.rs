@@ -1,0 +1,114 @@
+//! The factorised normal matrix: steps, and how far unknowns may be off.
+
+use std::sync::Arc;
+
+use faer::Mat;
+use faer::prelude::Solve;
+use faer::sparse::linalg::solvers::Llt;
+use nalgebra::{DMatrix, DVector};
+
+use super::super::draws::{Deviations, Draws};
+use super::super::pattern::Part;
+use crate::solve::vector;
+
+/// The factorised normal matrix.
+pub(in super::super) struct Factor {
+    pub(super) factor: Llt<usize, f64>,
+    pub(super) part: Option<Arc<Part>>,
+    /// `H^-1` times the border.
+    pub(super) solved: Vec<Vec<f64>>,
+    pub(super) border: Vec<Vec<f64>>,
+    pub(super) schur: DMatrix<f64>,
+    pub(super) learned: usize,
+}
+
+impl Factor {
+    /// Solves the bordered system: the coefficients, then the learned scalars and the multipliers of integrals.
+    pub(in super::super) fn solve(&self, right: &[f64], below: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+        let mut step = self.solve_free(right);
+        let shared = self.share(&mut step, below)?;
+        Some((step, shared))
+    }
+
+    /// From a solution without the border to one with it; returns the unknowns of the border.
+    fn share(&self, step: &mut [f64], below: &[f64]) -> Option<Vec<f64>> {
+        let rest = DVector::from_iterator(
+            self.border.len(),
+            self.border.iter().zip(below).map(|(column, b)| b - vector::dot(column, step)),
+        );
+        let shared = if rest.is_empty() { rest } else { self.schur.clone().lu().solve(&rest)? };
+        for (solved, shared) in self.solved.iter().zip(shared.iter()) {
+            step.iter_mut().zip(solved).for_each(|(step, solved)| *step -= solved * shared);
+        }
+        Some(shared.iter().copied().collect())
+    }
+
+    /// Solutions for all right-hand sides, drawn from the posterior.
+    pub(in super::super) fn deviations(&self, draws: &Draws) -> Option<Deviations> {
+        let solutions = self.solutions(&draws.matrix());
+        let mut deviations = Deviations::default();
+        for draw in 0..solutions.ncols() {
+            let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
+            let mut below = draws.below(draw);
+            below.resize(self.border.len(), 0.0);
+            let mut shared = self.share(&mut coefficients, &below)?;
+            shared.truncate(self.learned);
+            deviations.learned.push(shared);
+            deviations.coefficients.push(coefficients);
+        }
+        Some(deviations)
+    }
+
+    /// `vector . H^-1 vector` of several vectors, of the coefficients alone.
+    pub(in super::super) fn inner(&self, vectors: &[Vec<f64>]) -> Vec<f64> {
+        let len = vectors.first().map_or(0, Vec::len);
+        let solutions = self.solutions(&Mat::from_fn(len, vectors.len(), |row, column| vectors[column][row]));
+        let inner = |(column, vector): (usize, &Vec<f64>)| {
+            vector.iter().enumerate().map(|(row, x)| x * solutions[(row, column)]).sum::<f64>()
+        };
+        vectors.iter().enumerate().map(inner).collect()
+    }
+
+    /// The products of right-hand sides with their solutions: the columns of a matrix, and what is on the right of the border.
+    pub(in super::super) fn products(&self, right: &Mat<f64>, below: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let solutions = self.solutions(right);
+        let product = |(column, below): (usize, &Vec<f64>)| {
+            let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
+            let shared = self.share(&mut own, below)?;
+            let along = own.iter().enumerate().map(|(row, x)| x * right[(row, column)]).sum::<f64>();
+            Some(along + vector::dot(&shared, below))
+        };
+        below.iter().enumerate().map(product).collect()
+    }
+
+    /// Unknowns of the border.
+    pub(in super::super) fn below(&self) -> usize {
+        self.border.len()
+    }
+
+    /// Variance of a sum of coefficients, each times its weight.
+    pub(in super::super) fn variance_of_sum(&self, weights: &[f64]) -> Option<f64> {
+        let (solution, _) = self.solve(weights, &vec![0.0; self.border.len()])?;
+        Some(vector::dot(&solution, weights))
+    }
+
+    /// Variance of a learned scalar's parameter.
+    pub(in super::super) fn learned_variance(&self, at: usize) -> Option<f64> {
+        let unit = DVector::from_fn(self.schur.nrows(), |row, _| f64::from(u8::from(row == at)));
+        self.schur.clone().lu().solve(&unit).map(|column| column[at])
+    }
+
+    /// Solutions without the border, for the columns of a matrix.
+    fn solutions(&self, right: &Mat<f64>) -> Mat<f64> {
+        match &self.part {
+            Some(part) => part.solve(&self.factor, right),
+            None => self.factor.solve(right),
+        }
+    }
+
+    /// The solution without the border.
+    pub(super) fn solve_free(&self, right: &[f64]) -> Vec<f64> {
+        let solution = self.solutions(&Mat::from_fn(right.len(), 1, |i, _| right[i]));
+        (0..solution.nrows()).map(|i| solution[(i, 0)]).collect()
+    }
+}
