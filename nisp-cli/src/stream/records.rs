@@ -132,7 +132,9 @@ impl Answers {
                     match smoother.push(at, &values) {
                         Ok(found) => found.iter().map(|found| self.line(found)).collect(),
                         Err(error) if error.is_of_row() => {
-                            vec![json!({ "status": "error", "error": error.to_string(), "t": at })]
+                            vec![
+                                json!({ "status": "error", "error": error.to_string(), self.scene.coordinates[0].name: at }),
+                            ]
                         }
                         Err(error) => return Ok(Ended::Open(error.to_string())),
                     }
@@ -178,6 +180,9 @@ impl Answers {
             "misfit": found.misfit,
             "nearby": found.nearby,
         });
+        if found.is_stray {
+            line["stray"] = json!(true);
+        }
         if found.leaning > 0.0 {
             line["leaning"] = json!(found.leaning);
         }

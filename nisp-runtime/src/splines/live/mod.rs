@@ -6,11 +6,14 @@
 //! again, on a thread of their own.
 
 mod again;
+mod alone;
+mod event;
 mod evidence;
 mod grid;
 mod opening;
 mod record;
 mod smoother;
+mod strays;
 mod under_way;
 mod window;
 
@@ -56,6 +59,8 @@ pub struct Smoothed {
     /// How far a learned scalar moves where sources may be larger, at most, as a share of itself: little is known of one that moves far,
     /// and of the sources beside it. Zero where nothing is learned.
     pub leaning: f64,
+    /// Whether the row is a stray: what was observed there is far from what all other rows say, and does not count.
+    pub is_stray: bool,
 }
 
 impl Smoothed {

@@ -2,18 +2,21 @@
 
 use std::collections::VecDeque;
 
-use super::again::{OPEN, Patience, ROWS, without_strays};
+use super::again::{OPEN, Patience, ROWS};
+use super::event::Event;
 use super::evidence::Stretch;
 use super::grid::Grid;
 use super::opening::Opening;
 use super::record::{Layout, MeasuredRow};
-use super::under_way::{Live, Nearby, Reach, SLACK, scaled_row};
-use super::window::{Event, Window};
+use super::under_way::{Live, Nearby, Reach, SLACK};
+use super::window::Window;
 use super::{LagSettings, LiveError, RowColumn, Smoothed};
 use crate::problem::Problem;
 
 /// Rows that say anything of a noise and a source.
 const FEWEST: usize = 10;
+/// The last rows, of which nothing says yet whether they are strays. What the first rows say does not rest on them.
+const UNTOLD: usize = 3;
 /// Cells that a lag may take.
 const MOST_CELLS: usize = 20_000;
 /// How much larger a source's deviation may be at the lag than after any wait.
@@ -102,7 +105,7 @@ impl FixedLagSmoother {
                 }
             }
         }
-        self.waiting.push(MeasuredRow { at, values: values.to_vec() });
+        self.waiting.push(MeasuredRow::new(at, values));
         if self.waiting.len() >= self.settings.first_rows.max(FEWEST) {
             found.extend(self.begin(1.0)?);
         }
@@ -152,16 +155,23 @@ impl FixedLagSmoother {
 
     /// Finds noise, smoothness and, where it is not given, the lag from rows in declared units, and answers them as a whole, but for the
     /// last ones, of which later rows tell more: `open` is that stretch over the lag.
-    fn begin_with(&mut self, rows: Vec<MeasuredRow>, lag: Option<f64>, open: f64) -> Result<Vec<Smoothed>, LiveError> {
-        let bound = self.layout.bound(&self.problem, &rows)?;
+    fn begin_with(
+        &mut self,
+        mut rows: Vec<MeasuredRow>,
+        lag: Option<f64>,
+        open: f64,
+    ) -> Result<Vec<Smoothed>, LiveError> {
+        self.layout.mark_strays(&mut rows);
+        let told = if open > 0.0 { rows.len() - UNTOLD } else { rows.len() };
+        let bound = self.layout.bound(&self.problem, &rows[..told])?;
         let (stretch, opening) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
         let stretch = stretch?;
         let schema = self.problem.scene().schema;
         let system = bound.system;
         let by = system.inward(&schema.coordinates[0].unit);
         let inward = (by, self.layout.columns.iter().map(|column| system.inward(&column.unit)).collect::<Vec<_>>());
-        let rows: Vec<MeasuredRow> = rows.iter().map(|row| scaled_row(&inward, row.at, &row.values)).collect();
-        let (start, end) = (rows[0].at, rows[rows.len() - 1].at);
+        let rows: Vec<MeasuredRow> = rows.iter().map(|row| row.scaled(&inward)).collect();
+        let (start, end) = (rows[0].at, rows[told - 1].at);
         let width = width(&rows);
         let sought: Vec<usize> = sought(&bound);
         let settled = settled_lag(&stretch, &sought, (start, end), width);
@@ -180,11 +190,11 @@ impl FixedLagSmoother {
             let is_condition = declared.columns.is_empty() && !declared.is_beliefs();
             if is_condition && !self.layout.continuous.contains(&group) {
                 let places = bound.coordinates[group].iter();
-                conditions.extend(places.map(|&at| Event { group, at, columns: Vec::new() }));
+                conditions.extend(places.map(|&at| Event::plain(group, at)));
             }
         }
         for &group in &self.layout.continuous {
-            conditions.extend(grid.beginning().map(|at| Event { group, at, columns: Vec::new() }));
+            conditions.extend(grid.beginning().map(|at| Event::plain(group, at)));
         }
         conditions.retain(|condition| condition.at >= start - SLACK * width);
         conditions.sort_by(|a, b| a.at.total_cmp(&b.at));
@@ -228,7 +238,7 @@ impl FixedLagSmoother {
         });
         if !matches!(reach.transpose()?, Some(Reach::Whole)) {
             found.extend(self.live.take().iter_mut().flat_map(Live::finish));
-            self.waiting.push(MeasuredRow { at, values: values.to_vec() });
+            self.waiting.push(MeasuredRow::new(at, values));
         }
         Ok(found)
     }
@@ -243,7 +253,7 @@ impl FixedLagSmoother {
     fn begin_again(&mut self) -> Option<Vec<Smoothed>> {
         let mut lost = self.live.take()?;
         self.patience.begun();
-        let rows = without_strays(lost.last_rows(ROWS * self.settings.first_rows));
+        let rows = lost.last_rows(ROWS * self.settings.first_rows);
         // The lag stays what it was said to be.
         let (start, lag) = (rows[0].at, lost.declared_lag());
         let Ok(answers) = self.begin_with(rows, Some(lag), OPEN) else {

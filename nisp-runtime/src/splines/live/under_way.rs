@@ -3,10 +3,12 @@
 use std::collections::VecDeque;
 use std::thread::{self, JoinHandle};
 
+use super::event::Event;
 use super::evidence::{Stretch, Weights};
 use super::opening::Opening;
 use super::record::{Layout, MeasuredRow};
-use super::window::{Event, Known, Window};
+use super::strays::Strays;
+use super::window::{Known, Window};
 use super::{LiveError, Smoothed};
 use crate::solve::fault::Fault;
 
@@ -71,9 +73,12 @@ impl Nearby {
         Self { ahead, square: 1.0, counted: 0 }
     }
 
-    fn count_up(&mut self, answers: (&Window, Option<&Opening>), pending: &VecDeque<(f64, Vec<Event>)>) {
-        for (_, events) in pending.iter().take(self.ahead + 1).skip(self.counted) {
-            count(answers, events, &mut self.square, (NEARBY, LARGEST_NEARBY));
+    /// Counts the rows that wait: the first, and those before a place.
+    fn count_up(&mut self, answers: (&Window, Option<&Opening>), pending: &VecDeque<(f64, Vec<Event>)>, decided: f64) {
+        let own = pending.iter().take(self.ahead + 1).skip(self.counted);
+        for (_, events) in own.take_while(|(at, _)| *at < decided || *at == pending[0].0) {
+            let counts = events.iter().filter(|event| !event.is_stray);
+            count(answers, counts, &mut self.square, (NEARBY, LARGEST_NEARBY));
             self.counted += 1;
         }
     }
@@ -87,7 +92,7 @@ pub(super) enum Reach {
 
 impl Live {
     pub(super) fn inward(&self, at: f64, values: &[f64]) -> MeasuredRow {
-        scaled_row(&self.inward, at, values)
+        MeasuredRow::new(at, values).scaled(&self.inward)
     }
 
     /// Takes the first rows, whose first cells are found together. Gives back those behind a gap.
@@ -167,6 +172,25 @@ impl Live {
 
     /// A step, down to the first row that waits.
     fn solve(&mut self) -> Result<(), Fault> {
+        self.window.readmit();
+        self.step()?;
+        let Strays { found, aside } = self.window.leave_out_strays();
+        self.mark(&found);
+        if found.is_empty() && aside.is_empty() { Ok(()) } else { self.step() }
+    }
+
+    /// Marks rows of the tail as strays.
+    fn mark(&mut self, strays: &[f64]) {
+        for row in self.recent.iter_mut().filter(|row| strays.contains(&row.at)) {
+            row.is_stray = true;
+        }
+        for (_, events) in self.pending.iter_mut().filter(|(at, _)| strays.contains(at)) {
+            events.iter_mut().for_each(|event| event.is_stray = true);
+        }
+    }
+
+    /// The same with the rows that are there.
+    fn step(&mut self) -> Result<(), Fault> {
         let grid = self.window.grid();
         let wanted = self.pending.front().map_or(grid.tail_start(), |(at, _)| grid.cell(*at));
         let from = wanted.min(grid.tail_start()).max(grid.begun());
@@ -206,7 +230,7 @@ impl Live {
     pub(super) fn outward<'a>(&self, rows: impl Iterator<Item = &'a MeasuredRow>) -> Vec<MeasuredRow> {
         let (by, factors) = &self.inward;
         let outward: (f64, Vec<f64>) = (by.recip(), factors.iter().map(|factor| factor.recip()).collect());
-        rows.map(|row| scaled_row(&outward, row.at, &row.values)).collect()
+        rows.map(|row| row.scaled(&outward)).collect()
     }
 
     /// The lag, and the place of the first row without an answer, in the declared unit.
@@ -231,13 +255,14 @@ impl Live {
     fn answer_next(&mut self) -> Option<Smoothed> {
         let next = self.pending.front()?.0;
         self.opening.take_if(|opening| !opening.answers(next));
+        let decided = self.window.decided();
         let (window, opening) = (&mut self.window, self.opening.as_ref());
         for nearby in &mut self.nearby {
-            nearby.count_up((window, opening), &self.pending);
+            nearby.count_up((window, opening), &self.pending, decided);
         }
         let (at, events) = self.pending.pop_front()?;
         self.nearby.iter_mut().for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
-        count((window, opening), &events, &mut self.square, (LOOKED_BACK, LARGEST_SQUARE));
+        count((window, opening), events.iter(), &mut self.square, (LOOKED_BACK, LARGEST_SQUARE));
         let read = |(head, outward): (usize, &f64)| {
             let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
             (value * outward, deviation * outward)
@@ -246,7 +271,8 @@ impl Live {
         let outward = self.inward.0.recip();
         let nearby = self.nearby.iter().map(|nearby| nearby.square.sqrt()).fold(0.0, f64::max);
         let (lag, misfit, leaning) = ((self.last - at) * outward, self.square.sqrt(), self.window.weights().leaning);
-        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, leaning })
+        let is_stray = events.iter().any(|event| event.is_stray);
+        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, leaning, is_stray })
     }
 
     /// Answers all rows that wait.
@@ -282,9 +308,9 @@ impl Live {
 }
 
 /// Counts the misfits of a row's values in a running mean of their squares over so many values, none larger than that.
-fn count(
+fn count<'a>(
     (window, opening): (&Window, Option<&Opening>),
-    events: &[Event],
+    events: impl Iterator<Item = &'a Event>,
     mean: &mut f64,
     (values, largest): (f64, f64),
 ) {
@@ -292,8 +318,4 @@ fn count(
     for event in events {
         window.misfits(event, splines, &mut |misfit| *mean += ((misfit * misfit).min(largest) - *mean) / values);
     }
-}
-
-pub(super) fn scaled_row((by, factors): &(f64, Vec<f64>), at: f64, values: &[f64]) -> MeasuredRow {
-    MeasuredRow { at: at * by, values: values.iter().zip(factors).map(|(value, factor)| value * factor).collect() }
 }
