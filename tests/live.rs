@@ -396,6 +396,50 @@ fn rows_that_cannot_be_taken_are_left_out() {
     assert_eq!(plain, found);
 }
 
+/// One absurd place among the first rows, one among later ones, and one at the end: the record is as it would be without them.
+#[test]
+fn a_place_far_ahead_is_left_out_if_the_next_row_is_not() {
+    let rows = record(600, 0.1, 0.02);
+    let plain = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let mut spoiled = smoother(scene::<driven::recover::Scene>(), LagSettings::default());
+    let (mut found, mut left_out) = (Vec::new(), Vec::new());
+    for (at, (t, y)) in rows.iter().enumerate() {
+        found.extend(spoiled.push(*t, &[*y]).unwrap());
+        left_out.extend(spoiled.left_out());
+        if [0, 1, 60, 400, 599].contains(&at) {
+            found.extend(spoiled.push(1e6 + *t, &[*y]).unwrap());
+        }
+    }
+    found.extend(spoiled.finish().unwrap());
+    left_out.extend(spoiled.left_out());
+    assert_eq!(plain, found);
+    assert_eq!(left_out, [0, 1, 60, 400, 599].map(|at| 1e6 + rows[at].0));
+}
+
+/// A sensor that says nothing for a while, and one that is at rest: later rows tell.
+#[test]
+fn first_rows_that_tell_nothing_wait_for_others() {
+    let mut noise = noise(12);
+    // It is at rest for the time of 300 rows; then it is `1 - cos 3 s` for the time `s` after that.
+    let since = |t: f64| (t - 15.0).max(0.0);
+    let rows: Vec<(f64, f64)> =
+        (0..1200).map(|i| 0.05 * f64::from(i)).map(|t| (t, 1.0 - (3.0 * since(t)).cos())).collect();
+    let resting: Vec<(f64, f64)> =
+        rows.iter().map(|&(t, y)| (t, y + if t < 15.0 { 0.0 } else { 0.01 * noise() })).collect();
+    let silent: Vec<(f64, f64)> = resting.iter().map(|&(t, y)| (t, if t < 15.0 { f64::NAN } else { y })).collect();
+    for rows in [resting, silent] {
+        let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+        assert_eq!(found.len(), rows.len());
+        let is_right = |found: &&Smoothed| {
+            let s = since(found.at);
+            let drive = 4.0 + 5.0 * (3.0 * s).cos() + 1.2 * (3.0 * s).sin();
+            (found.heads[1].0 - drive).abs() < 4.0 * found.heads[1].1
+        };
+        let right = found[400..1190].iter().filter(is_right).count();
+        assert!(right > 750, "{right} of 790 rows are right");
+    }
+}
+
 /// Cells without a measurement, rows in bursts, and a gap after which everything begins anew.
 #[test]
 fn gaps_and_bursts_are_taken_as_they_are() {

@@ -7,9 +7,12 @@
 
 mod again;
 mod alone;
+mod begun;
 mod event;
 mod evidence;
 mod grid;
+mod lag;
+mod met;
 mod opening;
 mod record;
 mod smoother;

@@ -5,6 +5,7 @@ use std::thread::{self, JoinHandle};
 
 use super::event::Event;
 use super::evidence::{Stretch, Weights};
+use super::met::{Nearby, count_all};
 use super::opening::Opening;
 use super::record::{Layout, MeasuredRow};
 use super::strays::Strays;
@@ -21,13 +22,6 @@ const SMALL: f64 = 0.5;
 /// Rows of a later stretch that is asked for noise and smoothness, at most, and rows between such stretches, at most.
 const STRETCH: usize = 1000;
 const BETWEEN: usize = 4000;
-/// Values that the running mean of misfits looks back over, and the square that one may count for: a value that stands alone
-/// does not make equations wrong.
-const LOOKED_BACK: f64 = 100.0;
-const LARGEST_SQUARE: f64 = 16.0;
-/// The same about a place: answers beside a value that stands alone are wrong.
-const NEARBY: f64 = 12.0;
-const LARGEST_NEARBY: f64 = 200.0;
 /// Share of a cell by which a place may miss the lag.
 pub(super) const SLACK: f64 = 1e-6;
 
@@ -58,32 +52,6 @@ pub(super) struct Live {
     pub(super) asked: Option<JoinHandle<Result<Weights, LiveError>>>,
 }
 
-/// A running mean of squares up to a row that waits.
-pub(super) struct Nearby {
-    /// How many rows that is behind the one that is answered.
-    ahead: usize,
-    square: f64,
-    /// Rows that wait and have been counted.
-    counted: usize,
-}
-
-impl Nearby {
-    /// Of the rows up to the one that is so many behind the answered one.
-    pub(super) fn ahead(ahead: usize) -> Self {
-        Self { ahead, square: 1.0, counted: 0 }
-    }
-
-    /// Counts the rows that wait: the first, and those before a place.
-    fn count_up(&mut self, answers: (&Window, Option<&Opening>), pending: &VecDeque<(f64, Vec<Event>)>, decided: f64) {
-        let own = pending.iter().take(self.ahead + 1).skip(self.counted);
-        for (_, events) in own.take_while(|(at, _)| *at < decided || *at == pending[0].0) {
-            let counts = events.iter().filter(|event| !event.is_stray);
-            count(answers, counts, &mut self.square, (NEARBY, LARGEST_NEARBY));
-            self.counted += 1;
-        }
-    }
-}
-
 /// Whether a row could be reached from the last one.
 pub(super) enum Reach {
     Whole,
@@ -91,8 +59,10 @@ pub(super) enum Reach {
 }
 
 impl Live {
-    pub(super) fn inward(&self, at: f64, values: &[f64]) -> MeasuredRow {
-        MeasuredRow::new(at, values).scaled(&self.inward)
+    /// Cells that it takes to reach a place.
+    pub(super) fn cells_to(&self, at: f64) -> f64 {
+        let grid = self.window.grid();
+        ((at - grid.right()) / grid.width - SLACK).ceil().max(0.0)
     }
 
     /// Takes the first rows, whose first cells are found together. Gives back those behind a gap.
@@ -150,8 +120,7 @@ impl Live {
         found: &mut Vec<Smoothed>,
     ) -> Result<Reach, LiveError> {
         self.renew(layout)?;
-        let (right, width) = (self.window.grid().right(), self.window.grid().width);
-        let cells = ((row.at - right) / width - SLACK).ceil().max(0.0);
+        let cells = self.cells_to(row.at);
         if cells > self.window.grid().cells as f64 {
             return Ok(Reach::Gap);
         }
@@ -262,7 +231,7 @@ impl Live {
         }
         let (at, events) = self.pending.pop_front()?;
         self.nearby.iter_mut().for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
-        count((window, opening), events.iter(), &mut self.square, (LOOKED_BACK, LARGEST_SQUARE));
+        count_all((window, opening), &events, &mut self.square);
         let read = |(head, outward): (usize, &f64)| {
             let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
             (value * outward, deviation * outward)
@@ -304,18 +273,5 @@ impl Live {
             }
         }
         Ok(())
-    }
-}
-
-/// Counts the misfits of a row's values in a running mean of their squares over so many values, none larger than that.
-fn count<'a>(
-    (window, opening): (&Window, Option<&Opening>),
-    events: impl Iterator<Item = &'a Event>,
-    mean: &mut f64,
-    (values, largest): (f64, f64),
-) {
-    let splines = opening.map(Opening::splines);
-    for event in events {
-        window.misfits(event, splines, &mut |misfit| *mean += ((misfit * misfit).min(largest) - *mean) / values);
     }
 }
