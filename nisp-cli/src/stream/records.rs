@@ -190,6 +190,7 @@ impl Answers {
             "state": of(false),
             "misfit": found.misfit,
             "nearby": found.nearby,
+            "bend": found.bend,
         });
         if found.is_stray {
             line["stray"] = json!(true);

@@ -90,6 +90,7 @@ impl Begun {
             last: start,
             square: 1.0,
             nearby: [0, reach / 2, reach].map(Nearby::ahead),
+            bends: [0, reach / 2].map(Nearby::ahead),
             recent: VecDeque::new(),
             rows: 0,
             due: 2 * rows.len(),

@@ -1,4 +1,4 @@
-//! How well rows are met: running means of the squares of what observations are off, over their noise.
+//! How well rows are met, and how sources bend between them: running means of squares.
 
 use std::collections::VecDeque;
 
@@ -32,17 +32,26 @@ impl Nearby {
     /// Counts the rows that wait: the first, and those before a place.
     pub(super) fn count_up(
         &mut self,
-        answers: (&Window, Option<&Opening>),
         pending: &VecDeque<(f64, Vec<Event>)>,
         decided: f64,
+        count: &mut dyn FnMut(f64, &[Event], &mut f64),
     ) {
         let own = pending.iter().take(self.ahead + 1).skip(self.counted);
-        for (_, events) in own.take_while(|(at, _)| *at < decided || *at == pending[0].0) {
-            let counts = events.iter().filter(|event| !event.is_stray);
-            count(answers, counts, &mut self.square, (NEARBY, LARGEST_NEARBY));
+        for (at, events) in own.take_while(|(at, _)| *at < decided || *at == pending[0].0) {
+            count(*at, events, &mut self.square);
             self.counted += 1;
         }
     }
+}
+
+/// Counts a row's values in a mean about a place, unless it is a stray.
+pub(super) fn count_near(answers: (&Window, Option<&Opening>), events: &[Event], mean: &mut f64) {
+    count(answers, events.iter().filter(|event| !event.is_stray), mean, (NEARBY, LARGEST_NEARBY));
+}
+
+/// Counts how far sources bend at a row in such a mean.
+pub(super) fn count_bend(square: Option<f64>, mean: &mut f64) {
+    *mean += square.map_or(0.0, |square| (square.min(LARGEST_NEARBY) - *mean) / NEARBY);
 }
 
 /// Counts all of a row's values in the mean that looks back. Strays are counted too: where they are many, the equations are wrong.

@@ -74,7 +74,7 @@ impl FixedLagSmoother {
     /// Takes a row: its place, and a number for each of [`FixedLagSmoother::columns`], NaN where nothing was measured. Gives the
     /// rows that have waited for it: none while the first rows are gathered, all of them but a lag once they are there, and
     /// one for each row from then on where rows are evenly spaced. After a gap that is longer than the lag and a few cells it
-    /// begins anew.
+    /// begins anew. A row that is as far ahead waits for the next one, and is [left out](Self::left_out) if that is not behind it.
     ///
     /// # Errors
     /// A row that does not fit: it is left out, and the next may be taken. First rows that do not determine the unknowns.
@@ -111,6 +111,7 @@ impl FixedLagSmoother {
         }
     }
 
+    /// Takes a row whose place is a right one.
     fn take(&mut self, row: MeasuredRow) -> Result<Vec<Smoothed>, LiveError> {
         self.last = Some(row.at);
         let mut found = Vec::new();

@@ -5,7 +5,7 @@ use std::thread::{self, JoinHandle};
 
 use super::event::Event;
 use super::evidence::{Stretch, Weights};
-use super::met::{Nearby, count_all};
+use super::met::{Nearby, count_all, count_bend, count_near};
 use super::opening::Opening;
 use super::record::{Layout, MeasuredRow};
 use super::strays::Strays;
@@ -44,6 +44,8 @@ pub(super) struct Live {
     /// The same of fewer rows, up to the one that is answered and up to two behind it: a value that stands alone, or a source that
     /// is followed too slowly, spoils answers on both of its sides.
     pub(super) nearby: [Nearby; 3],
+    /// How far sources bend, up to the row that is answered and up to one behind it.
+    pub(super) bends: [Nearby; 2],
     /// The last rows, for the next stretch.
     pub(super) recent: VecDeque<MeasuredRow>,
     pub(super) rows: usize,
@@ -227,10 +229,17 @@ impl Live {
         let decided = self.window.decided();
         let (window, opening) = (&mut self.window, self.opening.as_ref());
         for nearby in &mut self.nearby {
-            nearby.count_up((window, opening), &self.pending, decided);
+            nearby.count_up(&self.pending, decided, &mut |_, events, mean| count_near((window, opening), events, mean));
+        }
+        // The answer to the first rows has a prior of its own.
+        if opening.is_none() {
+            for bends in &mut self.bends {
+                bends.count_up(&self.pending, f64::INFINITY, &mut |at, _, mean| count_bend(window.bend(at), mean));
+            }
         }
         let (at, events) = self.pending.pop_front()?;
-        self.nearby.iter_mut().for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
+        let counted = self.nearby.iter_mut().chain(&mut self.bends);
+        counted.for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
         count_all((window, opening), &events, &mut self.square);
         let read = |(head, outward): (usize, &f64)| {
             let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
@@ -238,10 +247,11 @@ impl Live {
         };
         let heads = self.outward.iter().enumerate().map(read).collect();
         let outward = self.inward.0.recip();
-        let nearby = self.nearby.iter().map(|nearby| nearby.square.sqrt()).fold(0.0, f64::max);
+        let most = |means: &[Nearby]| means.iter().map(|mean| mean.square.sqrt()).fold(0.0, f64::max);
+        let (nearby, bend) = (most(&self.nearby), most(&self.bends));
         let (lag, misfit, leaning) = ((self.last - at) * outward, self.square.sqrt(), self.window.weights().leaning);
         let is_stray = events.iter().any(|event| event.is_stray);
-        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, leaning, is_stray })
+        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, bend, leaning, is_stray })
     }
 
     /// Answers all rows that wait.

@@ -4,6 +4,7 @@
 //! every step about the present state; rows of older cells have been turned into a triangle once and for all. What that
 //! triangle says of cells that have left the window is in its later rows already (`triangle/lag.rs`).
 
+mod bends;
 mod tail;
 
 use std::collections::VecDeque;
@@ -34,6 +35,8 @@ pub(super) type Known<'a> = &'a dyn Fn(usize, f64) -> Option<f64>;
 pub(super) struct Window {
     pub(super) bound: Bound,
     weights: Weights,
+    /// From which place on they hold: rows of older cells had others.
+    weighed_from: f64,
     grid: Grid,
     heads: Heads,
     /// Coefficients.
@@ -82,6 +85,7 @@ impl Window {
         let reaches_the_end = schema.groups.iter().all(|group| group.columns.is_empty() || !is_equation(group));
         Self {
             weights,
+            weighed_from: f64::NEG_INFINITY,
             theta: vec![0.0; unknowns],
             reference: vec![0.0; unknowns],
             settled: triangle.clone(),
@@ -109,6 +113,7 @@ impl Window {
     /// Takes over what the evidence of a later part of the record says.
     pub(super) fn weigh(&mut self, weights: Weights) {
         self.weights = weights;
+        self.weighed_from = self.grid.left() + self.grid.tail_start() as f64 * self.grid.width;
     }
 
     pub(super) fn weights(&self) -> &Weights {
