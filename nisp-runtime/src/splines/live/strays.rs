@@ -11,7 +11,7 @@ const FAR: f64 = 6.0;
 /// Strays that a tail may have. More of them are a change.
 const MOST: usize = 3;
 /// Rows behind a stray that agree without it, at least: a change begins with a row that stands alone.
-const BEHIND: usize = 3;
+const BEHIND: usize = 2;
 /// Below this variance an observation alone says what it is compared with.
 const UNTOLD: f64 = 1e-9;
 
