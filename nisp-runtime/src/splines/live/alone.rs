@@ -8,7 +8,7 @@ const NEAR: f64 = 10.0;
 /// Values that are compared with a cubic.
 const FIVE: usize = 5;
 /// Strays among neighbours. More of them are a change.
-const MOST: usize = 4;
+const MOST: usize = 3;
 
 /// Numbers of the strays among places and values, which are in order.
 pub(super) fn strays(values: &[(f64, f64)]) -> Vec<usize> {
@@ -42,20 +42,32 @@ fn usual(values: &[(f64, f64)]) -> f64 {
     distances.get(distances.len() / 4).copied().unwrap_or(f64::INFINITY)
 }
 
-/// The rest of some neighbours without strays; nothing if they are not near a cubic without a few that do not follow each other.
+/// The rest of some neighbours without strays, as few as it takes to have all near a cubic; nothing if it takes too many. One after the
+/// other would not do: two that are off to either side hide each other.
 fn without_strays(values: &[(f64, f64)], near: &[usize], most: f64) -> Option<Vec<usize>> {
-    let mut rest = near.to_vec();
-    let mut strays: Vec<usize> = Vec::new();
-    while strays.len() < MOST && distances(values, &rest).any(|distance| distance > most) {
-        let without = |left_out: usize| -> Vec<usize> { rest.iter().copied().filter(|&at| at != left_out).collect() };
-        let square =
-            |left_out: usize| distances(values, &without(left_out)).map(|distance| distance * distance).sum::<f64>();
-        let &stray = rest.iter().min_by(|&&a, &&b| square(a).total_cmp(&square(b)))?;
-        rest = without(stray);
-        strays.push(stray);
+    (1..=MOST).find_map(|count| best_without(values, near, (count, 0), most)).map(|(_, rest)| rest)
+}
+
+/// The rest without so many neighbours, from a place on, that do not follow each other: the one nearest to a cubic, and the sum of squares of
+/// its distances; nothing if none is near.
+fn best_without(
+    values: &[(f64, f64)],
+    near: &[usize],
+    (count, from): (usize, usize),
+    most: f64,
+) -> Option<(f64, Vec<usize>)> {
+    if count == 0 {
+        let is_near = distances(values, near).all(|distance| distance <= most);
+        let square = || distances(values, near).map(|distance| distance * distance).sum();
+        return is_near.then(|| (square(), near.to_vec()));
     }
-    let is_alone = |stray: &usize| !strays.contains(&(stray + 1));
-    (strays.iter().all(is_alone) && distances(values, &rest).all(|distance| distance <= most)).then_some(rest)
+    let without = |place: usize| {
+        let (stray, mut rest) = (near[place], near.to_vec());
+        rest.remove(place);
+        let next = place + usize::from(rest.get(place) == Some(&(stray + 1)));
+        best_without(values, &rest, (count - 1, next), most)
+    };
+    (from..near.len()).filter_map(without).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// How far every five values in a row are from a cubic: the remainder of the fourth divided difference, for noise of one.
@@ -85,7 +97,8 @@ mod tests {
 
     #[test]
     fn values_that_stand_alone_are_found_and_changes_are_not() {
-        let wave = |i: usize| (0.4 * i as f64).sin();
+        // Multiples of the golden ratio stand for noise.
+        let wave = |i: usize| (0.4 * i as f64).sin() + 0.1 * (i as f64 * 0.618_033_988_75).fract();
         let glitch = |i: usize, at: usize| if i == at { 9.0 } else { 0.0 };
         assert!(found(60, wave).is_empty());
         assert_eq!(found(60, |i| wave(i) + glitch(i, 17)), [17]);
