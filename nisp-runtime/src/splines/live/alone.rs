@@ -10,6 +10,9 @@ const FIVE: usize = 5;
 /// Strays among neighbours. More of them are a change.
 const MOST: usize = 3;
 
+/// Values behind a stray, at least: the last ones may be the beginning of a change.
+const BEHIND: usize = 2;
+
 /// Numbers of the strays among places and values, which are in order.
 pub(super) fn strays(values: &[(f64, f64)]) -> Vec<usize> {
     let mut kept: Vec<usize> = (0..values.len()).collect();
@@ -67,7 +70,7 @@ fn best_without(
         let next = place + usize::from(rest.get(place) == Some(&(stray + 1)));
         best_without(values, &rest, (count - 1, next), most)
     };
-    (from..near.len()).filter_map(without).min_by(|a, b| a.0.total_cmp(&b.0))
+    (from..near.len().saturating_sub(BEHIND)).filter_map(without).min_by(|a, b| a.0.total_cmp(&b.0))
 }
 
 /// How far every five values in a row are from a cubic: the remainder of the fourth divided difference, for noise of one.
