@@ -55,9 +55,18 @@ impl Record {
         Ok((first(places), columns.into_iter().map(first).collect()))
     }
 
-    fn cells(&self, table: &Table) -> Result<(Vec<f64>, Vec<Vec<f64>>), PrepareError> {
+    /// The place of a row, if it has one, whatever else is wrong with it.
+    pub fn place(&self, table: &Table) -> Option<f64> {
+        self.places(table).ok()?.first().copied()
+    }
+
+    fn places(&self, table: &Table) -> Result<Vec<f64>, PrepareError> {
         let axis = &self.scene.schema.coordinates[0];
-        let places = read(table, (axis.name, axis.unit.text), false, &self.request)?;
+        read(table, (axis.name, axis.unit.text), false, &self.request)
+    }
+
+    fn cells(&self, table: &Table) -> Result<(Vec<f64>, Vec<Vec<f64>>), PrepareError> {
+        let places = self.places(table)?;
         let cells = self.columns.iter().map(|(column, is_there)| match is_there {
             true => read(table, (column.name, column.unit.text), column.may_lack, &self.request),
             false => Ok(Vec::new()),

@@ -117,7 +117,9 @@ Rows of a record:
   they are all answered, and every later row when the record is a lag farther. Where the record ends the last rows are
   answered at shorter lags. After a gap longer than the lag it begins anew with the next 200 rows. Where answers no longer
   fit the rows (a source sets in after quiet ones) the last 400 are solved as the first ones were. A row that cannot be
-  taken (time that goes back, a word for a number) gets a line that says so, and the next one is waited for.
+  taken (time that goes back, a word for a number) gets a line that says so, and the next one is waited for; so does a
+  time far ahead that the next row's time is not. A value that stands alone, far off, is left out. First rows that tell
+  nothing (a sensor at rest, empty cells) wait for others: 1600 at most.
 
 Answers to rows, one JSON object a line:
   t           where the answer holds: the row's own place (under the coordinate's own name)
@@ -125,9 +127,13 @@ Answers to rows, one JSON object a line:
   sources     by name: value and sd, its standard deviation
   state       the same of what is described, measured or not
   misfit      what observations are off, over the noise that neighbouring rows show; about 1 where the equation is right
+  nearby      the same of a dozen values about the row
+  bend        how far sources bend about the row, over what their smoothness makes likely: far beside a step
+  stray       true where a value of the row stands alone and was left out; the answer is what the other rows say
   leaning     how far a learned parameter moves where sources may be larger, as a share of itself
-  status      converged, inconsistent (misfit above 1.6: equation or parameters do not fit; leaning above .1: little is
-              known of what is learned), or error (`error` says why)
+  status      converged, inconsistent (misfit above 1.6 or nearby above 2: equation or parameters do not fit; bend above 3:
+              a source is rougher than it was; leaning above .1: little is known of what is learned), or error (`error`
+              says why)
   latency_ms  work of the row that brought the answer
 
 Answers to frames, one JSON object a line:

@@ -25,8 +25,11 @@ const AHEAD: usize = 1024;
 /// How often a signal is looked for while no row comes.
 const LOOK: Duration = Duration::from_millis(50);
 
-/// A row: its place and its columns, or what is wrong with it.
-type Row = Result<(f64, Vec<f64>), String>;
+/// A row: its place and its columns.
+type Row = Result<(f64, Vec<f64>), Wrong>;
+
+/// What is wrong with a row, and its place if it has one.
+type Wrong = (String, Option<f64>);
 
 /// Answers every row.
 pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode, String> {
@@ -78,12 +81,20 @@ fn say(message: &str) {
 fn bring(mut rows: Rows<Box<dyn BufRead + Send>>, record: &Record, place: &SyncSender<(Instant, Row)>) {
     while let Some(row) = rows.next_row() {
         let came = Instant::now();
-        let row = row.map_err(|error| error.to_string());
-        let row = row.and_then(|row| record.row(row).map_err(|error| error.to_string()));
+        let row = match row {
+            Ok(row) => record.row(row).map_err(|error| (error.to_string(), record.place(row))),
+            Err(error) => Err((error.to_string(), None)),
+        };
         if place.send((came, row)).is_err() {
             return;
         }
     }
+}
+
+/// What is wrong with a row that was taken for one far ahead.
+fn far_ahead(smoother: &mut FixedLagSmoother) -> Option<Wrong> {
+    let place = smoother.left_out()?;
+    Some((format!("{place} is far ahead of the rows beside it; the row is left out"), Some(place)))
 }
 
 /// How a stream ended.
@@ -117,8 +128,8 @@ impl Answers {
             };
             // Rows of a file wait for their turn.
             let start = Instant::now();
-            let lines = match (row, &mut self.smoother) {
-                (Some(Err(error)), _) => vec![json!({ "status": "error", "error": error })],
+            let (wrong, found) = match (row, &mut self.smoother) {
+                (Some(Err(wrong)), _) => (Some(wrong), Vec::new()),
                 (Some(Ok((at, values))), smoother) => {
                     let smoother = match smoother {
                         Some(smoother) => smoother,
@@ -130,19 +141,21 @@ impl Answers {
                         }
                     };
                     match smoother.push(at, &values) {
-                        Ok(found) => found.iter().map(|found| self.line(found)).collect(),
-                        Err(error) if error.is_of_row() => {
-                            vec![json!({ "status": "error", "error": error.to_string(), "t": at })]
-                        }
+                        Ok(found) => (far_ahead(smoother), found),
+                        Err(error) if error.is_of_row() => (Some((error.to_string(), Some(at))), Vec::new()),
                         Err(error) => return Ok(Ended::Open(error.to_string())),
                     }
                 }
                 (None, Some(smoother)) => match smoother.finish() {
-                    Ok(found) => found.iter().map(|found| self.line(found)).collect(),
+                    Ok(found) => (far_ahead(smoother), found),
                     Err(error) => return Ok(Ended::Open(error.to_string())),
                 },
                 (None, None) => return Ok(Ended::Open("there was no row; give some below the header".into())),
             };
+            let wrong = wrong.map(
+                |(error, place)| json!({ "status": "error", "error": error, self.scene.coordinates[0].name: place }),
+            );
+            let lines = wrong.into_iter().chain(found.iter().map(|found| self.line(found)));
             let took = 1e3 * start.elapsed().as_secs_f64();
             for mut line in lines {
                 line["latency_ms"] = took.into();
@@ -177,7 +190,11 @@ impl Answers {
             "state": of(false),
             "misfit": found.misfit,
             "nearby": found.nearby,
+            "bend": found.bend,
         });
+        if found.is_stray {
+            line["stray"] = json!(true);
+        }
         if found.leaning > 0.0 {
             line["leaning"] = json!(found.leaning);
         }

@@ -41,11 +41,13 @@ fn every_row_has_its_line_and_a_bad_one_is_named() {
     place.put("spring.pde", SPRING);
     let mut csv = String::from("t_s,y_m\n");
     for i in 0..400 {
-        writeln!(csv, "{}", row(i)).unwrap();
+        // One value is far off.
+        writeln!(csv, "{}", if i == 360 { "18,1".into() } else { row(i) }).unwrap();
         match i {
             250 => csv.push_str("3,1\n"),
             300 => csv.push_str("15.01,word\n"),
             320 => csv.push_str("16.01,1,2\n"),
+            340 => csv.push_str("1e6,1\n"),
             _ => {}
         }
     }
@@ -53,15 +55,22 @@ fn every_row_has_its_line_and_a_bad_one_is_named() {
     let ran = place.run("stream spring.pde --data run.csv");
     assert_eq!(ran.code, Some(0), "{}", ran.stderr);
     let (bad, good): (Vec<_>, Vec<_>) = lines(&ran.stdout).into_iter().partition(|line| line["status"] == "error");
-    assert_eq!((good.len(), bad.len()), (400, 3));
-    for (line, what) in bad.iter().zip(["3 does not come after 12.5", "`word` is not a number", "3 cells where"]) {
-        assert!(line["error"].as_str().unwrap().contains(what), "{line}");
+    assert_eq!((good.len(), bad.len()), (400, 4));
+    let wrong = [
+        ("3 does not come after 12.5", Some(3.0)),
+        ("`word` is not a number", Some(15.01)),
+        ("3 cells where", None),
+        ("1000000 is far ahead", Some(1e6)),
+    ];
+    for (line, (what, at)) in bad.iter().zip(wrong) {
+        assert!(line["error"].as_str().unwrap().contains(what) && line["t"].as_f64() == at, "{line}");
     }
     let mut within = 0;
     for (i, line) in good.iter().enumerate() {
         let (t, source) = (line["t"].as_f64().unwrap(), &line["sources"]["u"]);
         assert!((t - 0.05 * i as f64).abs() < 1e-9 && line["latency_ms"].as_f64().unwrap() > 0.0, "{line}");
         assert_eq!(line["status"], "converged");
+        assert_eq!(line.get("stray"), (i == 360).then_some(&Value::Bool(true)));
         let (value, sd) = (source["value"].as_f64().unwrap(), source["sd"].as_f64().unwrap());
         within += usize::from((value - motion(t).1).abs() < 2.0 * sd);
         assert!((line["state"]["y"]["value"].as_f64().unwrap() - motion(t).0).abs() < 0.02, "{line}");

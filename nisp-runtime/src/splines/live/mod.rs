@@ -6,11 +6,17 @@
 //! again, on a thread of their own.
 
 mod again;
+mod alone;
+mod begun;
+mod event;
 mod evidence;
 mod grid;
+mod lag;
+mod met;
 mod opening;
 mod record;
 mod smoother;
+mod strays;
 mod under_way;
 mod window;
 
@@ -53,9 +59,14 @@ pub struct Smoothed {
     pub misfit: f64,
     /// The same over a dozen values or so about the place: a contact that the source follows too slowly shows there alone.
     pub nearby: f64,
+    /// How far sources bend about the place, over what their smoothness and the rows make likely: far beside a step, which a source
+    /// that was smooth before cannot follow. A running mean of a dozen rows or so.
+    pub bend: f64,
     /// How far a learned scalar moves where sources may be larger, at most, as a share of itself: little is known of one that moves far,
     /// and of the sources beside it. Zero where nothing is learned.
     pub leaning: f64,
+    /// Whether the row is a stray: what was observed there is far from what all other rows say, and does not count.
+    pub is_stray: bool,
 }
 
 impl Smoothed {
@@ -64,12 +75,18 @@ impl Smoothed {
     /// The same of a dozen values: chance makes more of few.
     pub const NEARBY: f64 = 2.0;
 
+    /// How far sources may bend: chance makes two of it now and then.
+    pub const BEND: f64 = 3.0;
+
     /// How far a learned scalar may move.
     pub const LEANING: f64 = leaning::FARTHEST;
 
-    /// True where equations and data agree, and learned scalars do not rest on how large sources are taken to be.
+    /// True where equations and data agree, sources are as smooth as they were taken to be, and learned scalars do not rest on how large sources are taken to be.
     pub fn is_sound(&self) -> bool {
-        self.misfit <= Self::MISFIT && self.nearby <= Self::NEARBY && self.leaning <= Self::LEANING
+        self.misfit <= Self::MISFIT
+            && self.nearby <= Self::NEARBY
+            && self.bend <= Self::BEND
+            && self.leaning <= Self::LEANING
     }
 }
 

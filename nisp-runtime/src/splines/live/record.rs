@@ -1,6 +1,7 @@
 //! Rows of a record, and stretches of them as problems of their own.
 
-use super::window::Event;
+use super::alone;
+use super::event::Event;
 use super::{LiveError, RowColumn};
 use crate::network::Inputs;
 use crate::problem::{Bound, Problem};
@@ -9,12 +10,26 @@ use crate::schema::{Group, TermKind};
 /// Places of an equation that stand for a whole stretch.
 const ALONG: usize = 32;
 
-/// A row in the engine's units.
+/// A row of a record.
 #[derive(Clone, Debug)]
 pub(super) struct MeasuredRow {
     pub(super) at: f64,
     /// All columns of all measured groups, one after the other.
     pub(super) values: Vec<f64>,
+    /// Whether what is observed there does not count.
+    pub(super) is_stray: bool,
+}
+
+impl MeasuredRow {
+    pub(super) fn new(at: f64, values: &[f64]) -> Self {
+        Self { at, values: values.to_vec(), is_stray: false }
+    }
+
+    /// In other units: factors of the coordinate and of each column.
+    pub(super) fn scaled(&self, (by, factors): &(f64, Vec<f64>)) -> Self {
+        let values = self.values.iter().zip(factors).map(|(value, factor)| value * factor).collect();
+        Self { at: self.at * by, values, ..*self }
+    }
 }
 
 /// What of a scene's groups comes with rows, holds everywhere, or at a place.
@@ -58,8 +73,25 @@ impl Layout {
         self.measured.iter().zip(ends).filter_map(|(&(group, first), end)| {
             let columns = &row.values[first..end];
             let is_there = columns.iter().any(|x| !x.is_nan());
-            is_there.then(|| Event { group, at: row.at, columns: columns.to_vec() })
+            is_there.then(|| Event { group, at: row.at, columns: columns.to_vec(), is_stray: row.is_stray })
         })
+    }
+
+    /// Finds the rows that are strays by their neighbours alone. Columns that equations read are what they are.
+    pub(super) fn mark_strays(&self, rows: &mut [MeasuredRow]) {
+        rows.iter_mut().for_each(|row| row.is_stray = false);
+        for column in (0..self.columns.len()).filter(|&column| self.columns[column].may_lack) {
+            let there: Vec<usize> = (0..rows.len()).filter(|&row| !rows[row].values[column].is_nan()).collect();
+            let values: Vec<(f64, f64)> = there.iter().map(|&row| (rows[row].at, rows[row].values[column])).collect();
+            alone::strays(&values).into_iter().for_each(|stray| rows[there[stray]].is_stray = true);
+        }
+    }
+
+    /// A row without what was observed at a stray.
+    fn counted(&self, row: &MeasuredRow) -> MeasuredRow {
+        let counts =
+            |(value, column): (&f64, &RowColumn)| if row.is_stray && column.may_lack { f64::NAN } else { *value };
+        MeasuredRow { values: row.values.iter().zip(&self.columns).map(counts).collect(), ..*row }
     }
 
     /// The problem of the first rows, which are in declared units.
@@ -89,8 +121,9 @@ impl Layout {
         bound
     }
 
-    /// Places and columns of a group, of the rows in which something of it was measured.
+    /// Places and columns of a group, of the rows in which something of it was measured and counts.
     fn table(&self, group: usize, rows: &[MeasuredRow]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let rows: Vec<MeasuredRow> = rows.iter().map(|row| self.counted(row)).collect();
         let own: Vec<Event> = rows.iter().flat_map(|row| self.events(row)).filter(|e| e.group == group).collect();
         let count = own.first().map_or(0, |event| event.columns.len());
         let column = |column: usize| own.iter().map(|event| event.columns[column]).collect();

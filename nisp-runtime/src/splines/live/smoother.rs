@@ -1,23 +1,18 @@
 //! The smoother: rows in, answers at the lag out.
 
-use std::collections::VecDeque;
-
-use super::again::{OPEN, Patience, ROWS, without_strays};
-use super::evidence::Stretch;
-use super::grid::Grid;
-use super::opening::Opening;
+use super::again::{OPEN, Patience, ROWS};
+use super::begun::Begun;
 use super::record::{Layout, MeasuredRow};
-use super::under_way::{Live, Nearby, Reach, SLACK, scaled_row};
-use super::window::{Event, Window};
+use super::under_way::{Live, Reach};
 use super::{LagSettings, LiveError, RowColumn, Smoothed};
-use crate::problem::Problem;
+use crate::problem::{BindError, Problem};
 
 /// Rows that say anything of a noise and a source.
 const FEWEST: usize = 10;
-/// Cells that a lag may take.
-const MOST_CELLS: usize = 20_000;
-/// How much larger a source's deviation may be at the lag than after any wait.
-const NEAR: f64 = 1.05;
+/// How many times as many rows as were asked for may wait until they tell something.
+const MOST_WAITS: usize = 8;
+/// How far ahead of the last row one may be, at first, over the mean distance of rows, before its place is doubted.
+const LEAP: f64 = 10.0;
 
 /// Smooths a record as it comes: every row is answered once the record is a lag farther.
 ///
@@ -26,10 +21,15 @@ pub struct FixedLagSmoother {
     problem: Problem,
     settings: LagSettings,
     layout: Layout,
-    /// Place of the last row, in the declared unit.
+    /// Place of the last row that was taken, in the declared unit.
     last: Option<f64>,
+    /// A row far ahead of it, which the next one tells from a wrong place; and the place of the last one that was wrong.
+    ahead: Option<MeasuredRow>,
+    left_out: Option<f64>,
     /// Rows in declared units until noise and smoothness are known.
     waiting: Vec<MeasuredRow>,
+    /// How many of them are asked next.
+    due: usize,
     live: Option<Live>,
     patience: Patience,
 }
@@ -52,7 +52,10 @@ impl FixedLagSmoother {
             settings,
             layout,
             last: None,
+            ahead: None,
+            left_out: None,
             waiting: Vec::new(),
+            due: settings.first_rows.max(FEWEST),
             live: None,
             patience: Patience::default(),
         })
@@ -71,29 +74,61 @@ impl FixedLagSmoother {
     /// Takes a row: its place, and a number for each of [`FixedLagSmoother::columns`], NaN where nothing was measured. Gives the
     /// rows that have waited for it: none while the first rows are gathered, all of them but a lag once they are there, and
     /// one for each row from then on where rows are evenly spaced. After a gap that is longer than the lag and a few cells it
-    /// begins anew.
+    /// begins anew. A row that is as far ahead waits for the next one, and is [left out](Self::left_out) if that is not behind it.
     ///
     /// # Errors
     /// A row that does not fit: it is left out, and the next may be taken. First rows that do not determine the unknowns.
     pub fn push(&mut self, at: f64, values: &[f64]) -> Result<Vec<Smoothed>, LiveError> {
         self.check(at, values)?;
-        self.last = Some(at);
+        let mut found = Vec::new();
+        if let Some(ahead) = self.ahead.take() {
+            if ahead.at < at {
+                found.extend(self.take(ahead)?);
+            } else {
+                self.left_out = Some(ahead.at);
+            }
+        }
+        let row = MeasuredRow::new(at, values);
+        if self.leaps(at) {
+            self.ahead = Some(row);
+        } else {
+            found.extend(self.take(row)?);
+        }
+        Ok(found)
+    }
+
+    /// The place of a row that was far ahead and is left out, because the last one pushed was not; it is said once.
+    pub fn left_out(&mut self) -> Option<f64> {
+        self.left_out.take()
+    }
+
+    /// Whether a row is so far ahead that its place may be a wrong one.
+    fn leaps(&self, at: f64) -> bool {
+        match (&self.live, &self.waiting[..]) {
+            (Some(live), _) => live.cells_to(at * live.inward.0) > live.window.grid().cells as f64,
+            (None, [first, .., last]) => at - last.at > LEAP * (last.at - first.at) / (self.waiting.len() - 1) as f64,
+            (None, _) => true,
+        }
+    }
+
+    /// Takes a row whose place is a right one.
+    fn take(&mut self, row: MeasuredRow) -> Result<Vec<Smoothed>, LiveError> {
+        self.last = Some(row.at);
         let mut found = Vec::new();
         if let Some(live) = &mut self.live {
-            let row = live.inward(at, values);
             self.patience.row();
-            match live.push(&self.layout, row, &|_, _| None, &mut found) {
+            match live.push(&self.layout, row.scaled(&live.inward), &|_, _| None, &mut found) {
                 Ok(Reach::Whole) => {
                     found.extend(self.recover());
                     return Ok(found);
                 }
                 Err(error) => {
-                    let is_taken = live.has(at);
+                    let is_taken = live.has(row.at);
                     found.extend(self.begin_again().ok_or(error)?);
                     if is_taken {
                         return Ok(found);
                     }
-                    found.extend(self.push_anew(at, values)?);
+                    found.extend(self.push_anew(row)?);
                     return Ok(found);
                 }
                 Ok(Reach::Gap) => {
@@ -102,8 +137,8 @@ impl FixedLagSmoother {
                 }
             }
         }
-        self.waiting.push(MeasuredRow { at, values: values.to_vec() });
-        if self.waiting.len() >= self.settings.first_rows.max(FEWEST) {
+        self.waiting.push(row);
+        if self.waiting.len() >= self.due {
             found.extend(self.begin(1.0)?);
         }
         Ok(found)
@@ -115,6 +150,13 @@ impl FixedLagSmoother {
     /// Fewer rows than it takes to tell noise from a source.
     pub fn finish(&mut self) -> Result<Vec<Smoothed>, LiveError> {
         let mut found = Vec::new();
+        if let Some(ahead) = self.ahead.take() {
+            if self.live.is_none() && self.waiting.len() < 2 {
+                found.extend(self.take(ahead)?);
+            } else {
+                self.left_out = Some(ahead.at);
+            }
+        }
         // Rows behind a gap wait again.
         while !self.waiting.is_empty() {
             if self.waiting.len() < FEWEST {
@@ -144,91 +186,46 @@ impl FixedLagSmoother {
         }
     }
 
-    /// Begins with the rows that wait.
+    /// Begins with the rows that wait. Where they leave something open, as a sensor at rest does, twice as many may tell.
     fn begin(&mut self, open: f64) -> Result<Vec<Smoothed>, LiveError> {
+        let first = self.settings.first_rows.max(FEWEST);
         let rows = std::mem::take(&mut self.waiting);
-        self.begin_with(rows, self.settings.lag, open)
+        let count = rows.len();
+        let found = if open > 0.0 && count < MOST_WAITS * first {
+            match self.begin_with(rows.clone(), self.settings.lag, open) {
+                Err(
+                    LiveError::Open
+                    | LiveError::Fault(_)
+                    | LiveError::Bind(BindError::NoPoints { .. } | BindError::NothingMeasured { .. }),
+                ) => {
+                    self.waiting = rows;
+                    self.due = 2 * count;
+                    return Ok(Vec::new());
+                }
+                found => found,
+            }
+        } else {
+            self.begin_with(rows, self.settings.lag, open)
+        };
+        self.due = first;
+        found
     }
 
-    /// Finds noise, smoothness and, where it is not given, the lag from rows in declared units, and answers them as a whole, but for the
-    /// last ones, of which later rows tell more: `open` is that stretch over the lag.
     fn begin_with(&mut self, rows: Vec<MeasuredRow>, lag: Option<f64>, open: f64) -> Result<Vec<Smoothed>, LiveError> {
-        let bound = self.layout.bound(&self.problem, &rows)?;
-        let (stretch, opening) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
-        let stretch = stretch?;
-        let schema = self.problem.scene().schema;
-        let system = bound.system;
-        let by = system.inward(&schema.coordinates[0].unit);
-        let inward = (by, self.layout.columns.iter().map(|column| system.inward(&column.unit)).collect::<Vec<_>>());
-        let rows: Vec<MeasuredRow> = rows.iter().map(|row| scaled_row(&inward, row.at, &row.values)).collect();
-        let (start, end) = (rows[0].at, rows[rows.len() - 1].at);
-        let width = width(&rows);
-        let sought: Vec<usize> = sought(&bound);
-        let settled = settled_lag(&stretch, &sought, (start, end), width);
-        // Rows that a value says something of.
-        let reach = (settled / width).round() as usize;
-        let lag = match lag {
-            Some(lag) if lag * by > MOST_CELLS as f64 * width => {
-                return Err(LiveError::Lag { lag, most: MOST_CELLS });
-            }
-            Some(lag) => lag * by,
-            None => settled,
-        };
-        let grid = Grid::new(start, width, lag);
-        let mut conditions: Vec<Event> = Vec::new();
-        for (group, declared) in schema.groups.iter().enumerate() {
-            let is_condition = declared.columns.is_empty() && !declared.is_beliefs();
-            if is_condition && !self.layout.continuous.contains(&group) {
-                let places = bound.coordinates[group].iter();
-                conditions.extend(places.map(|&at| Event { group, at, columns: Vec::new() }));
-            }
-        }
-        for &group in &self.layout.continuous {
-            conditions.extend(grid.beginning().map(|at| Event { group, at, columns: Vec::new() }));
-        }
-        conditions.retain(|condition| condition.at >= start - SLACK * width);
-        conditions.sort_by(|a, b| a.at.total_cmp(&b.at));
-        let outward = schema.heads.iter().map(|head| system.outward(&head.unit)).collect();
-        let known = |head: usize, at: f64| (at <= end).then(|| stretch.value(head, at.max(start)));
-        let mut window = Window::new(bound, stretch.weights.clone(), grid, &self.layout.continuous);
-        window.guess(&known);
-        let mut live = Live {
-            window,
-            opening: opening.map(|opening| opening.until(end - open * lag)),
-            inward,
-            outward,
-            lag,
-            pending: VecDeque::new(),
-            conditions: conditions.into(),
-            last: start,
-            square: 1.0,
-            nearby: [0, reach / 2, reach].map(Nearby::ahead),
-            recent: VecDeque::new(),
-            rows: 0,
-            due: 2 * rows.len(),
-            asked: None,
-        };
-        let mut found = Vec::new();
-        let behind = live.replay(&self.layout, rows, &known, &mut found)?;
-        if behind.is_empty() {
-            self.live = Some(live);
-            return Ok(found);
-        }
-        found.extend(live.finish());
-        self.waiting = live.outward(behind.iter());
-        Ok(found)
+        let Begun { answers, live, behind } = Begun::with(&self.problem, &self.layout, rows, (lag, open))?;
+        self.live = live;
+        self.waiting = behind;
+        Ok(answers)
     }
 
     /// Takes a row that a window could not reach, after that has begun again.
-    fn push_anew(&mut self, at: f64, values: &[f64]) -> Result<Vec<Smoothed>, LiveError> {
+    fn push_anew(&mut self, row: MeasuredRow) -> Result<Vec<Smoothed>, LiveError> {
         let mut found = Vec::new();
-        let reach = self.live.as_mut().map(|live| {
-            let row = live.inward(at, values);
-            live.push(&self.layout, row, &|_, _| None, &mut found)
-        });
+        let reach =
+            self.live.as_mut().map(|live| live.push(&self.layout, row.scaled(&live.inward), &|_, _| None, &mut found));
         if !matches!(reach.transpose()?, Some(Reach::Whole)) {
             found.extend(self.live.take().iter_mut().flat_map(Live::finish));
-            self.waiting.push(MeasuredRow { at, values: values.to_vec() });
+            self.waiting.push(row);
         }
         Ok(found)
     }
@@ -243,7 +240,7 @@ impl FixedLagSmoother {
     fn begin_again(&mut self) -> Option<Vec<Smoothed>> {
         let mut lost = self.live.take()?;
         self.patience.begun();
-        let rows = without_strays(lost.last_rows(ROWS * self.settings.first_rows));
+        let rows = lost.last_rows(ROWS * self.settings.first_rows);
         // The lag stays what it was said to be.
         let (start, lag) = (rows[0].at, lost.declared_lag());
         let Ok(answers) = self.begin_with(rows, Some(lag), OPEN) else {
@@ -257,32 +254,4 @@ impl FixedLagSmoother {
         found.extend(answers.into_iter().filter(|answer| first.is_some_and(|first| answer.at >= first)));
         Some(found)
     }
-}
-
-/// Heads that the lag waits for: sources, or everything where there are none.
-fn sought(bound: &crate::problem::Bound) -> Vec<usize> {
-    let heads = bound.problem.scene().schema.heads;
-    let sources: Vec<usize> = (0..heads.len()).filter(|&head| heads[head].source).collect();
-    if sources.is_empty() { (0..heads.len()).collect() } else { sources }
-}
-
-/// Width of a cell: the usual distance of two rows. The median does not mind gaps, and the mean not that rows come in bursts.
-fn width(rows: &[MeasuredRow]) -> f64 {
-    let mut apart: Vec<f64> = rows.windows(2).map(|pair| pair[1].at - pair[0].at).collect();
-    apart.sort_by(f64::total_cmp);
-    let mean = apart.iter().sum::<f64>() / apart.len() as f64;
-    mean.min(apart[apart.len() / 2].max(mean / 4.0))
-}
-
-/// The distance from the end of a stretch, in whole cells, from which on deviations are nearly those of its middle.
-fn settled_lag(stretch: &Stretch, heads: &[usize], (start, end): (f64, f64), width: f64) -> f64 {
-    let cells = (((end - start) / width) as usize).max(2);
-    let lag = |head: usize| {
-        let deviation = |cell: usize| stretch.deviation(head, end - cell as f64 * width);
-        let mut middle: Vec<f64> = (cells / 4..=3 * cells / 4).map(deviation).collect();
-        middle.sort_by(f64::total_cmp);
-        let most = NEAR * middle[middle.len() / 2];
-        (1..cells / 2).find(|&cell| deviation(cell) <= most).unwrap_or(cells / 2)
-    };
-    heads.iter().map(|&head| lag(head)).max().unwrap_or(1) as f64 * width
 }

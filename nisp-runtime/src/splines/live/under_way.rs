@@ -3,10 +3,13 @@
 use std::collections::VecDeque;
 use std::thread::{self, JoinHandle};
 
+use super::event::Event;
 use super::evidence::{Stretch, Weights};
+use super::met::{Nearby, count_all, count_bend, count_near};
 use super::opening::Opening;
 use super::record::{Layout, MeasuredRow};
-use super::window::{Event, Known, Window};
+use super::strays::Strays;
+use super::window::{Known, Window};
 use super::{LiveError, Smoothed};
 use crate::solve::fault::Fault;
 
@@ -19,13 +22,6 @@ const SMALL: f64 = 0.5;
 /// Rows of a later stretch that is asked for noise and smoothness, at most, and rows between such stretches, at most.
 const STRETCH: usize = 1000;
 const BETWEEN: usize = 4000;
-/// Values that the running mean of misfits looks back over, and the square that one may count for: a value that stands alone
-/// does not make equations wrong.
-const LOOKED_BACK: f64 = 100.0;
-const LARGEST_SQUARE: f64 = 16.0;
-/// The same about a place: answers beside a value that stands alone are wrong.
-const NEARBY: f64 = 12.0;
-const LARGEST_NEARBY: f64 = 200.0;
 /// Share of a cell by which a place may miss the lag.
 pub(super) const SLACK: f64 = 1e-6;
 
@@ -48,35 +44,14 @@ pub(super) struct Live {
     /// The same of fewer rows, up to the one that is answered and up to two behind it: a value that stands alone, or a source that
     /// is followed too slowly, spoils answers on both of its sides.
     pub(super) nearby: [Nearby; 3],
+    /// How far sources bend, up to the row that is answered and up to one behind it.
+    pub(super) bends: [Nearby; 2],
     /// The last rows, for the next stretch.
     pub(super) recent: VecDeque<MeasuredRow>,
     pub(super) rows: usize,
     /// Number of the row at which a stretch is asked next, or its answer taken over.
     pub(super) due: usize,
     pub(super) asked: Option<JoinHandle<Result<Weights, LiveError>>>,
-}
-
-/// A running mean of squares up to a row that waits.
-pub(super) struct Nearby {
-    /// How many rows that is behind the one that is answered.
-    ahead: usize,
-    square: f64,
-    /// Rows that wait and have been counted.
-    counted: usize,
-}
-
-impl Nearby {
-    /// Of the rows up to the one that is so many behind the answered one.
-    pub(super) fn ahead(ahead: usize) -> Self {
-        Self { ahead, square: 1.0, counted: 0 }
-    }
-
-    fn count_up(&mut self, answers: (&Window, Option<&Opening>), pending: &VecDeque<(f64, Vec<Event>)>) {
-        for (_, events) in pending.iter().take(self.ahead + 1).skip(self.counted) {
-            count(answers, events, &mut self.square, (NEARBY, LARGEST_NEARBY));
-            self.counted += 1;
-        }
-    }
 }
 
 /// Whether a row could be reached from the last one.
@@ -86,8 +61,10 @@ pub(super) enum Reach {
 }
 
 impl Live {
-    pub(super) fn inward(&self, at: f64, values: &[f64]) -> MeasuredRow {
-        scaled_row(&self.inward, at, values)
+    /// Cells that it takes to reach a place.
+    pub(super) fn cells_to(&self, at: f64) -> f64 {
+        let grid = self.window.grid();
+        ((at - grid.right()) / grid.width - SLACK).ceil().max(0.0)
     }
 
     /// Takes the first rows, whose first cells are found together. Gives back those behind a gap.
@@ -145,8 +122,7 @@ impl Live {
         found: &mut Vec<Smoothed>,
     ) -> Result<Reach, LiveError> {
         self.renew(layout)?;
-        let (right, width) = (self.window.grid().right(), self.window.grid().width);
-        let cells = ((row.at - right) / width - SLACK).ceil().max(0.0);
+        let cells = self.cells_to(row.at);
         if cells > self.window.grid().cells as f64 {
             return Ok(Reach::Gap);
         }
@@ -167,6 +143,25 @@ impl Live {
 
     /// A step, down to the first row that waits.
     fn solve(&mut self) -> Result<(), Fault> {
+        self.window.readmit();
+        self.step()?;
+        let Strays { found, aside } = self.window.leave_out_strays();
+        self.mark(&found);
+        if found.is_empty() && aside.is_empty() { Ok(()) } else { self.step() }
+    }
+
+    /// Marks rows of the tail as strays.
+    fn mark(&mut self, strays: &[f64]) {
+        for row in self.recent.iter_mut().filter(|row| strays.contains(&row.at)) {
+            row.is_stray = true;
+        }
+        for (_, events) in self.pending.iter_mut().filter(|(at, _)| strays.contains(at)) {
+            events.iter_mut().for_each(|event| event.is_stray = true);
+        }
+    }
+
+    /// The same with the rows that are there.
+    fn step(&mut self) -> Result<(), Fault> {
         let grid = self.window.grid();
         let wanted = self.pending.front().map_or(grid.tail_start(), |(at, _)| grid.cell(*at));
         let from = wanted.min(grid.tail_start()).max(grid.begun());
@@ -206,7 +201,7 @@ impl Live {
     pub(super) fn outward<'a>(&self, rows: impl Iterator<Item = &'a MeasuredRow>) -> Vec<MeasuredRow> {
         let (by, factors) = &self.inward;
         let outward: (f64, Vec<f64>) = (by.recip(), factors.iter().map(|factor| factor.recip()).collect());
-        rows.map(|row| scaled_row(&outward, row.at, &row.values)).collect()
+        rows.map(|row| row.scaled(&outward)).collect()
     }
 
     /// The lag, and the place of the first row without an answer, in the declared unit.
@@ -231,22 +226,32 @@ impl Live {
     fn answer_next(&mut self) -> Option<Smoothed> {
         let next = self.pending.front()?.0;
         self.opening.take_if(|opening| !opening.answers(next));
+        let decided = self.window.decided();
         let (window, opening) = (&mut self.window, self.opening.as_ref());
         for nearby in &mut self.nearby {
-            nearby.count_up((window, opening), &self.pending);
+            nearby.count_up(&self.pending, decided, &mut |_, events, mean| count_near((window, opening), events, mean));
+        }
+        // The answer to the first rows has a prior of its own.
+        if opening.is_none() {
+            for bends in &mut self.bends {
+                bends.count_up(&self.pending, f64::INFINITY, &mut |at, _, mean| count_bend(window.bend(at), mean));
+            }
         }
         let (at, events) = self.pending.pop_front()?;
-        self.nearby.iter_mut().for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
-        count((window, opening), &events, &mut self.square, (LOOKED_BACK, LARGEST_SQUARE));
+        let counted = self.nearby.iter_mut().chain(&mut self.bends);
+        counted.for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
+        count_all((window, opening), &events, &mut self.square);
         let read = |(head, outward): (usize, &f64)| {
             let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
             (value * outward, deviation * outward)
         };
         let heads = self.outward.iter().enumerate().map(read).collect();
         let outward = self.inward.0.recip();
-        let nearby = self.nearby.iter().map(|nearby| nearby.square.sqrt()).fold(0.0, f64::max);
+        let most = |means: &[Nearby]| means.iter().map(|mean| mean.square.sqrt()).fold(0.0, f64::max);
+        let (nearby, bend) = (most(&self.nearby), most(&self.bends));
         let (lag, misfit, leaning) = ((self.last - at) * outward, self.square.sqrt(), self.window.weights().leaning);
-        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, leaning })
+        let is_stray = events.iter().any(|event| event.is_stray);
+        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, bend, leaning, is_stray })
     }
 
     /// Answers all rows that wait.
@@ -279,21 +284,4 @@ impl Live {
         }
         Ok(())
     }
-}
-
-/// Counts the misfits of a row's values in a running mean of their squares over so many values, none larger than that.
-fn count(
-    (window, opening): (&Window, Option<&Opening>),
-    events: &[Event],
-    mean: &mut f64,
-    (values, largest): (f64, f64),
-) {
-    let splines = opening.map(Opening::splines);
-    for event in events {
-        window.misfits(event, splines, &mut |misfit| *mean += ((misfit * misfit).min(largest) - *mean) / values);
-    }
-}
-
-pub(super) fn scaled_row((by, factors): &(f64, Vec<f64>), at: f64, values: &[f64]) -> MeasuredRow {
-    MeasuredRow { at: at * by, values: values.iter().zip(factors).map(|(value, factor)| value * factor).collect() }
 }

@@ -4,37 +4,29 @@
 //! every step about the present state; rows of older cells have been turned into a triangle once and for all. What that
 //! triangle says of cells that have left the window is in its later rows already (`triangle/lag.rs`).
 
+mod bends;
+mod tail;
+
 use std::collections::VecDeque;
 
+use super::event::Event;
 use super::evidence::Weights;
 use super::grid::Grid;
+use super::strays::{Strays, Suspect};
 use crate::kernel::GroupKernel;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
-use crate::splines::KINDS;
-use crate::splines::assembly::RIDGE;
 use crate::splines::group::Group;
 use crate::splines::heads::Heads;
-use crate::splines::prior::Prior;
-use crate::splines::rows::Rows;
-use crate::splines::triangle::{Row, Triangle};
+use crate::splines::triangle::Triangle;
+use tail::{Observed, Split};
 
 /// Noise below this share of the data's spread is rounding.
 const ROUNDING: f64 = 1e-5;
 
 /// Largest change of a coefficient in a step, in natural sizes: rows about a state say little of what is farther off.
 const FARTHEST: f64 = 3.0;
-
-/// Something that is asked for at a place: what was measured there, a condition, or an equation.
-#[derive(Clone, Debug)]
-pub(super) struct Event {
-    pub(super) group: usize,
-    /// In the engine's units.
-    pub(super) at: f64,
-    /// Columns of the group there, NaN where nothing was measured.
-    pub(super) columns: Vec<f64>,
-}
 
 /// What a head is at a place, in the engine's units, where that is known.
 pub(super) type Known<'a> = &'a dyn Fn(usize, f64) -> Option<f64>;
@@ -43,6 +35,8 @@ pub(super) type Known<'a> = &'a dyn Fn(usize, f64) -> Option<f64>;
 pub(super) struct Window {
     pub(super) bound: Bound,
     weights: Weights,
+    /// From which place on they hold: rows of older cells had others.
+    weighed_from: f64,
     grid: Grid,
     heads: Heads,
     /// Coefficients.
@@ -62,24 +56,15 @@ pub(super) struct Window {
     /// Whether equations hold up to the end of the newest cell. Where they come with columns they hold up to the last row, and the
     /// newest coefficients may go anywhere.
     reaches_the_end: bool,
+    /// Observations of the tail as the last step saw them.
+    observed: Vec<Observed>,
+    /// Places of rows that may be strays, and are left out for now.
+    aside: Vec<f64>,
     /// Whether a cell has left the tail since the last step.
     has_left: bool,
     kernels: Vec<GroupKernel<f64>>,
     step: Vec<f64>,
     scratch: Vec<f64>,
-}
-
-/// Which rows of a step are wanted: those of the cell that leaves the tail, and those that stay in it.
-struct Split {
-    leaving: Rows,
-    staying: Rows,
-}
-
-impl Split {
-    /// The rows that leave the window, or those that stay.
-    fn at(&mut self, leaves: bool) -> &mut Rows {
-        if leaves { &mut self.leaving } else { &mut self.staying }
-    }
 }
 
 impl Window {
@@ -100,6 +85,7 @@ impl Window {
         let reaches_the_end = schema.groups.iter().all(|group| group.columns.is_empty() || !is_equation(group));
         Self {
             weights,
+            weighed_from: f64::NEG_INFINITY,
             theta: vec![0.0; unknowns],
             reference: vec![0.0; unknowns],
             settled: triangle.clone(),
@@ -108,6 +94,8 @@ impl Window {
             places,
             events: VecDeque::new(),
             reaches_the_end,
+            observed: Vec::new(),
+            aside: Vec::new(),
             has_left: false,
             kernels,
             step: vec![0.0; unknowns],
@@ -125,6 +113,7 @@ impl Window {
     /// Takes over what the evidence of a later part of the record says.
     pub(super) fn weigh(&mut self, weights: Weights) {
         self.weights = weights;
+        self.weighed_from = self.grid.left() + self.grid.tail_start() as f64 * self.grid.width;
     }
 
     pub(super) fn weights(&self) -> &Weights {
@@ -193,7 +182,8 @@ impl Window {
     /// change of a coefficient in the tail, in units of the heads' natural sizes.
     pub(super) fn solve(&mut self, from: usize) -> Result<f64, Fault> {
         let first = self.first(self.grid.tail_start());
-        let Split { mut leaving, mut staying } = self.rows()?;
+        let Split { mut leaving, mut staying, observed } = self.rows()?;
+        self.observed = observed;
         if std::mem::take(&mut self.has_left) {
             leaving.sort();
             self.settled.add_all(leaving.walk());
@@ -223,109 +213,41 @@ impl Window {
         Ok(change)
     }
 
-    /// Rows of the tail, and of the cell before it, about the present state.
-    fn rows(&mut self) -> Result<Split, Fault> {
-        let mut split = Split { leaving: Rows::new(0), staying: Rows::new(0) };
-        let left = self.grid.left();
-        let mut equations = std::mem::take(&mut self.equations);
-        for (at, group) in &mut equations {
-            group.begin_at(&self.places, left);
-            let mut places = (0..self.places.len()).filter_map(|p| Some((p, self.grid.cell_of_equation(p)?)));
-            self.add_group(*at, group, &mut places, &|_, _| true, &mut split)?;
-        }
-        self.equations = equations;
-        let schema = self.bound.problem.scene().schema;
-        for (at, schema) in schema.groups.iter().enumerate() {
-            let own = || self.events.iter().filter(|event| event.group == at);
-            if own().next().is_none() {
-                continue;
+    /// Leaves out the rows of the tail that are strays by the last step, or may be. The next step knows nothing of them.
+    pub(super) fn leave_out_strays(&mut self) -> Strays {
+        let (triangle, step) = (&self.all, &self.step);
+        let suspects = self.observed.iter().map(|observed| {
+            let Observed { at, what, first, slopes, value } = observed;
+            let moved: f64 = slopes.iter().zip(&step[*first..]).map(|(slope, step)| slope * step).sum();
+            Suspect {
+                at: *at,
+                what: *what,
+                off: value + moved,
+                root: triangle.root(*first, slopes, &[]).split_off(*first),
             }
-            let places: Vec<f64> = own().map(|event| event.at - left).collect();
-            let filled = |x: f64| if x.is_nan() { 0.0 } else { x };
-            let column = |column: usize| own().map(|event| filled(event.columns[column])).collect();
-            let columns: Vec<Vec<f64>> = (0..schema.columns.len()).map(column).collect();
-            let mut group = Group::new(schema, self.kernels[at], &self.heads, &places, &columns);
-            group.begin_at(&places, left);
-            let events: Vec<&Event> = own().collect();
-            let is_there = |term: &crate::schema::Term, p: usize| {
-                term.columns.iter().all(|&column| !events[p].columns[column].is_nan())
-            };
-            let cells: Vec<usize> = events.iter().map(|event| self.grid.cell(event.at)).collect();
-            let mut all = cells.into_iter().enumerate();
-            self.add_group(at, &group, &mut all, &is_there, &mut split)?;
-        }
-        self.add_priors(&mut split);
-        Ok(split)
+        });
+        let strays = Strays::among(suspects.collect());
+        self.count(false, |at| strays.found.contains(&at) || strays.aside.contains(&at));
+        self.aside.clone_from(&strays.aside);
+        strays
     }
 
-    /// Adds the rows of a group at those of its places that are in the tail or the cell before it.
-    fn add_group(
-        &self,
-        at: usize,
-        group: &Group,
-        places: &mut dyn Iterator<Item = (usize, usize)>,
-        is_there: &dyn Fn(&crate::schema::Term, usize) -> bool,
-        split: &mut Split,
-    ) -> Result<(), Fault> {
-        let found = group.evaluate(&self.heads, &self.theta, &self.weights.scalars, Some(0));
-        let tail = self.grid.tail_start();
-        for (p, cell) in places.filter(|(_, cell)| cell + 1 >= tail) {
-            for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| is_there(term, p)) {
-                let loss = self.bound.losses[at][number];
-                for row in term.first..term.first + term.rows {
-                    let (misfit, sigma) = (found.row(row, p), self.weights.sigma[at][row]);
-                    if !misfit.is_finite() {
-                        return Err(Fault::residual(format!("{}.{}", group.schema.name, term.name), Some(p)));
-                    }
-                    let factor = loss.weight(misfit / sigma).sqrt() / sigma;
-                    let mut bundle = group.bundle(&self.heads, group.cell(p), 0);
-                    group.add_row(&self.heads, (&found, row, p), &[], factor, &mut bundle);
-                    let out = split.at(cell < tail);
-                    bundle.iter().for_each(|row| out.push(self.about_reference(row), 0));
-                }
-            }
-        }
-        Ok(())
+    /// Takes rows in again of which it was not known whether they are strays.
+    pub(super) fn readmit(&mut self) {
+        let aside = std::mem::take(&mut self.aside);
+        self.count(true, |at| aside.contains(&at));
     }
 
-    /// A row about the present state as one about the reference.
-    fn about_reference<'r>(&self, row: Row<'r>) -> Row<'r> {
-        let unknowns = row.first..row.first + row.slopes.len();
-        let apart = self.reference[unknowns.clone()].iter().zip(&self.theta[unknowns]);
-        let moved: f64 = row.slopes.iter().zip(apart).map(|(slope, (reference, own))| slope * (reference - own)).sum();
-        Row { value: row.value + moved, ..row }
+    /// Whether what was observed at some places of the tail counts.
+    fn count(&mut self, counts: bool, is_there: impl Fn(f64) -> bool) {
+        for event in self.events.iter_mut().filter(|event| is_there(event.at)) {
+            event.is_stray = !counts;
+        }
     }
 
-    /// Rows that keep sources smooth and small, and those that keep coefficients bounded that nothing else speaks of.
-    fn add_priors(&self, split: &mut Split) {
-        let tail = self.grid.tail_start();
-        let mut slopes = Vec::new();
-        for (head, sizes) in self.weights.sizes.iter().enumerate() {
-            let Some((roughness, amplitude)) = *sizes else { continue };
-            let prior = Prior::new(&self.heads.bases[head], KINDS[self.weights.kind]);
-            for (first, factors) in prior.smooth(roughness).filter(|(first, _)| *first >= tail - 1) {
-                let numbers = &self.heads.numbers(head, first)[..prior.width()];
-                let mut value = 0.0;
-                slopes.clear();
-                slopes.resize(numbers[prior.width() - 1] + 1 - numbers[0], 0.0);
-                for (&number, factor) in numbers.iter().zip(&factors) {
-                    slopes[number - numbers[0]] = *factor;
-                    value += factor * self.reference[number];
-                }
-                split.at(first < tail).push(Row { first: numbers[0], slopes: &slopes, shared: &[], value }, 0);
-            }
-            let small = prior.small(amplitude).enumerate().skip(tail - 1);
-            for (first, factor) in small {
-                let number = self.heads.numbers(head, first)[0];
-                let value = factor * self.reference[number];
-                split.at(first < tail).push(Row { first: number, slopes: &[factor], shared: &[], value }, 0);
-            }
-        }
-        let unknowns = self.first(tail - 1)..self.theta.len();
-        for number in unknowns {
-            let value = RIDGE * self.reference[number];
-            split.at(number < self.first(tail)).push(Row { first: number, slopes: &[RIDGE], shared: &[], value }, 0);
-        }
+    /// Up to where it is known which rows are strays.
+    pub(super) fn decided(&self) -> f64 {
+        self.aside.first().copied().unwrap_or(f64::INFINITY)
     }
 
     /// A head at a place of the window in the engine's units, and its standard deviation.
@@ -347,11 +269,8 @@ impl Window {
         let mut group = Group::new(schema, self.kernels[event.group], heads, &place, &columns);
         group.begin_at(&place, zero);
         let found = group.evaluate(heads, theta, &self.weights.scalars, None);
-        let is_there = |column: &usize| !event.columns[*column].is_nan();
-        for (number, term) in schema.terms.iter().enumerate().filter(|(_, term)| term.kind == TermKind::Observation) {
-            if !term.columns.iter().all(is_there) {
-                continue;
-            }
+        let is_observed = |term: &schema::Term| term.kind == TermKind::Observation && event.measures(term);
+        for (number, term) in schema.terms.iter().enumerate().filter(|(_, term)| is_observed(term)) {
             let told = self.weights.noise.of(event.group, number);
             let told = told.map(|noise| noise.deviation.max(ROUNDING * noise.spread));
             for row in term.first..term.first + term.rows {

@@ -1,0 +1,108 @@
+//! The beginning of a record, or of what is left of it: its first rows are solved as a whole, and a window takes over.
+
+use std::collections::VecDeque;
+
+use super::event::Event;
+use super::evidence::Stretch;
+use super::grid::Grid;
+use super::lag::{settled_lag, sought, width};
+use super::met::Nearby;
+use super::opening::Opening;
+use super::record::{Layout, MeasuredRow};
+use super::under_way::{Live, SLACK};
+use super::window::Window;
+use super::{LiveError, Smoothed};
+use crate::problem::Problem;
+
+/// The last rows, of which nothing says yet whether they are strays. What the first rows say does not rest on them.
+const UNTOLD: usize = 3;
+/// Cells that a lag may take.
+const MOST_CELLS: usize = 20_000;
+
+/// What the first rows lead to.
+pub(super) struct Begun {
+    /// Answers of those that have waited long enough.
+    pub(super) answers: Vec<Smoothed>,
+    /// The others under way; nothing where there is a gap among the rows.
+    pub(super) live: Option<Live>,
+    /// Rows behind the gap, in declared units.
+    pub(super) behind: Vec<MeasuredRow>,
+}
+
+impl Begun {
+    /// Finds noise, smoothness and, where it is not given, the lag from rows in declared units, and answers them as a whole, but for the
+    /// last ones, of which later rows tell more: `open` is that stretch over the lag.
+    pub(super) fn with(
+        problem: &Problem,
+        layout: &Layout,
+        mut rows: Vec<MeasuredRow>,
+        (lag, open): (Option<f64>, f64),
+    ) -> Result<Self, LiveError> {
+        layout.mark_strays(&mut rows);
+        let told = if open > 0.0 { rows.len() - UNTOLD } else { rows.len() };
+        let bound = layout.bound(problem, &rows[..told])?;
+        let (stretch, opening) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
+        let stretch = stretch?;
+        let schema = problem.scene().schema;
+        let system = bound.system;
+        let by = system.inward(&schema.coordinates[0].unit);
+        let inward = (by, layout.columns.iter().map(|column| system.inward(&column.unit)).collect::<Vec<_>>());
+        let rows: Vec<MeasuredRow> = rows.iter().map(|row| row.scaled(&inward)).collect();
+        let (start, end) = (rows[0].at, rows[told - 1].at);
+        let width = width(&rows);
+        let sought: Vec<usize> = sought(&bound);
+        let settled = settled_lag(&stretch, &sought, (start, end), width);
+        // Rows that a value says something of.
+        let reach = (settled / width).round() as usize;
+        let lag = match lag {
+            Some(lag) if lag * by > MOST_CELLS as f64 * width => {
+                return Err(LiveError::Lag { lag, most: MOST_CELLS });
+            }
+            Some(lag) => lag * by,
+            None => settled,
+        };
+        let grid = Grid::new(start, width, lag);
+        let mut conditions: Vec<Event> = Vec::new();
+        for (group, declared) in schema.groups.iter().enumerate() {
+            let is_condition = declared.columns.is_empty() && !declared.is_beliefs();
+            if is_condition && !layout.continuous.contains(&group) {
+                let places = bound.coordinates[group].iter();
+                conditions.extend(places.map(|&at| Event::plain(group, at)));
+            }
+        }
+        for &group in &layout.continuous {
+            conditions.extend(grid.beginning().map(|at| Event::plain(group, at)));
+        }
+        conditions.retain(|condition| condition.at >= start - SLACK * width);
+        conditions.sort_by(|a, b| a.at.total_cmp(&b.at));
+        let outward = schema.heads.iter().map(|head| system.outward(&head.unit)).collect();
+        let known = |head: usize, at: f64| (at <= end).then(|| stretch.value(head, at.max(start)));
+        let mut window = Window::new(bound, stretch.weights.clone(), grid, &layout.continuous);
+        window.guess(&known);
+        let mut live = Live {
+            window,
+            opening: opening.map(|opening| opening.until(end - open * lag)),
+            inward,
+            outward,
+            lag,
+            pending: VecDeque::new(),
+            conditions: conditions.into(),
+            last: start,
+            square: 1.0,
+            nearby: [0, reach / 2, reach].map(Nearby::ahead),
+            bends: [0, reach / 2].map(Nearby::ahead),
+            recent: VecDeque::new(),
+            rows: 0,
+            due: 2 * rows.len(),
+            asked: None,
+        };
+        let mut answers = Vec::new();
+        let behind = live.replay(layout, rows, &known, &mut answers)?;
+        if behind.is_empty() {
+            return Ok(Self { answers, live: Some(live), behind });
+        }
+        answers.extend(live.finish());
+        let behind = live.outward(behind.iter());
+        Ok(Self { answers, live: None, behind })
+    }
+}
