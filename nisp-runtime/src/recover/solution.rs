@@ -172,7 +172,7 @@ impl Solution {
     }
 
     /// Values of all heads at points of all groups, `[head][point]` in the engine's units.
-    fn values_over_domain(&self) -> Vec<Vec<f64>> {
+    pub(super) fn values_over_domain(&self) -> Vec<Vec<f64>> {
         /// Points of a group that say how large a head is, at most.
         const MOST: usize = 2000;
         let inputs = self.scene().coordinates.len();
