@@ -92,7 +92,6 @@ on edge boundary of room { columns: normal: vector [1]; tight: dot(grad(u), norm
 /// What grows a hundred million times is not found by equations that hold to a small part of their largest value.
 #[test]
 fn what_grows_is_not_called_right() {
-    let place = Place::new();
     let text = "units: off;
 coordinates: x, t: time;
 fields: u;
@@ -101,12 +100,11 @@ on inside in rod { balance: d(u, t) == 0.01 * d(u, x, 2) + 20 * u; }
 on ends boundary of rod { held: u == 0; }
 on begin start of rod { first: u == 1e-6 * sin(3.141592653589793 * x); }
 ";
-    let (code, report) = solved(&place, text);
-    assert_eq!(code, Some(3), "{}", report["verdict"]);
     let grown = |t: f64| 1e-6 * ((20.0 - 0.01 * std::f64::consts::PI.powi(2)) * t).exp();
-    let off =
-        |row: &Vec<f64>| (row[2] - grown(row[1]) * (std::f64::consts::PI * row[0]).sin()).abs() > 0.1 * grown(1.0);
-    assert!(place.rows("out/state.csv").iter().any(off), "the answer is right, and is not called so");
+    let exact = |x: f64, t: f64| grown(t) * (std::f64::consts::PI * x).sin();
+    let (is_right, off) = called_right(text, "--budget 10", exact);
+    assert!(!is_right, "{off}");
+    assert!(off > 0.1 * grown(1.0), "the answer is right, and is not called so");
 }
 
 /// Solves a text whose closed form is known: whether it is called right, and how far it is off at the worst place.
@@ -136,10 +134,10 @@ on begin start of rod { first: u == s; }
     assert!(off < 5e-3 || !is_right, "{off}");
 }
 
-/// A corner where the slope has no bound, and a shock a thousandth wide: a network leaves little of either equation in the mean.
+/// A corner where the slope has no bound: a network leaves little of the equation in the mean.
 #[test]
-fn a_network_that_misses_a_corner_or_a_shock_is_doubted() {
-    let corner = "units: off;
+fn a_network_that_misses_a_corner_is_doubted() {
+    let text = "units: off;
 coordinates: x, y;
 fields: u;
 domains: room = box(-1 .. 1, -1 .. 1) minus box(0 .. 1.1, -1.1 .. 0);
@@ -152,19 +150,7 @@ on edge boundary of room { held: u == (x^2 + y^2 + 1e-20)^(1 / 3) * sin(2 / 3 * 
         let angle = if angle < -1e-9 { angle + std::f64::consts::TAU } else { angle };
         (x * x + y * y).cbrt() * (2.0 / 3.0 * angle).sin()
     };
-    let (is_right, off) = called_right(corner, "--carrier network --budget 4", potential);
-    assert!(off < 5e-3 || !is_right, "{off}");
-    let shock = "units: off;
-coordinates: x, t: time;
-fields: u;
-domains: rod = -1 .. 1 times 0 .. 1;
-let s = 0.4 - 0.5 * tanh(0.25 * (x - 0.4 * t) / 0.002);
-on inside in rod { balance: d(u, t) + u * d(u, x) == 0.002 * d(u, x, 2); }
-on ends boundary of rod { held: u == s; }
-on begin start of rod { first: u == s; }
-";
-    let step = |x: f64, t: f64| 0.4 - 0.5 * (0.25 * (x - 0.4 * t) / 0.002).tanh();
-    let (is_right, off) = called_right(shock, "--carrier network --budget 4", step);
+    let (is_right, off) = called_right(text, "--carrier network --budget 10", potential);
     assert!(off < 5e-3 || !is_right, "{off}");
 }
 
@@ -181,15 +167,16 @@ on ends boundary of pipe { columns: normal: vector [1]; outlet: (1 + normal[0]) 
 on begin start of pipe { clean: u == 0; }
 ";
     place.put("equation.pde", text);
-    let ran = place.run("solve equation.pde --carrier splines --budget 20 --json --out out");
+    // So many steps end on the first lattice.
+    let ran = place.run("solve equation.pde --carrier splines --iterations 12 --json --out out");
     let report: Value = serde_json::from_str(&ran.stdout).unwrap();
     let checks = report["verdict"].as_array().unwrap();
     let failed = |name: &str| checks.iter().find(|check| check["check"] == name && check["passed"] == false);
     assert!(ran.code == Some(3) && failed("refined").is_some(), "{}", report["verdict"]);
-    // The maximum principle bounds what the right condition would give by one.
-    let largest = place.rows("out/state.csv").iter().fold(0.0, |most: f64, row| most.max(row[2].abs()));
-    let message = failed("amplified").map_or("", |check| check["message"].as_str().unwrap());
-    assert!(largest < 100.0 || message.contains("stands at the wrong end"), "{largest}: {}", report["verdict"]);
+    // The maximum principle bounds what a condition at the inlet would give by one.
+    assert!(place.rows("out/state.csv").iter().any(|row| row[2].abs() > 500.0));
+    let amplified = failed("amplified").unwrap_or_else(|| panic!("{}", report["verdict"]));
+    assert!(amplified["message"].as_str().unwrap().contains("stands at the wrong end"), "{amplified}");
 }
 
 /// A peak that is next to nothing at the edge is determined by its value there, however small that is.

@@ -10,6 +10,7 @@ mod changes;
 mod freedom;
 mod judged;
 mod meshes;
+mod places;
 mod prior;
 mod run;
 mod solver;
@@ -164,25 +165,28 @@ fn finish(
     let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
     let mut warnings = Vec::new();
     let is_noisy = noise.is_there(bound.problem.scene().schema);
-    // Only a minimum has error bars.
-    let wants_bars = status == Status::Converged && is_noisy;
+    let schema = bound.problem.scene().schema;
+    let sources = || (0..schema.heads.len()).filter(|&head| schema.heads[head].source);
+    // Only a minimum has error bars. Of a source exact measurements leave as much open as noisy ones where there are few.
+    let is_open = is_noisy || solver.is_measured() && sources().next().is_some();
+    let wants_bars = status == Status::Converged && is_open;
     let (draws, beyond) = if wants_bars && clock.has_time(BARS * longest) {
         solver.doubted(&state).unwrap_or_default()
     } else {
-        if is_noisy && matches!(status, Status::Converged | Status::Budget) {
+        if is_open && matches!(status, Status::Converged | Status::Budget) {
             warnings.push(Warning::no_bars());
         }
         Default::default()
     };
-    let sources = bound.problem.scene().schema.heads.iter().enumerate();
-    warnings.extend(sources.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
+    let heads = schema.heads.iter().enumerate();
+    warnings.extend(heads.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
     if !solver.is_measured() {
         let is_resolved = status != Status::NotConverged && solver.strain(&state, noise) < 1.0;
         warnings.extend(solver.undetermined(&state, is_resolved));
     }
     // What a finer lattice has hardly changed, another one will not. Where nothing is measured such a change tells all.
-    let is_open = solver.is_measured() && status == Status::Budget && changes.last() > SAME;
-    let strain = is_open.then(|| solver.strain(&state, noise));
+    let may_change = solver.is_measured() && status == Status::Budget && changes.last() > SAME;
+    let strain = may_change.then(|| solver.strain(&state, noise));
     solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
     answer.strain = strain;
@@ -197,6 +201,7 @@ fn finish(
     }
     let State { theta, learned, step: iterations, .. } = state;
     let mut kept = KeptLattices { heads: solver.heads, theta, learned, draws };
+    sources().for_each(|head| kept.widen(head, places::widened(bound, head)));
     // What the cells cannot hold tells no source from none.
     answer.told = told::told(bound, &kept);
     kept.draws.widen(&beyond);
