@@ -18,7 +18,7 @@ const BALANCE: f64 = 0.2;
 const PART: f64 = 0.03;
 /// The same, of equations and of conditions, where nothing is measured and nothing is sought, and no finer cells tell how far the answer
 /// is off: what is left of the equations is all that does. Where finer cells do, equations are held to what conditions are.
-const STRICT: f64 = 1e-3;
+const STRICT: f64 = 3e-4;
 /// Parts over their natural size below which an equation is at rest, and what is left of it is rounding.
 const REST: f64 = 1e-4;
 /// A source smaller than this share of an equation's largest part, or of its own natural size, counts as so large: next to
