@@ -7,6 +7,7 @@ mod common;
 mod contact;
 mod contract;
 mod eval;
+mod few_places;
 mod folders;
 mod forward;
 mod gaps;

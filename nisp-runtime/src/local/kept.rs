@@ -39,6 +39,12 @@ impl KeptLattices {
         Self { heads: heads.clone(), theta: theta.clone(), learned: learned.clone(), draws }
     }
 
+    /// Multiplies the deviations of a head.
+    pub(super) fn widen(&mut self, head: usize, times: f64) {
+        let own = self.heads.first[head]..self.heads.first[head + 1];
+        self.draws.coefficients.iter_mut().for_each(|draw| draw[own.clone()].iter_mut().for_each(|x| *x *= times));
+    }
+
     /// Values of a head at points in the engine's units, flat.
     pub(crate) fn evaluate(&self, head: usize, points: &[f64]) -> Vec<f64> {
         self.heads.values(head, points, &self.theta)

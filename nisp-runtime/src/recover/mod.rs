@@ -7,6 +7,7 @@ mod bars;
 mod carried;
 mod checkpoint;
 mod choice;
+mod compared;
 mod course;
 mod layers;
 mod misfits;
@@ -183,6 +184,7 @@ fn solve(
             let is_witness = attempt.carrier.is_witness();
             let solved = attempt.carrier.solve(bound, settings, course)?;
             let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
+            let solution = solution.compared(first.as_ref());
             let contradicts = is_witness && solution.verdict.contradicts();
             let is_over = solution.is_clear() || contradicts || solution.status == Status::Interrupted;
             // Where nothing is measured, what is left of the equations tells all.

@@ -110,6 +110,8 @@ impl Solution {
 
     /// Judges the answer by what is left of the problem, and calls it by its name.
     fn judged(mut self) -> Self {
+        /// Size of a source in its deviations above which exact data leave nothing open of it.
+        const PLAIN: f64 = 100.0;
         let noise = noise::estimate(&self.bound);
         let values = self.values_over_domain();
         let answer = self.carried.answer(&self.bound);
@@ -121,7 +123,7 @@ impl Solution {
             }
         }
         self.verdict.checks.extend(self.left_open());
-        self.is_met_exactly = self.meets_data_exactly(&noise);
+        self.is_met_exactly = self.meets_data_exactly(&noise) && answer.told.iter().all(|told| told.size > PLAIN);
         match (self.status, self.verdict.passed()) {
             (Status::Budget, true) if self.is_met_exactly && self.has_room() => self.status = Status::Converged,
             (Status::Converged, false) => self.status = Status::Inconsistent,
@@ -172,7 +174,7 @@ impl Solution {
     }
 
     /// Values of all heads at points of all groups, `[head][point]` in the engine's units.
-    fn values_over_domain(&self) -> Vec<Vec<f64>> {
+    pub(super) fn values_over_domain(&self) -> Vec<Vec<f64>> {
         /// Points of a group that say how large a head is, at most.
         const MOST: usize = 2000;
         let inputs = self.scene().coordinates.len();

@@ -16,6 +16,11 @@ const SOURCE: f64 = 0.3;
 const BALANCE: f64 = 0.2;
 /// Residual of a condition over its target, or over what the same quantity is elsewhere.
 const PART: f64 = 0.03;
+/// The same, of equations and of conditions, where nothing is measured and nothing is sought, and no finer cells tell how far the answer
+/// is off: what is left of the equations is all that does. Where finer cells do, equations are held to what conditions are.
+const STRICT: f64 = 3e-4;
+/// Parts over their natural size below which an equation is at rest, and what is left of it is rounding.
+const REST: f64 = 1e-4;
 /// A source smaller than this share of an equation's largest part, or of its own natural size, counts as so large: next to
 /// nothing acts.
 const NOTHING: f64 = 0.05;
@@ -61,6 +66,8 @@ struct Judged<'a> {
     sizes: &'a Sizes,
     scalars: &'a [f64],
     finer: &'static str,
+    /// The largest residual of a balance without a source, over its largest part.
+    balance: f64,
 }
 
 /// Checks of the equations and conditions of a group.
@@ -71,12 +78,20 @@ pub(super) fn checks(
     programs: &dyn Programs<f64>,
     (sizes, answer): (&Sizes, &Answer),
 ) -> Vec<Check> {
-    let schema = &bound.problem.scene().schema.groups[group];
-    let judged = Judged { bound, schema, facts, programs, sizes, scalars: &answer.scalars, finer: answer.finer };
+    let scene = bound.problem.scene().schema;
+    let schema = &scene.groups[group];
+    let is_strict = scene.observed().is_empty() && scene.heads.iter().all(|head| !head.source);
+    let balance = match (is_strict, answer.refined) {
+        (false, _) => BALANCE,
+        (true, Some(_)) => PART,
+        (true, None) => STRICT,
+    };
+    let (scalars, finer) = (&answer.scalars, answer.finer);
+    let judged = Judged { bound, schema, facts, programs, sizes, scalars, finer, balance };
     let mut checks = Vec::new();
-    for term in schema.terms {
+    for (term, natural) in schema.terms.iter().zip(&bound.sizes[group]) {
         match term.kind {
-            TermKind::Residual => checks.extend(judged.residual(term, rows)),
+            TermKind::Residual => checks.extend(judged.residual((term, *natural), rows)),
             TermKind::Integral => checks.extend(judged.sums(group, term)),
             _ => {}
         }
@@ -85,7 +100,7 @@ pub(super) fn checks(
 }
 
 impl Judged<'_> {
-    fn residual(&self, term: &'static Term, rows: &[Vec<f64>]) -> Vec<Check> {
+    fn residual(&self, (term, natural): (&'static Term, f64), rows: &[Vec<f64>]) -> Vec<Check> {
         let name = self.schema.name;
         let outward = self.bound.system.outward(&term.unit);
         let unit = term.unit.behind();
@@ -102,7 +117,10 @@ impl Judged<'_> {
                 let kind = if condition { "condition" } else { "equation" };
                 match parts.source {
                     Some(source) if !condition => (kind, source.max(NOTHING * parts.largest), SOURCE, "its source"),
-                    _ => (kind, parts.largest, if parts.stated { PART } else { BALANCE }, "its largest part"),
+                    _ => {
+                        let limit = if parts.stated { PART.min(self.balance) } else { self.balance };
+                        (kind, parts.largest.max(REST * natural), limit, "its largest part")
+                    }
                 }
             };
             let value = if rms == 0.0 { 0.0 } else { rms / scale };

@@ -4,6 +4,7 @@
 //! ignored or the equations do not describe the data. The checks here see only what the answer leaves of every equation,
 //! condition, observation and cloud, whatever carries the answer and whatever found it.
 
+mod amplified;
 mod clouds;
 mod equations;
 mod gathered;
@@ -36,7 +37,8 @@ const FIRM: f64 = 0.25;
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
     /// `rhythm`, `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
-    /// `leaning` or `range`.
+    /// `leaning`, `refined`, `amplified`,
+    /// `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,
@@ -66,16 +68,20 @@ impl Verdict {
     }
 
     /// True where an answer holds its equations firmly and misses the data: these equations do not describe the data, and another
-    /// answer could only fit them by bending the equations. Or where it holds them firmly and finer cells change it: another answer that
-    /// holds them is no better. Also where the data leave a source or a learned scalar open: so does
-    /// any other answer.
+    /// answer could only fit them by bending the equations. Also where the data leave a source or a learned scalar open: so does any
+    /// other answer.
     pub(crate) fn contradicts(&self) -> bool {
         if self.failed().any(|check| matches!(check.check, "determined" | "leaning")) {
             return true;
         }
-        let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm" | "refined");
+        let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");
+        self.failed().any(misses) && self.is_firm()
+    }
+
+    /// True where an answer holds its equations firmly.
+    pub(crate) fn is_firm(&self) -> bool {
         let mut equations = self.checks.iter().filter(|check| check.check == "equation");
-        self.failed().any(misses) && equations.all(|check| check.value <= FIRM * check.limit)
+        equations.all(|check| check.value <= FIRM * check.limit)
     }
 
     /// By how much a check is missed, at most.
@@ -115,17 +121,22 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         // Equations hold between their points as well.
         for (_, facts) in answer.between.iter().filter(|(of, _)| *of == at) {
             let rows = facts.rows(programs, group, &answer.scalars);
-            let between = equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer));
-            let fails = |own: &Check| {
-                checks.iter().any(|check| !check.passed && (check.group, check.term) == (own.group, own.term))
-            };
-            let failed: Vec<Check> = between.into_iter().filter(|check| !check.passed && !fails(check)).collect();
-            checks.extend(failed);
+            for between in equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer)) {
+                let place = (between.check, between.group, between.term);
+                match checks.iter_mut().find(|check| (check.check, check.group, check.term) == place) {
+                    Some(check) if between.value > check.value => *check = between,
+                    Some(_) => {}
+                    None => checks.push(between),
+                }
+            }
         }
         checks.extend(observations::checks(bound, at, (&rows, noise), answer.finer));
     }
     checks.extend(outside::checks(bound));
-    checks.extend(settled::checks(bound, answer));
+    let settled = settled::checks(bound, answer);
+    let is_off = settled.iter().any(|check| check.check == "refined" && !check.passed);
+    checks.extend(if is_off { amplified::checks(bound, answer, values) } else { Vec::new() });
+    checks.extend(settled);
     checks.extend(told::checks(bound, &answer.told));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));
@@ -146,6 +157,18 @@ pub(crate) fn patches(name: &'static str, values: &[f64], level: f64) -> Check {
         100.0 * share
     );
     Check::new("patch", ("", name), (share, LARGEST), said)
+}
+
+/// Whether another carrier's answer, found by itself, is the same but for a share `apart` of the range.
+pub(crate) fn agreed(apart: f64) -> Check {
+    /// What two answers may differ by, each of them a little off.
+    const SAME: f64 = 1e-2;
+    let said = format!(
+        "splines and a network hold the equations, and their answers are {:.1} % of the range apart: a small error grows along the \
+         equations; give conditions that hold it where it grows, a larger budget, or more points (--points)",
+        100.0 * apart
+    );
+    Check::new("agreed", ("", ""), (apart, SAME), said)
 }
 
 /// That equations and conditions without data leave nothing open; `open` says what they do.

@@ -10,8 +10,10 @@ const NEAR: f64 = 1e-2;
 const MOVED: f64 = 0.1;
 /// How far cells may hold an answer back.
 const STRAINED: f64 = 1.0;
-/// How much the last finer cells may have changed an answer without noise.
+/// How much the last finer cells may have changed an answer to exact measurements.
 const REFINED: f64 = 0.05;
+/// How far the cells may hold an answer back for which nothing was measured, as a share of its range.
+const HELD_BACK: f64 = 2e-3;
 
 /// The checks of an answer whose steps did not come to their end; none of one whose did.
 pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
@@ -28,18 +30,25 @@ pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
         let said = format!("the run ended while {said}: give a larger budget, or more iterations");
         Check::new("settled", ("", ""), (value, limit), said)
     };
-    ahead.into_iter().chain(moved).chain(strain).map(check).chain(refined(answer)).collect()
+    ahead.into_iter().chain(moved).chain(strain).map(check).chain(refined(bound, answer)).collect()
 }
 
 /// Whether a finer lattice still changed an answer without noise.
-fn refined(answer: &Answer) -> Option<Check> {
+fn refined(bound: &Bound, answer: &Answer) -> Option<Check> {
     let refined = answer.refined?;
+    let (limit, said) = match (bound.problem.scene().schema.observed().is_empty(), refined.is_finite()) {
+        (false, _) => (REFINED, format!("finer cells changed the answer by {:.0} %", 100.0 * refined)),
+        (true, true) => (
+            HELD_BACK,
+            format!("yet finer cells would change the answer by about {:.2} % of its range", 100.0 * refined),
+        ),
+        (true, false) => (HELD_BACK, "the run ended before finer cells told how far the answer is off".into()),
+    };
     let said = format!(
-        "finer cells changed the answer by {:.0} %: a small error grows along the equations, or the answer has layers thinner than \
-         cells; give more points (--points), or conditions that hold it where it grows",
-        100.0 * refined
+        "{said}: it has layers or corners thinner than cells, or a small error grows along the equations; give a larger budget, more \
+         points (--points), or conditions that hold it where it grows"
     );
-    Some(Check::new("refined", ("", ""), (refined, REFINED), said))
+    Some(Check::new("refined", ("", ""), (refined.min(1.0), limit), said))
 }
 
 /// The check that fails where the budget ended an answer before its steps did, after another carrier had failed.

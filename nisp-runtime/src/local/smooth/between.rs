@@ -28,11 +28,14 @@ const PICKED: u64 = 2;
 const MEASURED: usize = 2;
 
 /// How many points an equation is asked at before it is known whether these are enough. A source of all coordinates may be
-/// anything between the given ones.
+/// anything between the given ones. Where nothing is measured two lattices tell how far an answer is off, so that the first is coarser.
 pub(super) fn first(bound: &Bound) -> usize {
     let schema = bound.problem.scene().schema;
     let is_of_all = |head: usize| schema.heads[head].source && axes(schema, head).len() == schema.coordinates.len();
     let given = largest(bound).map_or(0, |at| count(bound, at));
+    if schema.observed().is_empty() {
+        return ENOUGH / 2;
+    }
     if (0..schema.heads.len()).any(is_of_all) { given } else { given.max(ENOUGH) }
 }
 
@@ -114,11 +117,22 @@ fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
         (high - low).max(f64::MIN_POSITIVE)
     };
     let widths: Vec<f64> = (0..inputs).map(width).collect();
+    let scaled: Vec<f64> = points.iter().zip(widths.iter().cycle()).map(|(x, width)| x / width).collect();
     // The nearest along every coordinate, either way, and how far it is: rows of points may lie close, and far apart from each other.
     let nearest = |at: usize| {
         let mut nearest = vec![(f64::INFINITY, at); 2 * inputs];
         let mut away = vec![0.0; inputs];
-        for other in (0..count).filter(|&other| other != at) {
+        // How far the farthest of them is: most points are farther, but for rounding.
+        let mut reach = f64::INFINITY;
+        let from = &scaled[at * inputs..][..inputs];
+        for (other, place) in scaled.chunks_exact(inputs).enumerate() {
+            let mut about = 0.0;
+            for axis in 0..inputs {
+                about += (place[axis] - from[axis]) * (place[axis] - from[axis]);
+            }
+            if other == at || about > reach {
+                continue;
+            }
             for (axis, away) in away.iter_mut().enumerate() {
                 *away = (point(other)[axis] - point(at)[axis]) / widths[axis];
             }
@@ -128,6 +142,7 @@ fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
                 let place = &mut nearest[2 * axis + usize::from(*away > 0.0)];
                 *place = if apart < place.0 { (apart, other) } else { *place };
             }
+            reach = nearest.iter().map(|(apart, _)| apart * (1.0 + 1e-9)).fold(0.0, f64::max);
         }
         nearest
     };

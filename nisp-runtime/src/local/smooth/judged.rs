@@ -10,7 +10,7 @@ use crate::local::misfits::Misfits;
 use crate::noise::{Noise, ObservationNoise};
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
-use crate::solve::vector::root_mean_square;
+use crate::solve::vector::{farthest, root_mean_square};
 
 /// Equations that are left over by this much beside their tolerance are held back by the cells of the lattice.
 const TENSE: f64 = 0.2;
@@ -96,15 +96,21 @@ impl Solver<'_> {
     }
 
     /// How far an answer is from one on another lattice, at most: heads at the points of equations and data over their size, or learned
-    /// scalars.
+    /// scalars. Where nothing is measured heads count wherever they differ most, over their range, also at places that neither was asked
+    /// at.
     pub(super) fn apart(&self, state: &State, other: &Solver<'_>, before: &State) -> f64 {
         let schema = self.schema();
         let of = |head: usize| {
             let seen = schema.groups.iter().zip(&self.bound.coordinates);
             let points = seen.filter(|(group, _)| group.jets.iter().any(|jet| jet.head == head));
-            let points: Vec<f64> = points.flat_map(|(_, points)| points.iter().copied()).collect();
+            let between =
+                self.others.iter().filter(|_| !self.is_measured()).map(|(at, others)| &others.coordinates[*at]);
+            let points: Vec<f64> = points.map(|(_, points)| points).chain(between).flatten().copied().collect();
             let (own, others) =
                 (self.heads.values(head, &points, &state.theta), other.heads.values(head, &points, &before.theta));
+            if !self.is_measured() {
+                return farthest(&own, &others, self.heads.scale[head]);
+            }
             let change = root_mean_square(own.iter().zip(&others).map(|(a, b)| a - b));
             if change > 0.0 { change / root_mean_square(own) } else { 0.0 }
         };

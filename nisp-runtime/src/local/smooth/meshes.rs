@@ -32,8 +32,8 @@ pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
 }
 
 /// The lattices of all heads, over cells as fine as the points of the equations can tell; and how many cells these are along
-/// every coordinate.
-pub(super) fn lattices(bound: &Bound) -> (Vec<Lattice>, Vec<usize>) {
+/// every coordinate. Where nothing is measured cells are no finer than `most` points can tell: coarser ones come first.
+pub(super) fn lattices(bound: &Bound, most: usize) -> (Vec<Lattice>, Vec<usize>) {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
     let degrees: Vec<usize> = (0..schema.heads.len()).map(|head| degree(schema, head).unwrap_or(0)).collect();
@@ -42,6 +42,7 @@ pub(super) fn lattices(bound: &Bound) -> (Vec<Lattice>, Vec<usize>) {
         |group: &schema::Group| group.order > 0 && group.terms.iter().any(|term| term.kind == TermKind::Residual);
     let groups = schema.groups.iter().zip(&bound.coordinates).filter(|(group, _)| is_equation(group));
     let points = groups.map(|(_, points)| points.len() / inputs).max().unwrap_or(0);
+    let points = if schema.observed().is_empty() { points.min(most) } else { points };
     let functions = |lattice: &Lattice| lattice.cells.iter().map(|n| (n + highest) as f64).product::<f64>();
     let meshes = (1..=MOST_CELLS).map(|cells| base(bound, cells, 0));
     let resolved = |mesh: &Lattice| POINTS * functions(mesh) <= points as f64;

@@ -6,9 +6,11 @@
 
 mod between;
 mod bounded;
+mod changes;
 mod freedom;
 mod judged;
 mod meshes;
+mod places;
 mod prior;
 mod run;
 mod solver;
@@ -22,6 +24,7 @@ mod unmeasured;
 use std::time::Instant;
 
 pub(crate) use between::others;
+use changes::Changes;
 use judged::{FAR, MISSED};
 
 use super::{KeptLattices, LocalError, LocalSolution, refuse};
@@ -51,10 +54,12 @@ const MORE: usize = 2;
 const EASED: f64 = 0.9;
 /// Finer lattices that may not help, one after the other, where measurements are missed by far.
 const PATIENCE: usize = 2;
-/// Strain below which one lattice is enough for an answer without noise.
+/// Strain below which one lattice is enough for an answer to exact measurements.
 const EXACT: f64 = 0.01;
 /// Change of sources, fields and learned scalars from a lattice to a finer one, as a share, below which they are the same.
 const SAME: f64 = 0.01;
+/// How far the cells of a lattice may hold back an answer for which nothing was measured, as a share of its range: finer ones follow.
+const NEAR: f64 = 1e-3;
 /// How much longer a finer lattice takes at least. Where it does not end within the budget, nothing is lost but time.
 const SLOWER: f64 = 1.0;
 
@@ -91,7 +96,8 @@ pub(crate) fn solve(
     let mut run = Run::go(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     let (mut strain, mut idle) = (f64::INFINITY, 0);
-    let mut change = Change::default();
+    let is_measured = solver.is_measured();
+    let mut changes = Changes::default();
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
         let missed = solver.missed(&run.state, noise);
@@ -100,7 +106,10 @@ pub(crate) fn solve(
         let patience = if is_missed || !is_noisy { PATIENCE } else { 1 };
         idle = if strain > EASED * before { idle + 1 } else { 0 };
         // Small errors may grow along an equation. Without noise a finer lattice tells how far an answer is off.
-        let is_seen = is_noisy || change.last < SAME || strain < EXACT && change.taken.is_none();
+        let is_seen = match is_measured {
+            true => is_noisy || changes.last() < SAME || strain < EXACT && changes.taken().is_none(),
+            false => changes.off() < NEAR,
+        };
         if strain < 1.0 && is_seen || idle >= patience {
             break;
         }
@@ -125,12 +134,9 @@ pub(crate) fn solve(
         let first = State { classes, ..first };
         let Ok(found) = Run::go(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
         // Steps on a finer lattice begin anew: where they agree with the coarser answer, that is no matter of where they began.
-        change.last = finer.apart(&found.state, &solver, &run.state);
+        changes.add(finer.apart(&found.state, &solver, &run.state), found.status == Status::Converged);
         match found.status {
-            Status::Converged => {
-                change.taken = Some(change.last);
-                (solver, run, points) = (finer, found, more);
-            }
+            Status::Converged => (solver, run, points) = (finer, found, more),
             Status::NotConverged => break,
             status => {
                 // If the last lattice did not help, this one's answer stands without the next.
@@ -140,21 +146,7 @@ pub(crate) fn solve(
             }
         }
     }
-    finish(bound, solver, run, noise, (&clock, change))
-}
-
-/// How much finer lattices changed the answer.
-struct Change {
-    /// The last one, whether its steps came to their end or not.
-    last: f64,
-    /// The one that has the answer; nothing if it is the first.
-    taken: Option<f64>,
-}
-
-impl Default for Change {
-    fn default() -> Self {
-        Self { last: f64::INFINITY, taken: None }
-    }
+    finish(bound, solver, run, noise, (&clock, &changes))
 }
 
 /// Points of the largest equation in a saved state.
@@ -168,34 +160,38 @@ fn finish(
     mut solver: Solver<'_>,
     run: Run,
     noise: &Noise,
-    (clock, change): (&Clock, Change),
+    (clock, changes): (&Clock, &Changes),
 ) -> Result<LocalSolution, LocalError> {
     let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
     let mut warnings = Vec::new();
     let is_noisy = noise.is_there(bound.problem.scene().schema);
-    // Only a minimum has error bars.
-    let wants_bars = status == Status::Converged && is_noisy;
+    let schema = bound.problem.scene().schema;
+    let sources = || (0..schema.heads.len()).filter(|&head| schema.heads[head].source);
+    // Only a minimum has error bars. Of a source exact measurements leave as much open as noisy ones where there are few.
+    let is_open = is_noisy || solver.is_measured() && sources().next().is_some();
+    let wants_bars = status == Status::Converged && is_open;
     let (draws, beyond) = if wants_bars && clock.has_time(BARS * longest) {
         solver.doubted(&state).unwrap_or_default()
     } else {
-        if is_noisy && matches!(status, Status::Converged | Status::Budget) {
+        if is_open && matches!(status, Status::Converged | Status::Budget) {
             warnings.push(Warning::no_bars());
         }
         Default::default()
     };
-    let sources = bound.problem.scene().schema.heads.iter().enumerate();
-    warnings.extend(sources.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
-    if bound.problem.scene().schema.observed().is_empty() && clock.has_time(longest) {
-        warnings.extend(solver.undetermined(&state, status == Status::Converged));
+    let heads = schema.heads.iter().enumerate();
+    warnings.extend(heads.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
+    if !solver.is_measured() {
+        let is_resolved = status != Status::NotConverged && solver.strain(&state, noise) < 1.0;
+        warnings.extend(solver.undetermined(&state, is_resolved));
     }
-    // What a finer lattice has hardly changed, another one will not.
-    let is_open = status == Status::Budget && change.last > SAME;
-    let strain = is_open.then(|| solver.strain(&state, noise));
+    // What a finer lattice has hardly changed, another one will not. Where nothing is measured such a change tells all.
+    let may_change = solver.is_measured() && status == Status::Budget && changes.last() > SAME;
+    let strain = may_change.then(|| solver.strain(&state, noise));
     solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
     answer.strain = strain;
     // Noise may fall differently on other cells; without it they are all that changes an answer.
-    answer.refined = change.taken.filter(|_| !is_noisy);
+    answer.refined = if solver.is_measured() { changes.taken().filter(|_| !is_noisy) } else { Some(changes.off()) };
     if status != Status::Converged {
         (answer.ahead, answer.moved) = (Some(ahead), Some(moved));
     }
@@ -205,6 +201,7 @@ fn finish(
     }
     let State { theta, learned, step: iterations, .. } = state;
     let mut kept = KeptLattices { heads: solver.heads, theta, learned, draws };
+    sources().for_each(|head| kept.widen(head, places::widened(bound, head)));
     // What the cells cannot hold tells no source from none.
     answer.told = told::told(bound, &kept);
     kept.draws.widen(&beyond);

@@ -74,7 +74,7 @@ impl<'a> Solver<'a> {
         let few = few.map_or(Cow::Borrowed(problem), Cow::Owned);
         let bound = filled(&few, points).map_or(few, Cow::Owned);
         let schema = bound.problem.scene().schema;
-        let (lattices, cells) = lattices(&bound);
+        let (lattices, cells) = lattices(&bound, points);
         let heads = Heads::new(&bound, lattices);
         let groups = groups(&bound, &heads);
         let cell = heads.lattices.iter().flat_map(|own| (0..own.dimensions()).map(|axis| own.spacing(axis)));
@@ -108,6 +108,11 @@ impl<'a> Solver<'a> {
             scalars,
             tolerance,
         })
+    }
+
+    /// False of a problem that equations and conditions alone solve.
+    pub(super) fn is_measured(&self) -> bool {
+        !self.schema().observed().is_empty()
     }
 
     pub(super) fn schema(&self) -> &'static schema::Scene {

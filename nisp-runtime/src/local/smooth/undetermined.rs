@@ -28,21 +28,20 @@ impl Solver<'_> {
     pub(super) fn undetermined(&mut self, state: &State, is_resolved: bool) -> Vec<Warning> {
         // Beside strict equations rounding would be stiffer than that.
         let loose = State { tolerance: LOOSE, ..state.clone() };
-        // Terms of what is at rest have no size.
+        // Terms of what is at rest have no size but their natural one, which is smaller where all fields are.
+        let share = self.share_of_natural(state);
         let terms = self.schema().groups.iter().zip(&self.bound.sizes);
         for (own, (term, natural)) in self.sizes.iter_mut().zip(terms.map(|(group, natural)| (group.terms, natural))) {
             for (term, natural) in term.iter().zip(natural) {
                 let rows = own[term.first..term.first + term.rows].iter_mut();
-                rows.filter(|size| **size < ZERO * natural).for_each(|size| *size = *natural);
+                rows.filter(|size| **size < ZERO * natural).for_each(|size| *size = share * natural);
             }
         }
         self.set_sigmas(&loose);
         let Some([deviations, stiffer]) = self.lifted(&loose) else { return Vec::new() };
         let (schema, inputs) = (self.schema(), self.schema().coordinates.len());
-        let points: Vec<f64> =
-            self.bound.coordinates.iter().max_by_key(|points| points.len()).cloned().unwrap_or_default();
-        let step = (points.len() / inputs).div_ceil(MOST).max(1);
-        let points: Vec<&[f64]> = points.chunks_exact(inputs).step_by(step).collect();
+        let points = self.some_points();
+        let points: Vec<&[f64]> = points.chunks_exact(inputs).collect();
         let open = |(head, declared): (usize, &schema::Head)| {
             let of = |draws: &Deviations| -> Vec<f64> {
                 let deviation = |point: &&[f64]| root_mean_square(self.heads.drawn(head, point, &draws.coefficients));
@@ -50,9 +49,7 @@ impl Solver<'_> {
             };
             let [deviations, stiffer] = [of(&deviations), of(&stiffer)];
             let [soft, stiff] = [&deviations, &stiffer].map(|all| root_mean_square(all.iter().copied()));
-            let size = root_mean_square(self.heads.values(head, &points.concat(), &state.theta));
-            let natural = self.heads.scale[head];
-            let size = if size > ZERO * natural { size } else { natural };
+            let size = self.size_of(state, head, &points.concat());
             let is_large = is_resolved && soft > OPEN * size;
             if !is_large && soft <= FALL * stiff {
                 return None;
@@ -69,6 +66,28 @@ impl Solver<'_> {
             Some(Warning { kind: WarningKind::Undetermined, message })
         };
         schema.heads.iter().enumerate().filter_map(open).collect()
+    }
+
+    /// Some points of the largest group, flat.
+    fn some_points(&self) -> Vec<f64> {
+        let inputs = self.schema().coordinates.len();
+        let largest = self.bound.coordinates.iter().max_by_key(|points| points.len());
+        let points = largest.map_or(&[][..], |points| points.as_slice());
+        let step = (points.len() / inputs).div_ceil(MOST).max(1);
+        points.chunks_exact(inputs).step_by(step).flatten().copied().collect()
+    }
+
+    /// Size of a head at points; its natural one where it is zero.
+    fn size_of(&self, state: &State, head: usize, points: &[f64]) -> f64 {
+        let (size, natural) = (root_mean_square(self.heads.values(head, points, &state.theta)), self.heads.scale[head]);
+        if size > ZERO * natural { size } else { natural }
+    }
+
+    /// Size of all heads beside their natural ones, at most.
+    fn share_of_natural(&self, state: &State) -> f64 {
+        let points = self.some_points();
+        let share = |head: usize| self.size_of(state, head, &points) / self.heads.scale[head];
+        (0..self.schema().heads.len()).map(share).fold(0.0, f64::max).min(1.0)
     }
 
     /// Deviations of all unknowns about a state, with little stiffness of their own and with more of it.

@@ -1,0 +1,73 @@
+//! How far a source may be from what few places of measurement say of it. How much it varies along a coordinate is itself found from
+//! the places along it: two probes in a rod say next to nothing of what it does between them.
+
+use crate::local::meshes::axes;
+use crate::problem::Bound;
+use crate::schema::{self, TermKind};
+
+/// Places along a coordinate that are closer than this share of the domain count as one.
+const APART: f64 = 1e-2;
+
+/// What deviations of a source are multiplied by: Student's quantiles are so much larger than the normal ones, for as many places as
+/// its data have along the coordinate of its own along which they have fewest.
+pub(super) fn widened(bound: &Bound, head: usize) -> f64 {
+    let along = axes(bound.problem.scene().schema, head);
+    let fewest = along.iter().map(|&axis| places(bound, axis)).min();
+    fewest.map_or(1.0, |places| student(places.max(1) as f64))
+}
+
+/// Places along a coordinate at which anything is measured.
+fn places(bound: &Bound, axis: usize) -> usize {
+    let schema = bound.problem.scene().schema;
+    let inputs = schema.coordinates.len();
+    let measures = |group: &schema::Group| {
+        group.terms.iter().any(|term| matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. }))
+    };
+    let of = |points: &Vec<f64>| points.iter().skip(axis).step_by(inputs).copied().collect::<Vec<f64>>();
+    let groups = || schema.groups.iter().zip(&bound.coordinates);
+    let mut measured: Vec<f64> =
+        groups().filter(|(group, _)| measures(group)).flat_map(|(_, points)| of(points)).collect();
+    let all = groups().flat_map(|(_, points)| of(points));
+    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (x.min(low), x.max(high)));
+    measured.sort_by(f64::total_cmp);
+    let mut last = f64::NEG_INFINITY;
+    let is_new = |x: &f64| {
+        let is_new = x - last > APART * (high - low);
+        last = if is_new { *x } else { last };
+        is_new
+    };
+    measured.into_iter().filter(is_new).count()
+}
+
+/// Student's quantile of 97.5 %, of so many degrees of freedom, over the normal one: exact for one and two, within two per cent for more
+/// (the first terms of its expansion in powers of the normal quantile).
+fn student(freedoms: f64) -> f64 {
+    const NORMAL: f64 = 1.959_964;
+    if freedoms < 2.0 {
+        return 12.7062 / NORMAL;
+    }
+    if freedoms < 3.0 {
+        return 4.302_65 / NORMAL;
+    }
+    let square = NORMAL * NORMAL;
+    let first = (square + 1.0) / 4.0;
+    let second = (5.0 * square * square + 16.0 * square + 3.0) / 96.0;
+    let third = (3.0 * square.powi(3) + 19.0 * square * square + 17.0 * square - 15.0) / 384.0;
+    1.0 + first / freedoms + second / freedoms.powi(2) + third / freedoms.powi(3)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::student;
+
+    /// Tables of Student's distribution.
+    #[test]
+    fn quantiles_are_those_of_tables() {
+        for (freedoms, quantile) in
+            [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (5.0, 2.571), (8.0, 2.306), (30.0, 2.042)]
+        {
+            let found = student(freedoms) * 1.96;
+            assert!((found / quantile - 1.0).abs() < 0.02, "{freedoms}: {found} for {quantile}");
+        }
+    }
+}
