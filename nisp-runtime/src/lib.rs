@@ -35,6 +35,7 @@ pub mod simd;
 pub mod solve;
 mod splines;
 mod start;
+mod student;
 mod tolerance;
 pub mod values;
 pub mod verdict;

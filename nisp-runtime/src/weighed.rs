@@ -198,32 +198,3 @@ impl Class {
         if step.is_finite() { step } else { 0.0 }
     }
 }
-
-/// How much longer error bars are where the noise is an estimate from so many rows: two deviations cover what two of a normal
-/// distribution do (Student 1908; Abramowitz and Stegun 26.7.5).
-pub(crate) fn longer(rows: f64) -> f64 {
-    const TWO: f64 = 2.0;
-    let powers = |coefficients: &[f64]| coefficients.iter().rev().fold(0.0, |sum, c| sum * TWO * TWO + c) * TWO;
-    let series =
-        [powers(&[1.0, 1.0]) / 4.0, powers(&[3.0, 16.0, 5.0]) / 96.0, powers(&[-15.0, 17.0, 19.0, 3.0]) / 384.0];
-    let more: f64 = series.iter().rev().fold(0.0, |sum, term| (sum + term) / rows.max(1.0));
-    1.0 + more / TWO
-}
-
-#[cfg(test)]
-mod tests {
-    use super::longer;
-
-    /// Quantiles of Student's distribution at the normal one's of two deviations, .977250, by its closed forms for two and four
-    /// degrees of freedom; and the limit of many.
-    #[test]
-    fn bars_are_as_long_as_student_has_them() {
-        let p: f64 = 0.977_249_868_051_820_8;
-        let two = (2.0 * p - 1.0) * (2.0 / (4.0 * p * (1.0 - p))).sqrt();
-        let root = (4.0 * p * (1.0 - p)).sqrt();
-        let four = 2.0 * ((root.acos() / 3.0).cos() / root - 1.0).sqrt();
-        assert!((2.0 * longer(2.0) / two - 1.0).abs() < 0.05, "{} {two}", longer(2.0));
-        assert!((2.0 * longer(4.0) / four - 1.0).abs() < 0.01, "{} {four}", longer(4.0));
-        assert!((longer(1e9) - 1.0).abs() < 1e-8);
-    }
-}

@@ -15,7 +15,7 @@ use crate::splines;
 const MANY: usize = 5000;
 
 /// Share of the budget that a lattice may take where a network can be tried after it.
-const FIRST: f64 = 0.4;
+const FIRST: f64 = 0.5;
 
 /// Which carrier: the only place that tells them apart.
 #[derive(Clone, Copy, PartialEq)]

@@ -222,8 +222,8 @@ fn limits(settings: &Settings) -> Limits {
     Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() }
 }
 
-/// True where enough of the budget is left for another start.
+/// True where enough of the budget is left for another start: a third.
 fn has_time_again(settings: &Settings, start: Instant) -> bool {
     let elapsed = start.elapsed();
-    settings.iterations.is_none() && settings.budget.is_some_and(|budget| 2 * elapsed < budget)
+    settings.iterations.is_none() && settings.budget.is_some_and(|budget| 3 * elapsed < 2 * budget)
 }

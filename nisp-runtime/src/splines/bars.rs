@@ -8,7 +8,7 @@ use super::solver::Solver;
 use super::told::{Along, told};
 use crate::facts::Told;
 use crate::solve::fault::Fault;
-use crate::weighed::longer;
+use crate::student;
 
 /// What every kind of smoothness says that the evidence does not rule out.
 pub(super) struct Bars {
@@ -41,7 +41,7 @@ impl Bars {
                 continue;
             };
             if let Some(rows) = found.noisy {
-                found.covariance.multiply(longer(rows).powi(2));
+                found.covariance.multiply(student::longer(rows).powi(2));
             }
             unresolved.push(solver.unresolved(&state, &found.covariance));
             for ((open, mean), left) in open.iter_mut().zip(&rows[count..]).zip(&own[count..]) {

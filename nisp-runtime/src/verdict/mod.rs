@@ -37,8 +37,7 @@ const FIRM: f64 = 0.25;
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
     /// `rhythm`, `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
-    /// `leaning`, `refined`, `amplified`,
-    /// `agreed` or `range`.
+    /// `leaning`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,
@@ -159,16 +158,18 @@ pub(crate) fn patches(name: &'static str, values: &[f64], level: f64) -> Check {
     Check::new("patch", ("", name), (share, LARGEST), said)
 }
 
-/// Whether another carrier's answer, found by itself, is the same but for a share `apart` of the range.
-pub(crate) fn agreed(apart: f64) -> Check {
+/// Whether another carrier's answer, found by itself and `off` by itself, is the same but for a share `apart` of the range.
+pub(crate) fn agreed(apart: f64, off: f64) -> Check {
     /// What two answers may differ by, each of them a little off.
     const SAME: f64 = 1e-2;
+    /// By how much more one may be off than finer cells say.
+    const DOUBT: f64 = 2.0;
     let said = format!(
         "splines and a network hold the equations, and their answers are {:.1} % of the range apart: a small error grows along the \
-         equations; give conditions that hold it where it grows, a larger budget, or more points (--points)",
+         equations; give conditions that hold it where it grows, or a larger --budget",
         100.0 * apart
     );
-    Check::new("agreed", ("", ""), (apart, SAME), said)
+    Check::new("agreed", ("", ""), (apart, SAME.max(DOUBT * off)), said)
 }
 
 /// That equations and conditions without data leave nothing open; `open` says what they do.

@@ -4,6 +4,7 @@
 use crate::local::meshes::axes;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
+use crate::student;
 
 /// Places along a coordinate that are closer than this share of the domain count as one.
 const APART: f64 = 1e-2;
@@ -13,7 +14,7 @@ const APART: f64 = 1e-2;
 pub(super) fn widened(bound: &Bound, head: usize) -> f64 {
     let along = axes(bound.problem.scene().schema, head);
     let fewest = along.iter().map(|&axis| places(bound, axis)).min();
-    fewest.map_or(1.0, |places| student(places.max(1) as f64))
+    fewest.map_or(1.0, |places| student::longer(places.max(1) as f64))
 }
 
 /// Places along a coordinate at which anything is measured.
@@ -37,37 +38,4 @@ fn places(bound: &Bound, axis: usize) -> usize {
         is_new
     };
     measured.into_iter().filter(is_new).count()
-}
-
-/// Student's quantile of 97.5 %, of so many degrees of freedom, over the normal one: exact for one and two, within two per cent for more
-/// (the first terms of its expansion in powers of the normal quantile).
-fn student(freedoms: f64) -> f64 {
-    const NORMAL: f64 = 1.959_964;
-    if freedoms < 2.0 {
-        return 12.7062 / NORMAL;
-    }
-    if freedoms < 3.0 {
-        return 4.302_65 / NORMAL;
-    }
-    let square = NORMAL * NORMAL;
-    let first = (square + 1.0) / 4.0;
-    let second = (5.0 * square * square + 16.0 * square + 3.0) / 96.0;
-    let third = (3.0 * square.powi(3) + 19.0 * square * square + 17.0 * square - 15.0) / 384.0;
-    1.0 + first / freedoms + second / freedoms.powi(2) + third / freedoms.powi(3)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::student;
-
-    /// Tables of Student's distribution.
-    #[test]
-    fn quantiles_are_those_of_tables() {
-        for (freedoms, quantile) in
-            [(1.0, 12.706), (2.0, 4.303), (3.0, 3.182), (5.0, 2.571), (8.0, 2.306), (30.0, 2.042)]
-        {
-            let found = student(freedoms) * 1.96;
-            assert!((found / quantile - 1.0).abs() < 0.02, "{freedoms}: {found} for {quantile}");
-        }
-    }
 }
