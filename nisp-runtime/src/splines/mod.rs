@@ -47,7 +47,7 @@ use crate::solve::fault::Fault;
 use crate::solve::state;
 
 use bars::Bars;
-use prior::{Course, KINDS};
+use prior::{Course, HIGHEST_NOISY, KINDS, Smoothness};
 pub(crate) use triangle::Triangle;
 
 use course::Run;
@@ -128,7 +128,7 @@ pub(crate) fn solve(
     let schema = bound.problem.scene().schema;
     let first = solver.first(noise);
     let asleep = solver.asleep(&first);
-    let mut place = Place::first(first, kinds(solver.has_sources(), cells::stretches(bound)));
+    let mut place = Place::first(first, kinds(solver.has_sources(), cells::stretches(bound), noise.is_exact()));
     let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY, ahead: f64::INFINITY };
     let begun = |saved: &&state::State| saved.indices("kinds").is_ok();
     match (from.filter(begun), cells::middle(bound, &breakpoints)) {
@@ -137,7 +137,7 @@ pub(crate) fn solve(
         (None, Some(middle)) => {
             let part = cells::part(bound, middle);
             let mut solver = Solver::over(&part, middle);
-            let mut trial = Place::first(solver.first(noise), kinds(solver.has_sources(), false));
+            let mut trial = Place::first(solver.first(noise), kinds(solver.has_sources(), false, noise.is_exact()));
             // A run that ends here begins anew.
             let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
             if run.go(&mut solver, &mut trial, &save)? == Status::Converged
@@ -157,7 +157,7 @@ pub(crate) fn solve(
     if status == Status::Converged
         && let Some(again) = solver.again(noise, &place)
     {
-        place.again(again, kinds(true, cells::stretches(bound)));
+        place.again(again, kinds(true, cells::stretches(bound), noise.is_exact()));
         // Where the second start does not end, the first has.
         let ended = run.go(&mut solver, &mut place, &Place::save)?;
         status = if ended == Status::Interrupted { ended } else { status };
@@ -237,10 +237,13 @@ pub(crate) fn solve(
 }
 
 /// Kinds of smoothness that are tried.
-fn kinds(has_sources: bool, stretches: bool) -> Vec<usize> {
-    match (has_sources, stretches) {
-        (false, _) => vec![0],
-        (true, false) => (0..KINDS.len()).filter(|&kind| KINDS[kind].course == Course::Steady).collect(),
-        (true, true) => (0..KINDS.len()).collect(),
+fn kinds(has_sources: bool, stretches: bool, is_exact: bool) -> Vec<usize> {
+    if !has_sources {
+        return vec![0];
     }
+    let is_tried = |kind: &usize| {
+        let Smoothness { order, course } = KINDS[*kind];
+        (stretches || course == Course::Steady) && (is_exact || order <= HIGHEST_NOISY)
+    };
+    (0..KINDS.len()).filter(is_tried).collect()
 }

@@ -2,7 +2,7 @@
 
 use super::METHOD;
 use super::iterate::{Phase, State};
-use super::prior::{Course, KINDS, VERY_SMOOTH};
+use super::prior::{Course, KINDS};
 use crate::solve::fault::Fault;
 use crate::solve::state;
 
@@ -103,7 +103,7 @@ impl Place {
     }
 
     /// Keeps the iterate, unless another start of its kind has ended with more evidence, and turns to the next kind. A course that
-    /// the evidence rules out is not tried with other orders, and very smooth sources are tried only where rougher ones are ruled out.
+    /// the evidence rules out is not tried with other orders.
     pub(super) fn next(&mut self, evidence: f64) {
         let kind = self.kinds.remove(0);
         let is_less = |tried: &Tried| tried.kind == kind && tried.evidence >= evidence;
@@ -118,8 +118,7 @@ impl Place {
         self.kinds.retain(|&kind| {
             let is_alike = |tried: &&Tried| KINDS[tried.kind].course == KINDS[kind].course;
             let own = most(&mut tried.iter().filter(is_alike));
-            let is_likely = own.is_nan() || own >= best - NEAR;
-            is_likely && (KINDS[kind].order < VERY_SMOOTH || is_smooth(tried.iter().filter(is_alike)))
+            own.is_nan() || own >= best - NEAR
         });
     }
 
@@ -192,10 +191,4 @@ impl Place {
         self.phase = if saved.counter("phase")? == 1 { Phase::Solve } else { Phase::Regress };
         Ok(())
     }
-}
-
-/// True unless a kind other than the smoothest of those that were tried may be the right one.
-fn is_smooth<'a>(tried: impl Iterator<Item = &'a Tried> + Clone) -> bool {
-    let Some(smoothest) = tried.clone().max_by_key(|tried| KINDS[tried.kind].order) else { return true };
-    tried.filter(|tried| tried.kind != smoothest.kind).all(|tried| tried.evidence < smoothest.evidence - NEAR)
 }

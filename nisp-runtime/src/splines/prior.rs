@@ -43,15 +43,14 @@ pub(super) struct Smoothness {
     pub(super) course: Course,
 }
 
-/// Kinds of smoothness that may be the right one, the first tried first. The last is for sources that are smooth beyond doubt, as
-/// data without noise can tell.
+/// Kinds of smoothness that may be the right one, the first tried first.
 pub(super) const KINDS: [Smoothness; 7] = {
     use Course::{Fading, Steady};
     [of(2, Steady), of(2, Fading), of(1, Steady), of(3, Steady), of(1, Fading), of(3, Fading), of(5, Steady)]
 };
 
-/// Orders from this on are tried only where the evidence rules out all lower ones but the next.
-pub(super) const VERY_SMOOTH: usize = 4;
+/// The highest order that noisy data are asked about. Of ends they say the less the higher the order is.
+pub(super) const HIGHEST_NOISY: usize = 3;
 
 const fn of(order: usize, course: Course) -> Smoothness {
     Smoothness { order, course }

@@ -47,7 +47,7 @@ impl Stretch {
         let noise = noise::estimate(bound);
         let breakpoints = cells::breakpoints(bound, &noise);
         let mut solver = Solver::over(bound, &breakpoints);
-        let kinds = from.map_or_else(|| kinds(solver.has_sources(), false), |from| vec![from.kind]);
+        let kinds = from.map_or_else(|| kinds(solver.has_sources(), false, false), |from| vec![from.kind]);
         let mut place = Place::first(solver.first(&noise), kinds);
         if let Some(from) = from {
             place.state.classes.clone_from(&from.classes);
