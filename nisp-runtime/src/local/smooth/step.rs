@@ -17,7 +17,7 @@ use crate::local::unseen::Unseen;
 use crate::loss::deviation_of_clean;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
-use crate::solve::vector::{dot, root_mean_square};
+use crate::solve::vector::root_mean_square;
 use crate::tolerance;
 use crate::weighed::{Tally, renew};
 
@@ -35,8 +35,6 @@ const PROBES: usize = 16;
 /// What a source is of the order of where no cloud saw it, beside its size where one did, or its natural one: patches carry twice as
 /// much.
 const LIKELY: f64 = 0.5;
-/// How far what a step leaves may be from what its linear model said, beside what it took, for the equations to be linear.
-const LINEAR: f64 = 1e-6;
 /// A step is halved so often until it leads downhill, and so often until equations have a value where it leads.
 const HALVINGS: u32 = 8;
 const MOST_HALVINGS: u32 = 40;
@@ -164,14 +162,13 @@ impl Solver<'_> {
         self.add_all(state, &rows);
         let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
         let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
-        let expected = 0.5 * (dot(&self.normal.gradient, &step) + dot(&self.normal.border_gradient, &shared));
         let tallies =
             self.tallies(state, &rows, (&step, &shared), (&factor, &unmeasured)).ok_or(LocalError::Factorisation)?;
         let (step, shared) = self.within_bounds(state, (step, shared));
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
         let mut next = state.clone();
         next.unmeasured = unmeasured;
-        let (mut gain, mut is_linear) = (f64::INFINITY, false);
+        let mut gain = f64::INFINITY;
         for halvings in 0..MOST_HALVINGS {
             next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
             next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
@@ -179,7 +176,6 @@ impl Solver<'_> {
             let is_less = after <= loss * (1.0 + 1e-9) + 1e-12;
             if after.is_finite() && (is_less || halvings + 1 >= HALVINGS) {
                 gain = if halvings == 0 { (loss - after).abs() } else { f64::INFINITY };
-                is_linear = share == 1.0 && (after - loss - expected).abs() < LINEAR * expected.abs();
                 break;
             }
             share *= 0.5;
@@ -196,9 +192,7 @@ impl Solver<'_> {
         };
         renew(&mut next.classes, &tallies, is_held);
         if state.phase.has_equations() {
-            // Strict equations that are linear leave steps as much room as loose ones.
-            let after = tolerance::after(state.tolerance, share, self.tolerance);
-            next.tolerance = if is_linear { self.tolerance } else { after };
+            next.tolerance = tolerance::after(state.tolerance, share, self.tolerance);
         }
         (next.step, next.since) = (state.step + 1, state.since + 1);
         let moved = self.heads.moved(self.schema(), &state.theta, &next.theta);
