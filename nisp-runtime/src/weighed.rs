@@ -30,8 +30,8 @@ pub(crate) struct Guess {
     pub(crate) size: f64,
     /// Worth as much as so many rows.
     pub(crate) count: f64,
-    /// True where it is worth less and less the more rows are left over, and nothing beside [`ENOUGH`] times its own: no source can
-    /// have followed what they say.
+    /// True where no source can have followed the rows that are left over. The more of these there are, the less the guess is worth:
+    /// nothing from [`ENOUGH`] times its count on.
     pub(crate) yields: bool,
     /// No size is smaller.
     pub(crate) least: f64,

@@ -5,9 +5,6 @@ use crate::solve::driver::Status;
 use crate::solve::vector::farthest;
 use crate::verdict::agreed;
 
-/// Share of the range from which on an answer is too far off by itself to say anything of another.
-const NO_WITNESS: f64 = 0.25;
-
 impl Solution {
     /// Judged by another answer, too, where nothing is measured: if that one holds the equations firmly, and has failed all the same,
     /// small errors may grow along the equations, and what is left of them says little. It may be off by what finer cells would change.
@@ -15,9 +12,6 @@ impl Solution {
         let is_measured = !self.scene().observed().is_empty();
         let Some(other) = other.filter(|other| !is_measured && other.verdict.is_firm()) else { return self };
         let off = other.verdict.checks.iter().find(|check| check.check == "refined").map_or(0.0, |check| check.value);
-        if off > NO_WITNESS {
-            return self;
-        }
         let (ours, theirs) = (self.values_over_domain(), other.values_over_domain());
         let natural = |head: usize| self.bound.head_scale(head);
         let apart = |head: usize| farthest(&ours[head], &theirs[head], natural(head));

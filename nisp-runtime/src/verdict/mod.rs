@@ -162,14 +162,15 @@ pub(crate) fn patches(name: &'static str, values: &[f64], level: f64) -> Check {
 pub(crate) fn agreed(apart: f64, off: f64) -> Check {
     /// What two answers may differ by, each of them a little off.
     const SAME: f64 = 1e-2;
-    /// By how much more one may be off than finer cells say.
+    /// By how much more one may be off than finer cells say, and how far off it may be at most to be followed.
     const DOUBT: f64 = 2.0;
+    const MOST: f64 = 0.1;
     let said = format!(
         "splines and a network hold the equations, and their answers are {:.1} % of the range apart: a small error grows along the \
          equations; give conditions that hold it where it grows, or a larger --budget",
         100.0 * apart
     );
-    Check::new("agreed", ("", ""), (apart, SAME.max(DOUBT * off)), said)
+    Check::new("agreed", ("", ""), (apart, (DOUBT * off).clamp(SAME, MOST)), said)
 }
 
 /// That equations and conditions without data leave nothing open; `open` says what they do.
