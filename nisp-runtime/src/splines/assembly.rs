@@ -124,16 +124,10 @@ impl Solver<'_> {
         for head in self.believed(phase) {
             let (prior, class) = (&self.priors[head], self.roughness[head]);
             for (first, factors) in prior.smooth(state.classes[class].size) {
-                let numbers = &self.heads.numbers(head, first)[..prior.width()];
-                let mut value = 0.0;
-                slopes.clear();
-                slopes.resize(numbers[prior.width() - 1] + 1 - numbers[0], 0.0);
-                for (&number, factor) in numbers.iter().zip(&factors) {
-                    slopes[number - numbers[0]] = *factor;
-                    value += factor * state.theta[number];
-                }
+                let (number, value) =
+                    self.heads.row_of((head, first), &factors[..prior.width()], &state.theta, &mut slopes);
                 cost += 0.5 * value * value;
-                take(Row { first: numbers[0], slopes: &slopes, shared: &none, value }, class);
+                take(Row { first: number, slopes: &slopes, shared: &none, value }, class);
             }
             let Some(class) = self.amplitude[head] else { continue };
             for (&number, factor) in self.heads.numbers(head, 0).iter().zip(prior.small(state.classes[class].size)) {

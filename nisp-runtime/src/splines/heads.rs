@@ -70,6 +70,26 @@ impl Heads {
         self.numbers.iter().map(Vec::len).sum()
     }
 
+    /// A row over a head's coefficients from one on as a row of all unknowns: its first unknown and its value. `slopes` receives what the
+    /// unknowns from there on are multiplied by.
+    pub(super) fn row_of(
+        &self,
+        (head, first): (usize, usize),
+        factors: &[f64],
+        theta: &[f64],
+        slopes: &mut Vec<f64>,
+    ) -> (usize, f64) {
+        let numbers = &self.numbers(head, first)[..factors.len()];
+        slopes.clear();
+        slopes.resize(numbers[factors.len() - 1] + 1 - numbers[0], 0.0);
+        let mut value = 0.0;
+        for (&number, factor) in numbers.iter().zip(factors) {
+            slopes[number - numbers[0]] = *factor;
+            value += factor * theta[number];
+        }
+        (numbers[0], value)
+    }
+
     /// Numbers of a head's coefficients from one of its functions on; they increase.
     pub(super) fn numbers(&self, head: usize, from: usize) -> &[usize] {
         &self.numbers[head][from..]

@@ -131,15 +131,9 @@ impl Window {
             let Some((roughness, amplitude)) = *sizes else { continue };
             let prior = Prior::new(&self.heads.bases[head], KINDS[self.weights.kind]);
             for (first, factors) in prior.smooth(roughness).filter(|(first, _)| *first >= tail - 1) {
-                let numbers = &self.heads.numbers(head, first)[..prior.width()];
-                let mut value = 0.0;
-                slopes.clear();
-                slopes.resize(numbers[prior.width() - 1] + 1 - numbers[0], 0.0);
-                for (&number, factor) in numbers.iter().zip(&factors) {
-                    slopes[number - numbers[0]] = *factor;
-                    value += factor * self.reference[number];
-                }
-                split.at(first < tail).push(Row { first: numbers[0], slopes: &slopes, shared: &[], value }, 0);
+                let (number, value) =
+                    self.heads.row_of((head, first), &factors[..prior.width()], &self.reference, &mut slopes);
+                split.at(first < tail).push(Row { first: number, slopes: &slopes, shared: &[], value }, 0);
             }
             let small = prior.small(amplitude).enumerate().skip(tail - 1);
             for (first, factor) in small {
