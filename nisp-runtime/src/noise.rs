@@ -1,9 +1,10 @@
 //! How noisy the data are, before anything is fitted to them.
 
-use std::collections::BTreeMap;
+mod fits;
 
-use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
+use self::fits::{FEW_CLEAN, HALF, by_fits, quantile};
 use crate::facts::spread;
 use crate::problem::Bound;
 use crate::roughness::roughness;
@@ -201,74 +202,13 @@ const RECORD: usize = 12;
 
 /// From records along a coordinate: measurements at places that share all the others.
 fn by_stations(coordinates: &[f64], (inputs, axis): (usize, usize), values: &[f64]) -> Option<f64> {
-    let mut stations: BTreeMap<Vec<u64>, Vec<(f64, f64)>> = BTreeMap::new();
-    for (point, &value) in coordinates.chunks_exact(inputs).zip(values) {
-        let others = (0..inputs).filter(|&other| other != axis).map(|other| point[other].to_bits()).collect();
-        stations.entry(others).or_default().push((point[axis], value));
-    }
-    let long = stations.into_values().filter(|record| record.len() >= RECORD);
-    let records: Vec<Vec<f64>> = long
-        .map(|mut record| {
-            record.sort_by(|a, b| a.0.total_cmp(&b.0));
-            record.into_iter().map(|(_, value)| value).collect()
-        })
-        .collect();
+    let place = |at: usize| &coordinates[at * inputs..][..inputs];
+    let others = |at: usize| place(at).iter().enumerate().filter(|&(other, _)| other != axis).map(|(_, x)| x.to_bits());
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    order.par_sort_by(|&a, &b| others(a).cmp(others(b)).then(place(a)[axis].total_cmp(&place(b)[axis])));
+    let long = order.chunk_by(|&a, &b| others(a).eq(others(b))).filter(|record| record.len() >= RECORD);
+    let records = long.map(|record| record.iter().map(|&at| values[at]).collect()).collect();
     by_records(records)
-}
-
-/// Places that are looked at where there are several coordinates.
-const PLACES: usize = 300;
-
-/// A share of fits, and the standard normal number that has this share below it.
-type Quantile = (f64, f64);
-
-/// The median.
-const HALF: Quantile = (0.5, 0.0);
-/// Where outliers are expected, few fits have none among their values.
-const FEW_CLEAN: Quantile = (0.1, -1.281_551_57);
-
-/// From quadratic fits to the values around some of the places: what the fit at a quantile leaves over.
-fn by_fits(coordinates: &[f64], inputs: usize, values: &[f64], (share, deviate): Quantile) -> Option<f64> {
-    let unknowns = (inputs + 1) * (inputs + 2) / 2;
-    // As many left over as fitted.
-    let neighbours = 2 * unknowns;
-    if values.len() < neighbours {
-        return None;
-    }
-    let point = |at: usize| &coordinates[at * inputs..][..inputs];
-    let left = (0..values.len()).step_by(values.len().div_ceil(PLACES)).filter_map(|centre| {
-        let distance = |at: usize| point(at).iter().zip(point(centre)).map(|(a, b)| (a - b).powi(2)).sum::<f64>();
-        let mut near: Vec<(f64, usize)> = (0..values.len()).map(|at| (distance(at), at)).collect();
-        near.select_nth_unstable_by(neighbours - 1, |a, b| a.0.total_cmp(&b.0));
-        near.truncate(neighbours);
-        let reach = near.iter().map(|(square, _)| square.sqrt()).fold(f64::MIN_POSITIVE, f64::max);
-        let rows = near.iter().flat_map(|&(_, at)| {
-            let away: Vec<f64> = point(at).iter().zip(point(centre)).map(|(a, b)| (a - b) / reach).collect();
-            monomials(&away)
-        });
-        let design = DMatrix::from_row_iterator(neighbours, unknowns, rows);
-        let data = DVector::from_iterator(neighbours, near.iter().map(|&(_, at)| values[at]));
-        let fit = design.clone().svd(true, true).solve(&data, 1e-10).ok()?;
-        Some((data - design * fit).norm_squared() / unknowns as f64)
-    });
-    // The quantile of chi^2 over its degrees of freedom (Wilson and Hilferty 1931).
-    let part = 2.0 / (9.0 * unknowns as f64);
-    let expected = (1.0 - part + deviate * part.sqrt()).powi(3);
-    Some((quantile(left.collect(), share)? / expected).sqrt())
-}
-
-/// Products of at most two of the numbers.
-fn monomials(x: &[f64]) -> Vec<f64> {
-    let linear = std::iter::once(1.0).chain(x.iter().copied());
-    let squares = (0..x.len()).flat_map(|i| (i..x.len()).map(move |j| x[i] * x[j]));
-    linear.chain(squares).collect()
-}
-
-/// Nothing where there are too few to mean anything.
-fn quantile(mut values: Vec<f64>, share: f64) -> Option<f64> {
-    const FEW: usize = 8;
-    values.sort_by(f64::total_cmp);
-    (values.len() >= FEW).then(|| values[(share * values.len() as f64) as usize])
 }
 
 fn median(values: Vec<f64>) -> Option<f64> {
@@ -289,23 +229,6 @@ mod tests {
         assert!((found / 0.03 - 1.0).abs() < 0.1, "{found}");
         let smooth: Vec<f64> = (0..200).map(|i| (i as f64 * 0.2).sin()).collect();
         assert!(by_differences(&smooth).unwrap() < 1e-7);
-    }
-
-    #[test]
-    fn fits_see_the_noise_and_not_the_slope() {
-        let mut random = StdRng::seed_from_u64(1);
-        let mut uniform = || random.random::<f64>();
-        let coordinates: Vec<f64> = (0..4000).map(|_| uniform()).collect();
-        let smooth: Vec<f64> = coordinates.chunks_exact(2).map(|p| 3.0 * p[0] + (2.0 * p[1]).sin()).collect();
-        assert!(by_fits(&coordinates, 2, &smooth, HALF).unwrap() < 1e-4);
-        let noisy: Vec<f64> = smooth.iter().map(|y| y + 0.03 * normal(&mut random)).collect();
-        for quantile in [HALF, FEW_CLEAN] {
-            let found = by_fits(&coordinates, 2, &noisy, quantile).unwrap();
-            assert!((found / 0.03 - 1.0).abs() < 0.1, "{found}");
-        }
-        let dirty: Vec<f64> = noisy.iter().enumerate().map(|(i, y)| if i % 10 == 3 { y + 2.0 } else { *y }).collect();
-        let found = by_fits(&coordinates, 2, &dirty, FEW_CLEAN).unwrap();
-        assert!((0.7..1.6).contains(&(found / 0.03)), "{found}");
     }
 
     #[test]

@@ -7,9 +7,8 @@
 
 use rayon::prelude::*;
 
-use super::block::{Block, Layout};
 use super::heads::Heads;
-use super::lattice::{Exponents, Lattice, Span};
+use super::lattice::{Exponents, Lattice};
 use super::rows::Evaluated;
 use super::sites::Sites;
 use super::testing::{Test, tests};
@@ -17,6 +16,9 @@ use crate::bounds::Across;
 use crate::kernel::GroupKernel;
 use crate::loss::Loss;
 use crate::schema::{self, TermKind};
+
+/// Points whose rows are linearised together.
+pub(super) const BATCH: usize = 4096;
 
 /// A group at its points.
 pub(super) struct Group {
@@ -31,13 +33,15 @@ pub(super) struct Group {
     /// By row: derivatives of that divisor's logarithm by the learned scalars; empty if it goes with none.
     pub(super) growth: Vec<Vec<f64>>,
     /// By row: how its misfit counts, and what that is multiplied by (which its divisor has in it).
-    losses: Vec<(Loss, f64)>,
+    pub(super) losses: Vec<(Loss, f64)>,
     /// Weights of the points; empty if each has rows of its own.
     pub(super) weights: Vec<f64>,
     /// What weighted points are tested with, their points cell by cell.
-    tests: Vec<Test>,
+    pub(super) tests: Vec<Test>,
     /// Degree of the tests.
-    degree: usize,
+    pub(super) degree: usize,
+    /// All points; cell by cell where they are too many to be linearised together.
+    pub(super) order: Vec<u32>,
     /// By head, the highest derivative that the group reads; nothing of those that it does not read.
     pub(super) highest: Vec<Option<u8>>,
 }
@@ -69,9 +73,12 @@ impl Group {
         }
         let sites = Sites::new(heads, &highest, flat, columns);
         let mut tests = if weights.is_empty() { Vec::new() } else { tests(base, degree, flat, &weights) };
-        let cells = |p: u32| sites.splines.iter().filter_map(move |s| s.places.get(p as usize)).map(|place| place.cell);
         for test in &mut tests {
-            test.points.sort_by(|&(p, _), &(q, _)| cells(p).cmp(cells(q)));
+            test.points.sort_by(|&(p, _), &(q, _)| sites.cells(p).cmp(sites.cells(q)));
+        }
+        let mut order: Vec<u32> = (0..sites.count as u32).collect();
+        if order.len() > BATCH {
+            order.par_sort_by(|&p, &q| sites.cells(p).cmp(sites.cells(q)));
         }
         let (sigma, growth) = (vec![1.0; schema.rows], vec![Vec::new(); schema.rows]);
         let mut losses = vec![(Loss::Square, 1.0); schema.rows];
@@ -79,7 +86,7 @@ impl Group {
             losses[term.first..term.first + term.rows].fill((*loss, term.weight));
         }
         let towers = Across::all(schema, |head| heads.limits[head].is_some()).unwrap_or_default();
-        Self { schema, kernel, operators, towers, sigma, growth, losses, sites, weights, tests, degree, highest }
+        Self { schema, kernel, operators, towers, sigma, growth, losses, sites, weights, tests, degree, order, highest }
     }
 
     /// Other points than the group's own, without columns.
@@ -130,74 +137,11 @@ impl Group {
         (0..self.sites.count).find(|&p| !evaluated.row(row, p).is_finite())
     }
 
-    /// Rows over their tolerances and their derivatives.
-    pub(super) fn blocks(&self, heads: &Heads, evaluated: &Evaluated, learned: &[f64]) -> Vec<Block> {
-        let rows = self.own_rows();
-        let layout = self.layout(heads, rows.len(), learned.len());
-        if rows.is_empty() {
-            return Vec::new();
-        }
-        let mut records = vec![0.0; self.sites.count * layout.len()];
-        records.par_chunks_exact_mut(layout.len()).enumerate().for_each_init(Vec::new, |across, (p, record)| {
-            for (misfit, &row) in record.iter_mut().zip(&rows) {
-                *misfit = evaluated.row(row, p);
-            }
-            let seed = |at: usize, bar| evaluated.bar(rows[at], bar, p);
-            self.add_slopes(heads, &self.sites, p, (layout, record), learned, seed, across);
-        });
-        let record = |p: usize| &records[p * layout.len()..][..layout.len()];
-        if self.weights.is_empty() {
-            let at_point = |p: usize| {
-                let mut block = Block::of(layout, record(p), self.dofs(heads, |head| self.cell(heads, p, head)));
-                block.divide(rows.iter().map(|&row| self.sigma[row]));
-                self.majorise(&mut block, &rows);
-                block
-            };
-            return (0..self.sites.count).into_par_iter().map(at_point).collect();
-        }
-        let dimensions = heads.lattices[0].dimensions();
-        let tested = |sum: &mut Vec<f64>, test: &Test| {
-            let mut block = Block::new(layout, self.dofs(heads, |head| self.span(heads, test, head)));
-            let cells = |p: u32| self.read().map(move |head| self.sites.splines[head].places[p as usize].cell);
-            for points in test.points.chunk_by(|&(p, _), &(q, _)| cells(p).eq(cells(q))) {
-                sum.clear();
-                sum.resize(layout.len(), 0.0);
-                for &(p, share) in points {
-                    sum.iter_mut().zip(record(p as usize)).for_each(|(sum, value)| *sum += share * value);
-                }
-                let p = points[0].0 as usize;
-                let boxes = self.read().map(|head| (self.cell(heads, p, head), self.span(heads, test, head)));
-                block.add(layout, sum, boxes, dimensions);
-            }
-            block.divide(rows.iter().map(|&row| self.sigma[row] / test.weight));
-            self.majorise(&mut block, &rows);
-            block
-        };
-        self.tests.par_iter().map_init(Vec::new, tested).collect()
-    }
-
     /// Lets misfits count by other losses, by term.
     pub(super) fn set_losses(&mut self, losses: impl Iterator<Item = Loss>) {
         for (term, loss) in self.schema.terms.iter().zip(losses) {
             self.losses[term.first..term.first + term.rows].iter_mut().for_each(|own| own.0 = loss);
         }
-    }
-
-    /// Multiplies rows over their tolerances so that their squares have the slopes of robust losses.
-    fn majorise(&self, block: &mut Block, rows: &[usize]) {
-        let robust = |row: usize| Some(self.losses[row]).filter(|(loss, _)| loss.is_robust());
-        if rows.iter().all(|&row| robust(row).is_none()) {
-            return;
-        }
-        let majorants = rows.iter().zip(&block.misfits).map(|(&row, misfit)| {
-            robust(row).map_or((1.0, 0.0), |(loss, times)| {
-                let (weight, rest) = loss.majorant(misfit / times.sqrt());
-                (weight, 0.5 * times * rest)
-            })
-        });
-        let (weights, excess): (Vec<f64>, Vec<f64>) = majorants.unzip();
-        block.divide(weights.into_iter().map(|weight| weight.sqrt().recip()));
-        block.excess = excess.into_iter().sum();
     }
 
     /// Rows over their tolerances, in the order of [`Group::blocks`].
@@ -234,13 +178,8 @@ impl Group {
     }
 
     /// Heads that the group reads.
-    fn read(&self) -> impl Iterator<Item = usize> + '_ {
+    pub(super) fn read(&self) -> impl Iterator<Item = usize> + '_ {
         (0..self.highest.len()).filter(|&head| self.highest[head].is_some())
-    }
-
-    /// How rows at a point lie in memory.
-    fn layout(&self, heads: &Heads, rows: usize, learned: usize) -> Layout {
-        Layout { rows, learned, width: self.read().map(|head| heads.lattices[head].per_cell()).sum() }
     }
 
     /// What the rows over their tolerances cost, integrals among them.
@@ -281,83 +220,6 @@ impl Group {
         let mut targets = vec![0.0; self.schema.rows];
         self.kernel.programs.target(scalars, &mut targets);
         rows.into_iter().map(|row| (row, targets[row])).collect()
-    }
-
-    /// Functions of a head around a test.
-    fn span(&self, heads: &Heads, test: &Test, head: usize) -> Span {
-        let lattice = &heads.lattices[head];
-        let times = lattice.cells[0] / heads.lattices.iter().map(|l| l.cells[0]).min().unwrap_or(1);
-        Span { first: test.cell.map(|cell| cell * times), count: (self.degree + 1) * times + lattice.degree }
-    }
-
-    /// Functions of a head on the cell of one of the group's points.
-    fn cell(&self, heads: &Heads, p: usize, head: usize) -> Span {
-        heads.lattices[head].cell_span(&self.sites.splines[head].places[p])
-    }
-
-    /// Numbers of the coefficients of boxes of functions.
-    fn dofs(&self, heads: &Heads, span: impl Fn(usize) -> Span) -> Vec<u32> {
-        self.read().flat_map(|head| heads.dofs(head, span(head))).collect()
-    }
-
-    /// A row at a point of which the misfit is known, and by `seed(jet or learned scalar)` the derivatives.
-    pub(super) fn at_point(
-        &self,
-        heads: &Heads,
-        (sites, p): (&Sites, usize),
-        learned: &[f64],
-        misfit: f64,
-        seed: impl Fn(usize) -> f64,
-    ) -> Block {
-        let layout = self.layout(heads, 1, learned.len());
-        let mut record = vec![0.0; layout.len()];
-        record[0] = misfit;
-        self.add_slopes(heads, sites, p, (layout, &mut record), learned, |_, bar| seed(bar), &mut Vec::new());
-        let cell = |head: usize| heads.lattices[head].cell_span(&sites.splines[head].places[p]);
-        Block::of(layout, &record, self.dofs(heads, cell))
-    }
-
-    /// Adds to the rows of a point their derivatives, of which `seed(row, jet or learned scalar)` gives those by jets.
-    #[expect(clippy::too_many_arguments)]
-    fn add_slopes(
-        &self,
-        heads: &Heads,
-        sites: &Sites,
-        p: usize,
-        (layout, record): (Layout, &mut [f64]),
-        learned: &[f64],
-        seed: impl Fn(usize, usize) -> f64,
-        across: &mut Vec<f64>,
-    ) {
-        let (_, by_learned, slopes) = layout.split_mut(record);
-        let mut first = vec![0; heads.lattices.len()];
-        let mut width = 0;
-        for head in self.read() {
-            first[head] = width;
-            width += heads.lattices[head].per_cell();
-        }
-        for (number, (jet, operator)) in self.schema.jets.iter().zip(&self.operators).enumerate() {
-            for (exponents, coefficient) in operator {
-                let along = sites.splines[jet.head].factors(p, exponents, across);
-                let factor = coefficient * heads.scale[jet.head];
-                for row in 0..layout.rows {
-                    let factor = factor * seed(row, number);
-                    if factor == 0.0 {
-                        continue;
-                    }
-                    let slopes = &mut slopes[row * layout.width + first[jet.head]..];
-                    for (line, across) in slopes.chunks_exact_mut(along.len()).zip(across.iter()) {
-                        let factor = factor * across;
-                        line.iter_mut().zip(along).for_each(|(slope, along)| *slope += factor * along);
-                    }
-                }
-            }
-        }
-        for (row, by_learned) in by_learned.chunks_exact_mut(learned.len().max(1)).enumerate() {
-            for (at, (sum, learned)) in by_learned.iter_mut().zip(learned).enumerate() {
-                *sum += seed(row, self.schema.jets.len() + at) * learned;
-            }
-        }
     }
 
     /// The weighted sums of integral terms over the points, and their derivatives by every coefficient.

@@ -20,6 +20,7 @@ mod heads;
 mod judged;
 mod kept;
 mod lattice;
+mod linearised;
 mod live;
 mod meshes;
 mod misfits;

@@ -1,7 +1,7 @@
 //! Points, and the splines at them, which do not change while coefficients do.
 
 use super::heads::Heads;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, MOST_COORDINATES};
 use super::tabled::Splines;
 
 /// Padding of the points, as everywhere in the engine.
@@ -35,5 +35,10 @@ impl Sites {
             columns: columns.iter().flat_map(|column| spread(&|p| column[p])).collect(),
             splines: heads.lattices.iter().zip(highest).map(splines).collect(),
         }
+    }
+
+    /// The cells of all heads that a point lies in.
+    pub(super) fn cells(&self, p: u32) -> impl Iterator<Item = [usize; MOST_COORDINATES]> + '_ {
+        self.splines.iter().filter_map(move |splines| splines.places.get(p as usize)).map(|place| place.cell)
     }
 }

@@ -70,10 +70,18 @@ fn exponents(axes: usize, most: usize) -> Vec<Vec<usize>> {
 fn product(axes: &[Vec<f64>], powers: &[usize]) -> Vec<f64> {
     let mut values = vec![1.0; axes[0].len()];
     for (axis, &power) in axes.iter().zip(powers) {
-        let chebyshev = |x: f64| (power as f64 * x.clamp(-1.0, 1.0).acos()).cos();
-        values.iter_mut().zip(axis).for_each(|(value, &x)| *value *= chebyshev(x));
+        values.iter_mut().zip(axis).for_each(|(value, &x)| *value *= chebyshev(x, power));
     }
     values
+}
+
+/// Chebyshev's polynomial of a degree, by the recurrence from degree to degree.
+fn chebyshev(x: f64, degree: usize) -> f64 {
+    let (mut value, mut next) = (1.0, x);
+    for _ in 0..degree {
+        (value, next) = (next, 2.0 * x * next - value);
+    }
+    value
 }
 
 /// What a function has beside those before it, with unit length; nothing if that is rounding.

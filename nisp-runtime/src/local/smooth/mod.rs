@@ -13,6 +13,7 @@ mod meshes;
 mod places;
 mod prior;
 mod run;
+mod sampled;
 mod solver;
 mod starts;
 mod state;

@@ -48,16 +48,19 @@ impl Solver<'_> {
         self.size(state);
         self.set_sigmas(state);
         let loss = self.loss(state);
-        let asked = self.assemble(state, &slopes).ok()?.asked;
+        let all = self.assemble(state, &slopes).ok()?;
         let factor = self.normal.factor()?;
+        let blocks: Vec<Vec<Block>> =
+            all.asked.iter().map(|asked| self.batches(&all, asked).flatten().collect()).collect();
         let (mut rows, mut volume) = (Vec::new(), 0.0);
-        for (at, blocks) in &asked {
-            let (group, counts) = (&self.groups[*at], self.counts(*at, state.phase));
+        for (asked, blocks) in all.asked.iter().zip(&blocks) {
+            let group = &self.groups[asked.at];
             let terms = group.schema.terms.iter().filter(|term| term.kind == TermKind::Observation);
             for (at, row) in
                 terms.flat_map(|term| (0..term.rows).map(|row| (group.first_own(term) + row, term.first + row)))
             {
-                let own = blocks.iter().enumerate().filter(|(p, _)| counts[row][*p]).map(|(_, block)| (block, at));
+                let counts = |p: &u32| asked.counts[row][*p as usize];
+                let own = group.order.iter().zip(blocks).filter(|(p, _)| counts(p)).map(|(_, block)| (block, at));
                 let before = rows.len();
                 rows.extend(own);
                 volume += (rows.len() - before) as f64 * group.sigma[row].ln();

@@ -1,11 +1,12 @@
 //! Gauss-Newton steps: the normal equations about a state, where they lead, and what their rows say of noise and roughness.
 
-use faer::Mat;
+use std::sync::Arc;
+
+use rand::SeedableRng;
 use rand::rngs::StdRng;
-use rand::{RngExt, SeedableRng};
-use rayon::prelude::*;
 
 use super::freedom::Unmeasured;
+use super::sampled::Sampled;
 use super::solver::Solver;
 use super::state::{Phase, State};
 use crate::local::LocalError;
@@ -30,8 +31,6 @@ const FREE: f64 = 10.0;
 const LEARNED: f64 = 10.0;
 /// Largest change of a learned parameter in a step.
 const FARTHEST: f64 = 1.0;
-/// Random vectors for the trace of the influence matrix (Hutchinson).
-const PROBES: usize = 16;
 /// What a source is of the order of where no cloud saw it, beside its size where one did, or its natural one: patches carry twice as
 /// much.
 const LIKELY: f64 = 0.5;
@@ -55,12 +54,24 @@ pub(super) struct Found {
     pub(super) factor: Factor,
 }
 
-/// The rows that take part about a state.
+/// The rows that take part about a state. Those of groups are linearised whenever they are read: their derivatives would fill the
+/// memory.
 pub(super) struct Rows {
-    /// Of groups, with the group's number.
-    pub(super) asked: Vec<(usize, Vec<Block>)>,
+    pub(super) asked: Vec<Asked>,
     /// Of every cloud, one for each point that has a foot.
     pub(super) clouds: Vec<Vec<Block>>,
+    /// Derivatives of the learned scalars by their parameters.
+    pub(super) learned: Vec<f64>,
+}
+
+/// The rows of a group.
+#[derive(Clone)]
+pub(super) struct Asked {
+    /// The group's number.
+    pub(super) at: usize,
+    /// By row and point, whether it counts.
+    pub(super) counts: Vec<Vec<bool>>,
+    pub(super) evaluated: Arc<Evaluated>,
 }
 
 impl Solver<'_> {
@@ -78,27 +89,9 @@ impl Solver<'_> {
         counts
     }
 
-    /// The rows of a group about a state, those that do not count as zeros.
-    fn blocks(
-        &self,
-        at: usize,
-        counts: &[Vec<bool>],
-        evaluated: &Evaluated,
-        slopes: &[f64],
-    ) -> Result<Vec<Block>, LocalError> {
-        let group = &self.groups[at];
-        let mut blocks = group.blocks(&self.heads, evaluated, slopes);
-        let rows = group.own_rows();
-        for (p, block) in blocks.iter_mut().enumerate() {
-            for (at, &row) in rows.iter().enumerate() {
-                if !counts[row][p] {
-                    block.clear(at);
-                } else if !block.misfits[at].is_finite() {
-                    return Err(LocalError::Fault(Fault::residual(group.name(at), Some(p))));
-                }
-            }
-        }
-        Ok(blocks)
+    /// The rows of a group, batch by batch.
+    pub(super) fn batches<'b>(&'b self, rows: &'b Rows, asked: &'b Asked) -> impl Iterator<Item = Vec<Block>> + 'b {
+        self.groups[asked.at].batches(&self.heads, &asked.evaluated, &rows.learned, &asked.counts)
     }
 
     /// The heads whose roughness the evidence finds in a phase: sources, or measured fields while only data are regressed.
@@ -228,21 +221,31 @@ impl Solver<'_> {
             if !is_any(&counts) {
                 continue;
             }
-            let evaluated = group.evaluate(&self.heads, &state.theta, &self.scalars, true);
-            asked.push((at, self.blocks(at, &counts, &evaluated, slopes)?));
+            let evaluated = Arc::new(group.evaluate(&self.heads, &state.theta, &self.scalars, true));
+            for (own, row) in group.own_rows().into_iter().enumerate() {
+                let is_lost = |&p: &usize| counts[row][p] && !evaluated.row(row, p).is_finite();
+                if let Some(p) = (0..group.sites.count).find(is_lost) {
+                    return Err(LocalError::Fault(Fault::residual(group.name(own), Some(p))));
+                }
+            }
+            asked.push(Asked { at, counts, evaluated });
         }
         let of_cloud = |surface: &Surface| {
             let (group, sigma) = (&self.groups[surface.group], self.sigma(state, surface));
             let rows = || surface.blocks(group, &self.heads, &state.theta, &self.scalars, slopes, sigma);
             if self.is_seen(surface, state.phase) { rows() } else { Vec::new() }
         };
-        Ok(Rows { asked, clouds: self.surfaces.iter().map(of_cloud).collect() })
+        Ok(Rows { asked, clouds: self.surfaces.iter().map(of_cloud).collect(), learned: slopes.to_vec() })
     }
 
     /// The normal equations of rows and of what is believed.
     pub(super) fn add_all(&mut self, state: &State, rows: &Rows) {
         self.normal.clear();
-        rows.asked.iter().map(|(_, blocks)| blocks).chain(&rows.clouds).for_each(|blocks| self.normal.add_all(blocks));
+        for Asked { at, counts, evaluated } in &rows.asked {
+            let batches = self.groups[*at].batches(&self.heads, evaluated, &rows.learned, counts);
+            batches.for_each(|blocks| self.normal.add_all(&blocks));
+        }
+        rows.clouds.iter().for_each(|blocks| self.normal.add_all(blocks));
         for head in 0..self.priors.len() {
             let mut believed = self.prior_rows(state, head);
             // The answer is what the prior says where nothing was seen; its deviations are not.
@@ -277,26 +280,38 @@ impl Solver<'_> {
     ) -> Option<Vec<Tally>> {
         let mut tallies = vec![Tally::default(); state.classes.len()];
         let mut random = StdRng::seed_from_u64(0);
-        let mut of_data = |rows: &[(&Block, usize)]| {
-            let squares = rows.iter().map(|(block, row)| block.after(*row, step, shared).powi(2)).sum();
-            let used = used(rows, factor, (step.len(), shared.len()), &mut random)?;
-            Some(Tally { squares, count: rows.len() as f64, used })
-        };
-        for (at, blocks) in &rows.asked {
-            let (group, counts) = (&self.groups[*at], self.counts(*at, state.phase));
+        let lens = (step.len(), shared.len());
+        for asked in &rows.asked {
+            let group = &self.groups[asked.at];
             let terms = group.schema.terms.iter().enumerate();
-            for (number, term) in terms.filter(|(_, term)| term.kind == TermKind::Observation) {
-                let first = group.first_own(term);
-                let own = blocks.iter().enumerate().flat_map(|(p, block)| {
-                    let own = (0..term.rows).filter(|&row| counts[term.first + row][p]);
-                    own.map(|row| (block, first + row)).collect::<Vec<_>>()
-                });
-                tallies[self.classes[*at][number]] = of_data(&own.collect::<Vec<_>>())?;
+            let observed = terms.filter(|(_, term)| term.kind == TermKind::Observation);
+            let mut observed: Vec<(usize, &schema::Term, Sampled)> = observed
+                .map(|(number, term)| {
+                    let sampled = Sampled::new(group.sites.count * term.rows, lens, &mut random);
+                    (number, term, sampled)
+                })
+                .collect();
+            if observed.is_empty() {
+                continue;
+            }
+            for blocks in self.batches(rows, asked) {
+                for (_, term, sampled) in &mut observed {
+                    let first = group.first_own(term);
+                    let own = blocks.iter().flat_map(|block| (first..first + term.rows).map(move |row| (block, row)));
+                    sampled.add(&own.collect::<Vec<_>>(), (step, shared));
+                }
+            }
+            for (number, term, sampled) in observed {
+                let counts = asked.counts[term.first..term.first + term.rows].iter().flatten();
+                let count = counts.filter(|counts| **counts).count();
+                tallies[self.classes[asked.at][number]] = sampled.tally(factor, count)?;
             }
         }
         for (surface, blocks) in self.surfaces.iter().zip(&rows.clouds) {
             let own: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
-            let tally = of_data(&own)?;
+            let mut sampled = Sampled::new(own.len(), lens, &mut random);
+            sampled.add(&own, (step, shared));
+            let tally = sampled.tally(factor, own.len())?;
             // Clouds have outliers, which are no noise.
             let clean = deviation_of_clean(surface.misfits().collect(), tally.used) / self.sigma(state, surface);
             let squares = clean.powi(2) * (tally.count - tally.used);
@@ -310,7 +325,11 @@ impl Solver<'_> {
             tally.squares = blocks.iter().map(|block| block.after(0, step, shared).powi(2)).sum();
             tally.used = match state.phase {
                 // What data leave of a field is no small difference.
-                Phase::Regress => used(&own, factor, (step.len(), shared.len()), &mut random)?,
+                Phase::Regress => {
+                    let mut sampled = Sampled::new(own.len(), lens, &mut random);
+                    sampled.add(&own, (step, shared));
+                    sampled.used(factor)?
+                }
                 Phase::Explain | Phase::Solve => {
                     let roughness = state.classes[self.roughness[head]].size;
                     let settled = self.freedoms[head].as_ref()?.settled(factor, step.len(), roughness)?;
@@ -330,20 +349,7 @@ fn takes_part(group: &schema::Group, term: &schema::Term, phase: Phase) -> bool 
     phase.has_equations() || term.jets.iter().all(is_of_values)
 }
 
-fn is_any(counts: &[Vec<bool>]) -> bool {
+/// Whether any row of a group counts at any of its points.
+pub(super) fn is_any(counts: &[Vec<bool>]) -> bool {
     counts.iter().any(|row| row.contains(&true))
-}
-
-/// How many unknowns rows settle, in the mean over random combinations of them (Hutchinson); of so many coefficients and learned
-/// scalars.
-fn used(rows: &[(&Block, usize)], factor: &Factor, lens: (usize, usize), random: &mut StdRng) -> Option<f64> {
-    let signs: Vec<Vec<bool>> = (0..PROBES).map(|_| rows.iter().map(|_| random.random()).collect()).collect();
-    let probe = |signs: &Vec<bool>| {
-        let (mut by, mut below) = (vec![0.0; lens.0], vec![0.0; lens.1]);
-        rows.iter().zip(signs).for_each(|((block, row), sign)| block.add_signed(*row, *sign, &mut by, &mut below));
-        (by, below)
-    };
-    let (probes, below): (Vec<Vec<f64>>, Vec<Vec<f64>>) = signs.par_iter().map(probe).unzip();
-    let probes = Mat::from_fn(lens.0, PROBES, |row, column| probes[column][row]);
-    Some(factor.products(&probes, &below)?.iter().sum::<f64>() / PROBES as f64)
 }

@@ -5,8 +5,7 @@
 use super::freedom::{Before, Unmeasured};
 use super::solver::Solver;
 use super::state::{Phase, State};
-use super::step::Rows;
-use crate::local::block::Block;
+use super::step::{Asked, Rows, is_any};
 use crate::schema::{self, TermKind};
 
 /// Change of the logarithm of a roughness after which what is settled is counted anew.
@@ -22,8 +21,8 @@ impl Solver<'_> {
         if past.len() == sizes.len() && sizes.iter().zip(past).all(is_near) {
             return state.unmeasured.clone();
         }
-        let asked = rows.asked.iter().map(|(at, own)| (*at, self.without(*at, own))).collect();
-        self.add_all(state, &Rows { asked, clouds: Vec::new() });
+        let asked = rows.asked.iter().map(|asked| self.without(asked)).filter(|asked| is_any(&asked.counts)).collect();
+        self.add_all(state, &Rows { asked, clouds: Vec::new(), learned: rows.learned.clone() });
         let found = self.settled(state, &sizes);
         Unmeasured::new(found.unwrap_or_default(), sizes)
     }
@@ -42,16 +41,15 @@ impl Solver<'_> {
         Some(all)
     }
 
-    /// Rows of a group with nothing in those that measure something. A condition on a source alone does.
-    fn without(&self, group: usize, blocks: &[Block]) -> Vec<Block> {
-        let (group, schema) = (&self.groups[group], self.schema());
+    /// Rows of a group of which those do not count that measure something. A condition on a source alone does.
+    fn without(&self, asked: &Asked) -> Asked {
+        let (group, schema) = (&self.groups[asked.at], self.schema());
         let is_of_source = |&jet: &usize| schema.heads[group.schema.jets[jet].head].source;
-        let is_asked = |term: &&schema::Term| !matches!(term.kind, TermKind::Chamfer { .. });
         let measures = |term: &&schema::Term| term.kind == TermKind::Observation || term.jets.iter().all(is_of_source);
-        let own = |term: &schema::Term| (0..term.rows).map(|row| group.first_own(term) + row).collect::<Vec<_>>();
-        let measured: Vec<usize> = group.schema.terms.iter().filter(is_asked).filter(measures).flat_map(own).collect();
-        let mut blocks = blocks.to_vec();
-        blocks.iter_mut().for_each(|block| measured.iter().for_each(|&row| block.clear(row)));
-        blocks
+        let mut without = asked.clone();
+        for term in group.schema.terms.iter().filter(measures) {
+            without.counts[term.first..term.first + term.rows].iter_mut().for_each(|counts| counts.fill(false));
+        }
+        without
     }
 }

@@ -1,0 +1,67 @@
+//! What rows say of their noise after a step: what is left of them, and how many unknowns they settle, in the mean over random
+//! combinations of them (Hutchinson 1990).
+
+use faer::Mat;
+use rand::RngExt;
+use rand::rngs::StdRng;
+use rayon::prelude::*;
+
+use crate::local::block::Block;
+use crate::local::normal::factor::Factor;
+use crate::weighed::Tally;
+
+/// Random combinations.
+const PROBES: usize = 16;
+
+/// Rows, summed up one batch after the other.
+pub(super) struct Sampled {
+    probes: Vec<Probe>,
+    /// Rows that were added.
+    added: usize,
+    /// Sum of their squares after the step.
+    squares: f64,
+}
+
+/// A random combination of rows.
+struct Probe {
+    /// Signs of all rows.
+    signs: Vec<bool>,
+    /// Its derivatives by the coefficients and by the learned scalars.
+    by: Vec<f64>,
+    below: Vec<f64>,
+}
+
+impl Sampled {
+    /// For so many rows, of so many coefficients and learned scalars.
+    pub(super) fn new(rows: usize, lens: (usize, usize), random: &mut StdRng) -> Self {
+        let mut probe = || {
+            let signs = (0..rows).map(|_| random.random()).collect();
+            Probe { signs, by: vec![0.0; lens.0], below: vec![0.0; lens.1] }
+        };
+        Self { probes: (0..PROBES).map(|_| probe()).collect(), added: 0, squares: 0.0 }
+    }
+
+    /// Adds rows, which are numbers of blocks' rows, about a step of the coefficients and of the learned scalars.
+    pub(super) fn add(&mut self, rows: &[(&Block, usize)], (step, shared): (&[f64], &[f64])) {
+        self.squares =
+            rows.iter().fold(self.squares, |sum, (block, row)| sum + block.after(*row, step, shared).powi(2));
+        let first = self.added;
+        self.probes.par_iter_mut().for_each(|probe| {
+            let signed = rows.iter().zip(&probe.signs[first..]);
+            signed.for_each(|((block, row), sign)| block.add_signed(*row, *sign, &mut probe.by, &mut probe.below));
+        });
+        self.added += rows.len();
+    }
+
+    /// How many unknowns the rows settle; nothing where the factor gives no products.
+    pub(super) fn used(&self, factor: &Factor) -> Option<f64> {
+        let probes = Mat::from_fn(self.probes[0].by.len(), PROBES, |row, column| self.probes[column].by[row]);
+        let below: Vec<Vec<f64>> = self.probes.iter().map(|probe| probe.below.clone()).collect();
+        Some(factor.products(&probes, &below)?.iter().sum::<f64>() / PROBES as f64)
+    }
+
+    /// What the rows say, of which so many count.
+    pub(super) fn tally(self, factor: &Factor, count: usize) -> Option<Tally> {
+        Some(Tally { squares: self.squares, count: count as f64, used: self.used(factor)? })
+    }
+}
