@@ -227,6 +227,8 @@ pub(crate) struct Answer {
     pub(crate) strain: Option<f64>,
     /// How much the last finer lattice has changed an answer without noise, as a share; nothing where there was none.
     pub(crate) refined: Option<f64>,
+    /// Share of the measurements that the answer was made from.
+    pub(crate) used: f64,
     /// What to do where the carrier may be too coarse.
     pub(crate) finer: &'static str,
 }

@@ -33,6 +33,7 @@ impl Engine<f64> {
             ahead: None,
             moved: None,
             strain: None,
+            used: 1.0,
             refined: None,
             finer: "more --budget, more --width or another --seed",
         }

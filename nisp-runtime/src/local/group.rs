@@ -40,7 +40,7 @@ pub(super) struct Group {
     pub(super) tests: Vec<Test>,
     /// Degree of the tests.
     pub(super) degree: usize,
-    /// All points; cell by cell where they are too many to be linearised together.
+    /// All points; by the cells of the first head where they are too many to be linearised together.
     pub(super) order: Vec<u32>,
     /// By head, the highest derivative that the group reads; nothing of those that it does not read.
     pub(super) highest: Vec<Option<u8>>,
@@ -78,7 +78,7 @@ impl Group {
         }
         let mut order: Vec<u32> = (0..sites.count as u32).collect();
         if order.len() > BATCH {
-            order.par_sort_by(|&p, &q| sites.cells(p).cmp(sites.cells(q)));
+            order.par_sort_by_cached_key(|&p| sites.cells(p).next());
         }
         let (sigma, growth) = (vec![1.0; schema.rows], vec![Vec::new(); schema.rows]);
         let mut losses = vec![(Loss::Square, 1.0); schema.rows];

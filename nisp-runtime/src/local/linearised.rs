@@ -10,6 +10,15 @@ use super::rows::Evaluated;
 use super::sites::Sites;
 use super::testing::Test;
 
+/// What is kept from a point to the next.
+struct Kept {
+    record: Vec<f64>,
+    across: Vec<f64>,
+    /// The point whose cell `dofs` are of.
+    point: Option<u32>,
+    dofs: Vec<u32>,
+}
+
 impl Group {
     /// Rows over their tolerances and their derivatives: of every test, or of every point where equations are asked of points.
     pub(super) fn blocks(&self, heads: &Heads, evaluated: &Evaluated, learned: &[f64]) -> Vec<Block> {
@@ -73,16 +82,22 @@ impl Group {
     fn at_points(&self, heads: &Heads, evaluated: &Evaluated, learned: &[f64], points: &[u32]) -> Vec<Block> {
         let rows = self.own_rows();
         let layout = self.layout(heads, rows.len(), learned.len());
-        let at_point = |(record, across): &mut (Vec<f64>, Vec<f64>), &p: &u32| {
+        let at_point = |kept: &mut Kept, &p: &u32| {
+            let Kept { record, across, point, dofs } = kept;
             let p = p as usize;
             record.fill(0.0);
             self.record(heads, evaluated, learned, (p, &rows), (layout, record), across);
-            let mut block = Block::of(layout, record, self.dofs(heads, |head| self.cell(heads, p, head)));
+            if point.is_none_or(|other| !self.sites.cells(other).eq(self.sites.cells(p as u32))) {
+                *dofs = self.dofs(heads, |head| self.cell(heads, p, head));
+                *point = Some(p as u32);
+            }
+            let mut block = Block::of(layout, record, dofs.clone());
             block.divide(rows.iter().map(|&row| self.sigma[row]));
             self.majorise(&mut block, &rows);
             block
         };
-        points.par_iter().map_init(|| (vec![0.0; layout.len()], Vec::new()), at_point).collect()
+        let kept = || Kept { record: vec![0.0; layout.len()], across: Vec::new(), point: None, dofs: Vec::new() };
+        points.par_iter().map_init(kept, at_point).collect()
     }
 
     /// The rows of a point and their derivatives, added to a record of zeros.

@@ -230,6 +230,7 @@ pub(crate) fn solve(
         ahead,
         moved: None,
         strain: None,
+        used: 1.0,
         refined: None,
         finer: OTHER_THAN_SPLINES,
     };

@@ -129,7 +129,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
                 }
             }
         }
-        checks.extend(observations::checks(bound, at, (&rows, noise), answer.finer));
+        checks.extend(observations::checks(bound, at, (&rows, noise), answer));
     }
     checks.extend(outside::checks(bound));
     let settled = settled::checks(bound, answer);

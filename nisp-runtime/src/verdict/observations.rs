@@ -3,6 +3,7 @@
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
 use super::{Check, held, outliers, patterns, root_mean_square, taken};
+use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
 use crate::schema::TermKind;
@@ -27,16 +28,16 @@ const NOISY: f64 = 0.25;
 const ROUNDING: f64 = 1e-5;
 
 /// Checks of the observations of a group.
-pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &Noise), finer: &str) -> Vec<Check> {
+pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &Noise), answer: &Answer) -> Vec<Check> {
     let terms = bound.problem.scene().schema.groups[group].terms.iter().enumerate();
     let observations = terms.filter(|(_, term)| term.kind == TermKind::Observation);
     let left = observations.filter_map(|(at, _)| Misfits::of(bound, (group, at), rows, noise));
-    left.flat_map(|left| of(&left, finer)).collect()
+    left.flat_map(|left| of(&left, answer)).collect()
 }
 
 /// Checks of one observation.
-fn of(left: &Misfits, finer: &str) -> Vec<Check> {
-    let mut checks: Vec<Check> = misfit(left, finer).into_iter().collect();
+fn of(left: &Misfits, answer: &Answer) -> Vec<Check> {
+    let mut checks: Vec<Check> = misfit(left, answer.finer).into_iter().collect();
     if left.is_record() && !left.is_exact() {
         checks.extend(left.term.columns.iter().map(|&column| stuck(left, column)));
     }
@@ -47,7 +48,7 @@ fn of(left: &Misfits, finer: &str) -> Vec<Check> {
         checks.push(left_out(left));
     }
     checks.extend(noisy(left));
-    checks.extend(patterns::checks(left, finer));
+    checks.extend(patterns::checks(left, answer));
     checks
 }
 

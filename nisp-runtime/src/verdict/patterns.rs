@@ -3,6 +3,7 @@
 use super::misfits::Misfits;
 use super::stretches::worst;
 use super::{Check, root_mean_square, slow, smooth};
+use crate::facts::Answer;
 use crate::noise::in_order;
 use crate::rhythm::rhythm;
 
@@ -23,24 +24,24 @@ const CONSTANT: f64 = 0.9;
 
 /// Checks of the order of misfits. Those of exact data are of rounding, and those far below the noise are what a fit that follows
 /// the data leaves, not a part that it leaves out.
-pub(super) fn checks(left: &Misfits, finer: &str) -> Vec<Check> {
+pub(super) fn checks(left: &Misfits, answer: &Answer) -> Vec<Check> {
     if left.is_exact() || left.noise.is_some_and(|noise| left.size < BELOW * noise.deviation) {
         return Vec::new();
     }
     let rows = left.kept();
     let long = rows.iter().filter(|row| row.len() >= FEW);
     if !left.is_record() {
-        return long.map(|row| over(left, row)).collect();
+        return long.map(|row| over(left, row, answer.used)).collect();
     }
     let mut checks: Vec<Check> = long.clone().map(|row| along(left, row)).collect();
     checks.extend(long.enumerate().filter_map(|(at, row)| stretch(left, at, row)));
-    checks.extend(swing(left, &rows[0], finer));
+    checks.extend(swing(left, &rows[0], answer.finer));
     checks
 }
 
-/// Smooth misfits over several coordinates.
-fn over(left: &Misfits, row: &[f64]) -> Check {
-    let (excess, share) = smooth::excess(&left.places, left.axes(), row);
+/// Smooth misfits over several coordinates, beside an answer made from a share of the measurements.
+fn over(left: &Misfits, row: &[f64], used: f64) -> Check {
+    let (excess, share) = smooth::excess(&left.places, left.axes(), row, used);
     let said = format!(
         "what is left of `{}` is no noise: {:.1} % of its square is smooth, so the equations or a parameter do not fit these data, or a \
          part of them is smoothed away",

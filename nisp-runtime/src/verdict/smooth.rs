@@ -9,8 +9,9 @@ const DEGREES: [usize; 4] = [1, 2, 4, 6];
 const MEASUREMENTS: usize = 10;
 
 /// How much more of misfits polynomials of low degree describe than they would of noise, in standard deviations, and the share
-/// of their square. `places` has `axes` coordinates for each misfit.
-pub(super) fn excess(places: &[f64], axes: usize, misfits: &[f64]) -> (f64, f64) {
+/// of their square. `places` has `axes` coordinates for each misfit. Of an answer made from a share of the measurements, `used`, noise
+/// has left a smooth part too: as much larger than that of all as they are more.
+pub(super) fn excess(places: &[f64], axes: usize, misfits: &[f64], used: f64) -> (f64, f64) {
     let total: f64 = misfits.iter().map(|x| x * x).sum();
     let mut basis: Vec<Vec<f64>> = Vec::new();
     let mut squares: Vec<f64> = Vec::new();
@@ -37,9 +38,10 @@ pub(super) fn excess(places: &[f64], axes: usize, misfits: &[f64]) -> (f64, f64)
     if level <= 0.0 || total == 0.0 {
         return (0.0, 0.0);
     }
+    let expected = if used < 1.0 { level * (1.0 + used.recip()) } else { level };
     let excesses = counts.into_iter().map(|count| {
         let smooth: f64 = squares[..count].iter().sum();
-        (deviations(smooth / level, count), (smooth - level * count as f64) / total)
+        (deviations(smooth / expected, count), (smooth - expected * count as f64) / total)
     });
     excesses.max_by(|a, b| a.0.total_cmp(&b.0)).unwrap_or((0.0, 0.0))
 }
@@ -120,9 +122,27 @@ mod tests {
     fn noise_has_no_smooth_part() {
         for seed in 0..30 {
             let (places, misfits) = scattered(&mut StdRng::seed_from_u64(seed), 600);
-            let (excess, _) = excess(&places, 2, &misfits);
+            let (excess, _) = excess(&places, 2, &misfits, 1.0);
             assert!(excess < 5.0, "{seed}: {excess}");
         }
+    }
+
+    /// A plane fitted to each twentieth value is off by more than one fitted to all.
+    #[test]
+    fn an_answer_from_a_share_may_be_off_as_a_share_is() {
+        let (mut by_share, mut by_all) = (0, 0);
+        for seed in 0..30 {
+            let (places, mut misfits) = scattered(&mut StdRng::seed_from_u64(seed), 4000);
+            let rows = |step: usize| (0..4000).step_by(step).flat_map(|at| [1.0, places[2 * at], places[2 * at + 1]]);
+            let design = nalgebra::DMatrix::from_row_iterator(200, 3, rows(20));
+            let some = nalgebra::DVector::from_iterator(200, misfits.iter().step_by(20).copied());
+            let plane = design.svd(true, true).solve(&some, 0.0).unwrap();
+            let fitted = nalgebra::DMatrix::from_row_iterator(4000, 3, rows(1)) * plane;
+            misfits.iter_mut().zip(fitted.iter()).for_each(|(misfit, fitted)| *misfit -= fitted);
+            by_share += usize::from(excess(&places, 2, &misfits, 0.05).0 > 5.0);
+            by_all += usize::from(excess(&places, 2, &misfits, 1.0).0 > 5.0);
+        }
+        assert!(by_share == 0 && by_all > 10, "{by_share} {by_all}");
     }
 
     /// Three hundredths of the noise's square, all in a few modes.
@@ -134,7 +154,7 @@ mod tests {
                 .iter_mut()
                 .zip(places.chunks(2))
                 .for_each(|(misfit, at)| *misfit += 0.35 * (3.0 * at[0]).sin() * at[1]);
-            let (excess, share) = excess(&places, 2, &misfits);
+            let (excess, share) = excess(&places, 2, &misfits, 1.0);
             assert!(excess > 5.0 && share < 0.1, "{seed}: {excess} {share}");
         }
     }
@@ -143,6 +163,6 @@ mod tests {
     fn places_on_a_line_have_fewer_modes() {
         let places: Vec<f64> = (0..200).flat_map(|i| [f64::from(i), 1.0]).collect();
         let misfits: Vec<f64> = (0..200).map(|i| f64::from(i * i % 7) - 2.0).collect();
-        assert!(excess(&places, 2, &misfits).0.is_finite());
+        assert!(excess(&places, 2, &misfits, 1.0).0.is_finite());
     }
 }

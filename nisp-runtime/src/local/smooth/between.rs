@@ -24,8 +24,10 @@ const FEWEST_BASES: usize = 200;
 const ASKED: u64 = 0;
 const OTHERS: u64 = 1;
 const PICKED: u64 = 2;
-/// Exact measurements for every point of the equations at most: these points are twice as many as the unknowns.
-const MEASURED: usize = 2;
+/// Measurements for every point of the equations at most, exact ones, which say no more, and noisy ones while lattices are chosen:
+/// these points are twice as many as the unknowns.
+const EXACT: usize = 2;
+const NOISY: usize = 4;
 
 /// How many points an equation is asked at before it is known whether these are enough. A source of all coordinates may be
 /// anything between the given ones. Where nothing is measured two lattices tell how far an answer is off, so that the first is coarser.
@@ -51,13 +53,10 @@ pub(super) fn filled(bound: &Bound, points: usize) -> Option<Bound> {
     Some(filled)
 }
 
-/// The problem with no more measurements than an answer can use where equations are asked at so many points; nothing where it has no
-/// more. Measurements must be exact: many noisy ones tell more than few.
-pub(super) fn thinned(bound: &Bound, points: usize) -> Option<Bound> {
+/// The problem with at most so many measurements of each group, picked at random; nothing where none has more.
+pub(super) fn thinned(bound: &Bound, most: usize) -> Option<Bound> {
     let schema = bound.problem.scene().schema;
-    let measures = |at: &usize| schema.groups[*at].terms.iter().all(|term| term.kind == TermKind::Observation);
-    let most = (MEASURED * points).max(ENOUGH);
-    let large: Vec<usize> = (0..schema.groups.len()).filter(measures).filter(|&at| count(bound, at) > most).collect();
+    let large: Vec<usize> = measuring(schema).filter(|&at| count(bound, at) > most).collect();
     if large.is_empty() {
         return None;
     }
@@ -95,6 +94,22 @@ fn largest(bound: &Bound) -> Option<usize> {
 
 fn count(bound: &Bound, group: usize) -> usize {
     bound.coordinates[group].len() / bound.problem.scene().schema.coordinates.len()
+}
+
+/// Groups that do nothing but measure.
+fn measuring(schema: &schema::Scene) -> impl Iterator<Item = usize> {
+    let measures = |at: &usize| schema.groups[*at].terms.iter().all(|term| term.kind == TermKind::Observation);
+    (0..schema.groups.len()).filter(measures)
+}
+
+/// How many measurements there are that may be left out.
+pub(super) fn measurements(bound: &Bound) -> usize {
+    measuring(bound.problem.scene().schema).map(|at| count(bound, at)).sum()
+}
+
+/// Measurements of a group that choose a lattice where equations are asked at so many points. Of exact ones it can use no more.
+pub(super) fn enough(points: usize, is_noisy: bool) -> usize {
+    (if is_noisy { NOISY } else { EXACT } * points).max(ENOUGH)
 }
 
 /// So many places at random between neighbours among the points of an equation and those of conditions, at which it holds too: places

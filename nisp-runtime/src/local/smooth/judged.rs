@@ -150,6 +150,7 @@ impl Solver<'_> {
             ahead: None,
             moved: None,
             strain: None,
+            used: 1.0,
             refined: None,
             finer: OTHER_THAN_SPLINES,
         }

@@ -25,6 +25,7 @@ mod unmeasured;
 use std::time::Instant;
 
 pub(crate) use between::others;
+use between::{enough, measurements};
 use changes::Changes;
 use judged::{FAR, MISSED};
 
@@ -61,6 +62,9 @@ const EXACT: f64 = 0.01;
 const SAME: f64 = 0.01;
 /// How far the cells of a lattice may hold back an answer for which nothing was measured, as a share of its range: finer ones follow.
 const NEAR: f64 = 1e-3;
+/// Steps with more measurements, about, after those with some; and how many times as many are worth these.
+const STEPS: f64 = 5.0;
+const WORTH: f64 = 2.0;
 /// How much longer a finer lattice takes at least. Where it does not end within the budget, nothing is lost but time.
 const SLOWER: f64 = 1.0;
 
@@ -89,13 +93,13 @@ pub(crate) fn solve(
 ) -> Result<LocalSolution, LocalError> {
     let clock = Clock { start: Instant::now(), limits };
     let mut points = from.map_or(Ok(between::first(bound)), saved_points).map_err(LocalError::Fault)?;
-    let mut solver = Solver::new(bound, points, noise)?;
+    let is_noisy = noise.is_there(bound.problem.scene().schema);
+    let mut solver = Solver::new(bound, points, noise, enough(points, is_noisy))?;
     let mut state = solver.first(noise);
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
     }
     let mut run = Run::go(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
-    let is_noisy = noise.is_there(bound.problem.scene().schema);
     let (mut strain, mut idle) = (f64::INFINITY, 0);
     let is_measured = solver.is_measured();
     let mut changes = Changes::default();
@@ -125,7 +129,7 @@ pub(crate) fn solve(
             break;
         };
         // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
-        let Ok(mut finer) = Solver::new(bound, more, noise) else { break };
+        let Ok(mut finer) = Solver::new(bound, more, noise, enough(more, is_noisy)) else { break };
         if finer.cells() <= solver.cells() {
             break;
         }
@@ -147,7 +151,41 @@ pub(crate) fn solve(
             }
         }
     }
+    while solver.lacks && run.status == Status::Converged {
+        let Some((more, found)) = with_more(bound, (&solver, &run), noise, (points, &clock), monitor) else { break };
+        match found.status {
+            Status::Converged => (solver, run) = (more, found),
+            status => {
+                run.status = if status == Status::Interrupted { status } else { run.status };
+                (run.checkpoint, run.state.step) = (found.checkpoint, found.state.step);
+                break;
+            }
+        }
+    }
     finish(bound, solver, run, noise, (&clock, &changes))
+}
+
+/// The answer of all measurements, or of as many as there seems to be time for, from that of some on the same lattice; nothing where
+/// these would be hardly more.
+fn with_more<'a>(
+    bound: &'a Bound,
+    (solver, run): (&Solver<'_>, &Run),
+    noise: &Noise,
+    (points, clock): (usize, &Clock),
+    monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
+) -> Option<(Solver<'a>, Run)> {
+    let (all, used) = (measurements(bound), measurements(&solver.bound));
+    let times = all as f64 / used as f64;
+    // Seconds of a step are at most in proportion to the measurements.
+    let longer = times.min(clock.left() / ((STEPS + BARS) * run.longest));
+    if longer < times.min(WORTH) {
+        return None;
+    }
+    let most = if longer < times { (longer * solver.most as f64) as usize } else { usize::MAX };
+    let mut more = Solver::new(bound, points, noise, most).ok()?;
+    let state = State { classes: run.state.known(), since: 0, ..run.state.clone() };
+    let found = Run::go(&mut more, state, noise, points, clock, BARS * longer * run.longest, monitor).ok()?;
+    Some((more, found))
 }
 
 /// Points of the largest equation in a saved state.
@@ -179,6 +217,14 @@ fn finish(
         }
         Default::default()
     };
+    if solver.lacks {
+        let message = format!(
+            "{} of {} rows were used, picked at random, for want of time: with a larger budget error bars get shorter",
+            measurements(&solver.bound),
+            measurements(bound)
+        );
+        warnings.push(Warning { kind: WarningKind::OutOfTime, message });
+    }
     let heads = schema.heads.iter().enumerate();
     warnings.extend(heads.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
     if !solver.is_measured() {
@@ -190,7 +236,7 @@ fn finish(
     let strain = may_change.then(|| solver.strain(&state, noise));
     solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
-    answer.strain = strain;
+    (answer.strain, answer.used) = (strain, measurements(&solver.bound) as f64 / measurements(bound).max(1) as f64);
     // Noise may fall differently on other cells; without it they are all that changes an answer.
     answer.refined = if solver.is_measured() { changes.taken().filter(|_| !is_noisy) } else { Some(changes.off()) };
     if status != Status::Converged {

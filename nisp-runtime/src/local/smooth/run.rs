@@ -35,8 +35,13 @@ impl Clock {
         self.start.elapsed().as_secs_f64()
     }
 
+    /// Seconds that are left.
+    pub(super) fn left(&self) -> f64 {
+        self.limits.budget.map_or(f64::INFINITY, |budget| budget.as_secs_f64() - self.elapsed_s())
+    }
+
     pub(super) fn has_time(&self, seconds: f64) -> bool {
-        self.limits.budget.is_none_or(|budget| self.elapsed_s() + seconds < budget.as_secs_f64())
+        seconds < self.left()
     }
 }
 

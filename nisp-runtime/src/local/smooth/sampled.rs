@@ -10,8 +10,11 @@ use crate::local::block::Block;
 use crate::local::normal::factor::Factor;
 use crate::weighed::Tally;
 
-/// Random combinations.
-const PROBES: usize = 16;
+/// Random combinations at most and at least: the more rows there are, the less each says of how many unknowns they settle.
+const MOST_PROBES: usize = 16;
+const FEWEST_PROBES: usize = 2;
+/// Signs of all combinations together, beyond the fewest.
+const SIGNS: usize = 65_536;
 
 /// Rows, summed up one batch after the other.
 pub(super) struct Sampled {
@@ -38,7 +41,8 @@ impl Sampled {
             let signs = (0..rows).map(|_| random.random()).collect();
             Probe { signs, by: vec![0.0; lens.0], below: vec![0.0; lens.1] }
         };
-        Self { probes: (0..PROBES).map(|_| probe()).collect(), added: 0, squares: 0.0 }
+        let count = (SIGNS / rows.max(1)).clamp(FEWEST_PROBES, MOST_PROBES);
+        Self { probes: (0..count).map(|_| probe()).collect(), added: 0, squares: 0.0 }
     }
 
     /// Adds rows, which are numbers of blocks' rows, about a step of the coefficients and of the learned scalars.
@@ -55,9 +59,10 @@ impl Sampled {
 
     /// How many unknowns the rows settle; nothing where the factor gives no products.
     pub(super) fn used(&self, factor: &Factor) -> Option<f64> {
-        let probes = Mat::from_fn(self.probes[0].by.len(), PROBES, |row, column| self.probes[column].by[row]);
+        let (len, count) = (self.probes[0].by.len(), self.probes.len());
+        let probes = Mat::from_fn(len, count, |row, column| self.probes[column].by[row]);
         let below: Vec<Vec<f64>> = self.probes.iter().map(|probe| probe.below.clone()).collect();
-        Some(factor.products(&probes, &below)?.iter().sum::<f64>() / PROBES as f64)
+        Some(factor.products(&probes, &below)?.iter().sum::<f64>() / count as f64)
     }
 
     /// What the rows say, of which so many count.

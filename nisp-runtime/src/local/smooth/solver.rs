@@ -31,6 +31,9 @@ const STRAIGHT: f64 = 1e-4;
 /// A problem on its lattices.
 pub(super) struct Solver<'a> {
     pub(super) bound: Cow<'a, Bound>,
+    /// Measurements of a group at most, and whether it does without some of the noisy ones.
+    pub(super) most: usize,
+    pub(super) lacks: bool,
     /// A group of equations at other places than it is asked at, and its number.
     pub(super) others: Option<(usize, Bound)>,
     pub(super) heads: Heads,
@@ -68,13 +71,15 @@ fn freedom(heads: &Heads, head: usize, prior: &Prior) -> Result<Freedom, LocalEr
 }
 
 impl<'a> Solver<'a> {
-    /// With equations asked at so many points at least. The scene must not be refused.
-    pub(super) fn new(problem: &'a Bound, points: usize, noise: &Noise) -> Result<Self, LocalError> {
-        let few = if noise.is_there(problem.problem.scene().schema) { None } else { thinned(problem, points) };
-        let few = few.map_or(Cow::Borrowed(problem), Cow::Owned);
-        let bound = filled(&few, points).map_or(few, Cow::Owned);
-        let schema = bound.problem.scene().schema;
+    /// With equations asked at so many points at least, and with so many measurements of a group at most. The scene must not be
+    /// refused.
+    pub(super) fn new(problem: &'a Bound, points: usize, noise: &Noise, most: usize) -> Result<Self, LocalError> {
+        let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
         let (lattices, cells) = lattices(&bound, points);
+        let few = thinned(&bound, most);
+        let lacks = few.is_some() && noise.is_there(bound.problem.scene().schema);
+        let bound = few.map_or(bound, Cow::Owned);
+        let schema = bound.problem.scene().schema;
         let heads = Heads::new(&bound, lattices);
         let groups = groups(&bound, &heads);
         let cell = heads.lattices.iter().flat_map(|own| (0..own.dimensions()).map(|axis| own.spacing(axis)));
@@ -96,6 +101,8 @@ impl<'a> Solver<'a> {
         Ok(Self {
             others: others(&bound),
             bound,
+            most,
+            lacks,
             heads,
             groups,
             surfaces,
