@@ -2,12 +2,13 @@
 
 use nisp::Tolerance;
 use nisp::local::{Local, Patches};
+use nisp::units::Scale;
 use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use serde::Deserialize;
 
 use super::calibrate::region;
-use super::given::{Given, Number, Positive};
+use super::given::{Given, Positive, Sampled};
 use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
 use crate::contact::{CALIBRATES, Calibration, Contact, ContactRival, Face, Load, Membrane, References, Rule, Surface};
@@ -149,7 +150,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
     let mut contact = Contact {
         displacement: ["u", "v", "w"],
-        unit: 1e-3,
+        unit: Scale::new(1e-3),
         pressure,
         rule: (theory.rule)(given.of("p")?.unwrap_or(0.0)),
         load: theory.load,
@@ -189,9 +190,9 @@ fn stiff(given: &Given<'_>) -> Result<f64, PrepareError> {
     Ok(0.5 * value("p")? * value("b")? / (STRETCH * value("t")?))
 }
 
-fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
+fn numbers(sample: &Sample) -> Result<Vec<Sampled>, PrepareError> {
     let Membrane { a_m, b_m, thickness_m, young, poisson, stretch, pressure } = sample.tables::<Tables>()?.membrane;
-    let number = |name, key, value| Number { name, key, value };
+    let number = |name, key, value| Sampled { name, key, value };
     let mut numbers = vec![
         number("a", "[membrane] a_m", a_m),
         number("b", "[membrane] b_m", b_m),

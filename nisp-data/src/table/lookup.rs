@@ -1,7 +1,7 @@
 //! Which header answers to a name. For `q` in metres: `q`, `q [m]`, `q (m)` or `q_m`; anything longer must be asked for by its
 //! exact header, because guessing between `q_m_sigma0` and `q_m_sigma0.01` would be a quiet wrong answer.
 
-use nisp_units::{Conversion, conversion, is_unit};
+use nisp_units::{Conversion, Number, conversion, is_unit};
 
 use super::{Column, Kind, Table};
 use crate::DataError;
@@ -59,7 +59,7 @@ impl Table {
     ) -> Result<Vec<f64>, DataError> {
         let values = read(self, column)?;
         Ok(match self.conversion_of(column, (name, unit))? {
-            Some(conversion) => values.iter().map(|&value| conversion.of(value)).collect(),
+            Some(conversion) => values.iter().map(|&value| conversion.of(Number::file(value)).as_declared()).collect(),
             None => values.to_vec(),
         })
     }
@@ -107,8 +107,8 @@ impl Table {
             return Err(DataError::Column { path: self.path.clone(), what });
         }
         let [x, y, z] = [self.raw(columns[0])?, self.raw(columns[1])?, self.raw(columns[2])?];
-        let [a, b, c] = sizes.map(|size| size.map_or(1.0, |size| size.factor));
-        let points = (0..self.rows()).map(|row| [a * x[row], b * y[row], c * z[row]]).collect();
+        let metres = |axis: usize, x: f64| sizes[axis].map_or(x, |size| size.of(Number::file(x)).as_declared());
+        let points = (0..self.rows()).map(|row| [metres(0, x[row]), metres(1, y[row]), metres(2, z[row])]).collect();
         Ok((points, sizes[0].is_some()))
     }
 
