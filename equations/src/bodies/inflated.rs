@@ -2,7 +2,7 @@
 
 use nisp::Tolerance;
 use nisp::local::{Local, Patches};
-use nisp::units::Scale;
+use nisp::units::{Number, Scale};
 use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use serde::Deserialize;
@@ -86,7 +86,8 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     }
     let schema = scene.schema;
     let calibrates = schema.name.starts_with(CALIBRATES);
-    let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
+    let source = schema.heads.iter().find(|head| head.source);
+    let pressure = source.map(|head| head.name);
     let example = if pressure.is_some() { &theory.pressed } else { &theory.inflated };
     let mut observed = if calibrates { Observed::all(request)? } else { Observed::read(entry, request, example)? };
     let sample =
@@ -101,8 +102,10 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     }
 
     let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
-    let level = given.of("p")?.filter(|_| pressure.is_some());
-    let patches = level.map(|level| Patches { level, ..theory.patches });
+    let patches = given.of("p")?.zip(source).map(|(level, head)| {
+        let level = head.unit.factor.back(Number::si(level)).as_declared();
+        Patches { level, ..theory.patches }
+    });
     // What a calibration leaves must not be the error of a coarser lattice than later frames are solved on.
     let usual = if patches.is_some() || calibrates { CELLS_FOR_PATCHES } else { LOCAL.cells };
     let cells = request.cells.unwrap_or(usual);

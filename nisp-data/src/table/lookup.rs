@@ -12,7 +12,7 @@ const ALIKE: f64 = 0.85;
 
 impl Table {
     /// The column that answers to `name`: an exact header, or the only one of the forms `name [unit]`, `name (unit)` and
-    /// `name_unit`.
+    /// `name_unit`. Its numbers are as they stand in the file, whatever unit the header names.
     pub fn column(&self, name: &str) -> Result<&[f64], DataError> {
         self.checked(self.find(name, None)?)
     }

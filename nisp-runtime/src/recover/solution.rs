@@ -244,7 +244,7 @@ impl Solution {
 
     /// Every head at points given in declared units, point by point, without error bars.
     pub fn evaluate(&self, points: &[f64]) -> Vec<Estimate> {
-        self.estimates(self.carried.values(&self.bound, points))
+        self.estimates(self.carried.values(&self.bound, &self.bound.inward(points)))
     }
 
     /// As [`Solution::evaluate`], with standard deviations: those of the Laplace approximation of the posterior, in which the
@@ -257,7 +257,7 @@ impl Solution {
         if !self.has_bars() {
             return self.evaluate(points);
         }
-        let known = self.carried.with_deviations(&self.bound, points);
+        let known = self.carried.with_deviations(&self.bound, &self.bound.inward(points));
         self.estimates(known)
     }
 
@@ -268,7 +268,7 @@ impl Solution {
     pub fn deviation_of_sum(&self, head: &str, points: &[f64], weights: &[f64]) -> Option<f64> {
         let at = self.scene().heads.iter().position(|own| own.name == head).filter(|_| self.has_bars())?;
         let outward = self.bound.system.outward(&self.scene().heads[at].unit);
-        let deviation = self.carried.deviation_of_sum(&self.bound, at, points, weights)?;
+        let deviation = self.carried.deviation_of_sum(at, &self.bound.inward(points), weights)?;
         Some(outward.of(Number::engine(deviation)).as_declared())
     }
 
