@@ -6,7 +6,8 @@ use nisp_compiler::describe;
 use nisp_compiler::model::{self, Model, Role};
 use nisp_compiler::plan::{self, GroupPlan, Plan, RowKind, ScenePlan, TermPlan};
 use nisp_compiler::symbolic::exact::to_f64;
-use nisp_compiler::unit::{self, Number};
+use nisp_compiler::unit;
+use nisp_compiler::unit::frame::Number;
 use nisp_runtime::schema::{
     Column, Coordinate, FileKind, Group, Head, Held, Jet, Loss, Origin, Place, Portion, Region, RuleFlops, Scalar,
     Scene, Term, TermKind, Unit,

@@ -12,7 +12,7 @@
 //! or in the wrong direction, does not compile:
 //!
 //! ```
-//! use nisp_units::{Declared, Number, Scale, Si};
+//! use nisp_units::frame::{Declared, Number, Scale, Si};
 //! let millimetre: Scale<Declared, Si> = Scale::new(1e-3);
 //! let length = millimetre.of(Number::declared(5.0));
 //! assert_eq!(length + Number::si(1.0), Number::si(1.005));
@@ -22,14 +22,14 @@
 //! Numbers of two frames have no sum, and no order:
 //!
 //! ```compile_fail,E0308
-//! use nisp_units::Number;
+//! use nisp_units::frame::Number;
 //! let sum = Number::si(1.0) + Number::declared(5.0);
 //! ```
 //!
 //! A scale takes no number that it has scaled already:
 //!
 //! ```compile_fail,E0308
-//! use nisp_units::{Declared, Number, Scale, Si};
+//! use nisp_units::frame::{Declared, Number, Scale, Si};
 //! let millimetre: Scale<Declared, Si> = Scale::new(1e-3);
 //! let twice = millimetre.of(millimetre.of(Number::declared(5.0)));
 //! ```
@@ -37,13 +37,13 @@
 //! It takes none in the wrong direction, and what it gives is not taken for a number of another frame:
 //!
 //! ```compile_fail,E0308
-//! use nisp_units::{Declared, Number, Scale, Si};
+//! use nisp_units::frame::{Declared, Number, Scale, Si};
 //! let millimetre: Scale<Declared, Si> = Scale::new(1e-3);
 //! let wrong = millimetre.back(Number::declared(5.0));
 //! ```
 //!
 //! ```compile_fail,E0599
-//! use nisp_units::{Declared, Number, Scale, Si};
+//! use nisp_units::frame::{Declared, Number, Scale, Si};
 //! let millimetre: Scale<Declared, Si> = Scale::new(1e-3);
 //! let unconverted = millimetre.of(Number::declared(5.0)).as_engine();
 //! ```

@@ -1,17 +1,17 @@
 //! Physical units: exact rational exponents over the SI base units, and the scale to SI. What equations, headers of tables and
-//! results know of units they know from here, and in which units a [`Number`] is.
+//! results know of units they know from here. A number's type says in which units it is: see [`frame`].
 
 use num_traits::{One, Zero};
 
+use crate::frame::{Declared, Scale, Si};
 use crate::rational::{Rational, ratio};
 
-mod frame;
+pub mod frame;
 mod header;
 pub mod rational;
 mod show;
 mod table;
 
-pub use frame::{Declared, Engine, File, Number, Scale, Si};
 pub use header::{Conversion, conversion, is_unit};
 pub use table::{Symbol, known_symbols, look_up};
 

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::str::FromStr;
 
-use nisp_units::{File, Number, Scale, Si};
+use nisp_units::frame::{File, Number, Scale, Si};
 
 use super::Cloud;
 use crate::DataError;

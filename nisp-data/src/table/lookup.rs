@@ -1,7 +1,8 @@
 //! Which header answers to a name. For `q` in metres: `q`, `q [m]`, `q (m)` or `q_m`; anything longer must be asked for by its
 //! exact header, because guessing between `q_m_sigma0` and `q_m_sigma0.01` would be a quiet wrong answer.
 
-use nisp_units::{Conversion, Number, conversion, is_unit};
+use nisp_units::frame::Number;
+use nisp_units::{Conversion, conversion, is_unit};
 
 use super::{Column, Kind, Table};
 use crate::DataError;

@@ -4,7 +4,8 @@
 use super::{public, unit_text};
 use crate::model::{Definition, Field, Model, Name, Parameter, Part, Role};
 use crate::plan::ScenePlan;
-use crate::unit::{Number, Unit};
+use crate::unit::Unit;
+use crate::unit::frame::Number;
 
 /// Lines for a module: what it declares and defines.
 pub(super) fn quantities(model: &Model) -> Vec<String> {

@@ -6,7 +6,8 @@ use super::{Coordinate, Expr, TermKind, build};
 use crate::error::{Checked, catalogue};
 use crate::rational::ratio;
 use crate::syntax::{self, Comparison, Relation, print_text};
-use crate::unit::{Dimension, Scale, Unit};
+use crate::unit::frame::Scale;
+use crate::unit::{Dimension, Unit};
 
 /// Past this many coordinates only areas and volumes are tried as measures.
 const MOST_COORDINATES: usize = 8;

@@ -7,7 +7,8 @@ use super::{Column, Expr, Field, Node, Term, TermKind, build, cancel};
 use crate::error::{Checked, catalogue};
 use crate::rational::Rational;
 use crate::syntax::{self, Comparison, Condition, ExprKind, Relation, TermBody, print_latex, print_text, real};
-use crate::unit::{Dimension, Number, Unit};
+use crate::unit::frame::Number;
+use crate::unit::{Dimension, Unit};
 
 /// What terms are checked against.
 pub(super) struct TermInput<'a, 'e> {

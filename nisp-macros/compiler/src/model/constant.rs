@@ -6,7 +6,8 @@ use super::{Expr as Scalar, Function, Node};
 use crate::error::{Checked, catalogue};
 use crate::rational::Rational;
 use crate::syntax::{Expr, ExprKind, print_text, real};
-use crate::unit::{Number, Si, Unit};
+use crate::unit::Unit;
+use crate::unit::frame::{Number, Si};
 
 /// A value that is known when it compiles.
 pub(super) struct Constant {

@@ -8,7 +8,8 @@ use super::value::{Dim, Extent, Reads, Scalar, Value};
 use super::{Coordinate, Definition, Field, Model, Name, Node, Parameter, Part, Role};
 use crate::error::{Checked, catalogue};
 use crate::syntax::{Declaration, Expr, ExprKind, Kind, Module, Shape, print_latex, print_text};
-use crate::unit::{Dimension, Scale, Unit};
+use crate::unit::frame::Scale;
+use crate::unit::{Dimension, Unit};
 
 /// Declares everything a module declares outside its groups.
 pub(super) fn declare(module: &Module, elaborator: &mut Elaborator<'_>, model: &mut Model) {

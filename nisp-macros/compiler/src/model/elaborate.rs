@@ -5,7 +5,8 @@ use super::value::{DEEPEST, Dim, LARGEST, Reads, Scalar, Value};
 use super::{Coordinate, Node, build};
 use crate::error::{Checked, Errors, Place, catalogue};
 use crate::syntax::{Expr, ExprKind, Number, print_text};
-use crate::unit::{self, Dimension, Unit};
+use crate::unit::frame::{self, Scale};
+use crate::unit::{Dimension, Unit};
 
 /// What expressions are read against, and where mistakes go.
 pub(super) struct Elaborator<'e> {
@@ -90,8 +91,8 @@ impl<'e> Elaborator<'e> {
     }
 
     fn number(&mut self, number: &Number, unit: Option<&Unit>) -> Value {
-        let exact = number.exact.filter(|_| unit.is_none_or(|unit| unit.factor == unit::Scale::new(1.0)));
-        let value = unit.map_or(number.value, |unit| unit.factor.of(unit::Number::declared(number.value)).as_si());
+        let exact = number.exact.filter(|_| unit.is_none_or(|unit| unit.factor == Scale::new(1.0)));
+        let value = unit.map_or(number.value, |unit| unit.factor.of(frame::Number::declared(number.value)).as_si());
         let dimension = unit.map(|unit| unit.dimension.clone()).filter(|_| self.units_checked).unwrap_or_default();
         let node = match exact {
             Some(exact) if dimension.is_none() => Node::Number(exact),

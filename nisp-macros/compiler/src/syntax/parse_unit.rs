@@ -7,7 +7,8 @@ use super::parse_number;
 use super::stream::{Context, Stream};
 use crate::error::{Checked, Place, catalogue};
 use crate::rational::Rational;
-use crate::unit::{Dimension, Scale, Unit, look_up};
+use crate::unit::frame::Scale;
+use crate::unit::{Dimension, Unit, look_up};
 
 /// A product of powers under construction.
 struct Product {

@@ -6,7 +6,8 @@ use nisp_compiler::model::{
     Column, Coordinate, Expr, Field, Function, Group, Model, Name, Node, Parameter, Role, Scene, Term, TermKind,
 };
 use nisp_compiler::rational::ratio;
-use nisp_compiler::unit::{Dimension, Scale, Unit};
+use nisp_compiler::unit::frame::Scale;
+use nisp_compiler::unit::{Dimension, Unit};
 use proc_macro2::Span;
 
 pub(crate) const NONE: [i128; 3] = [0, 0, 0];
