@@ -37,7 +37,7 @@ pub use nisp_runtime::recover::{
 };
 pub use nisp_runtime::saved::{OpenAnswer, SavedAnswer, SavedError, SavedParameter};
 pub use nisp_runtime::verdict::{Check, Verdict};
-pub use nisp_runtime::{engine, local, nearest, network, peak, real, schema, simd, solve};
+pub use nisp_runtime::{engine, local, nearest, network, peak, real, schema, simd, solve, units};
 
 /// What emitted code refers to; not for direct use.
 #[doc(hidden)]
@@ -51,5 +51,6 @@ pub mod __private {
     pub use nisp_runtime::rules::Rules;
     pub use nisp_runtime::schema;
     pub use nisp_runtime::simd::Simd;
+    pub use nisp_runtime::units;
     pub use nisp_runtime::values::{Precompiled, Values};
 }

@@ -1,6 +1,6 @@
 //! Five operators: as `pde!` scenes, and as scenes of the dense jet that read the same derivatives.
 
-use nisp::__private::{CompiledLayers, CompiledPrograms, GroupKernel, Lane, Residuals, Simd, Sink, schema};
+use nisp::__private::{CompiledLayers, CompiledPrograms, GroupKernel, Lane, Residuals, Simd, Sink, schema, units};
 use nisp::{Precision, Problem, Scene, scene};
 
 use crate::dense::{Dense, channel};
@@ -84,7 +84,7 @@ impl<const JETS: usize> Residuals for Sum<JETS> {
     fn target_slopes(_: &[f64], _: &mut [f64]) {}
 }
 
-const NO_UNIT: schema::Unit = schema::Unit { exponents: [0.0; 7], factor: 1.0, text: "" };
+const NO_UNIT: schema::Unit = schema::Unit { exponents: [0.0; 7], factor: units::Scale::new(1.0), text: "" };
 
 /// Whatever a schema holds beside channels, jets and coordinates is that of the simplest emitted scene.
 const SIMPLEST: schema::Scene = *<second::generated::Scene as Scene>::SCHEMA;

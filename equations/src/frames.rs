@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use nisp::schema::TermKind;
+use nisp::units::Number;
 use nisp::{BindError, Problem};
 use nisp_data::{Cloud, DataError};
 
@@ -91,7 +92,7 @@ impl Frames {
 pub(crate) fn bind_cloud(problem: &mut Problem, cloud: &Cloud) -> Result<(), BindError> {
     for group in problem.scene().schema.groups {
         for term in group.terms.iter().filter(|term| matches!(term.kind, TermKind::Chamfer { .. })) {
-            let inward = |metres: &f64| metres / term.unit.factor;
+            let inward = |metres: &f64| term.unit.factor.back(Number::si(*metres)).as_declared();
             problem.set_cloud(group.name, term.name, cloud.points.iter().flatten().map(inward).collect())?;
         }
     }

@@ -2,6 +2,7 @@
 
 #![allow(deprecated, reason = "scene `edge_only` leaves the plate without its second edge condition on purpose")]
 
+use nisp::units::{Number, Scale};
 use nisp::{Points, Problem, scene_in_both_precisions as scene};
 use nisp_data::Table;
 use nisp_data::domain::{Domain, Sampling};
@@ -57,10 +58,14 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
     let sample: Sample = toml::from_str(&text).map_err(|error| fault(error.message().into()))?;
     let scene = entry.scene(request.scene.as_deref())?;
     let mut problem = Problem::new(scene);
-    let given = [("E", sample.young), ("nu", sample.poisson), ("t", 1e3 * sample.thickness), ("P", sample.pressure)];
-    for (name, value) in given.into_iter().chain(request.parameters.iter().map(|(name, value)| (name.as_str(), *value)))
-    {
-        problem.set_parameter(name, value)?;
+    let sampled = [("E", sample.young), ("nu", sample.poisson), ("t", sample.thickness), ("P", sample.pressure)];
+    for (name, value) in sampled {
+        let scalar = scene.schema.scalars.iter().find(|scalar| scalar.name == name);
+        let unit = scalar.map_or(Scale::new(1.0), |scalar| scalar.unit.factor);
+        problem.set_parameter(name, unit.inverse().of(Number::si(value)).as_declared())?;
+    }
+    for (name, value) in &request.parameters {
+        problem.set_parameter(name, *value)?;
     }
     let disc = Domain::disc([0.0, 0.0], sample.radius)?;
     let interior = disc.interior(POINTS.0, Sampling::Sobol, 0);

@@ -108,7 +108,7 @@ impl Series {
 fn parameter(schema: &Scene, request: &Request, name: &str) -> f64 {
     let asked = request.parameters.iter().rev().find(|(n, _)| n == name).map(|(_, value)| *value);
     let declared = schema.scalars.iter().find(|scalar| scalar.name == name).and_then(|scalar| match scalar.origin {
-        Origin::Given(value) => value.map(|value| value / scalar.unit.factor),
+        Origin::Given(value) => value.map(|value| scalar.unit.factor.back(value).as_declared()),
         _ => None,
     });
     asked.or(declared).unwrap_or(f64::NAN)

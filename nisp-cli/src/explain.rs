@@ -70,8 +70,8 @@ pub(crate) fn unknowns(schema: &Scene) -> Vec<String> {
             Origin::Learned { start, .. } => ("learned", start),
             Origin::Literal(_) | Origin::HeadScale(_) | Origin::SideScale { .. } => continue,
         };
-        let value =
-            value.map_or_else(|| "must be --set".into(), |value| format!("{}", rounded(value / scalar.unit.factor)));
+        let value = value.map(|value| rounded(scalar.unit.factor.back(value).as_declared()));
+        let value = value.map_or_else(|| "must be --set".into(), |value| value.to_string());
         line(format!("  {kind:10} {:5} {:9} {value}", scalar.name, unit(&scalar.unit)));
     }
     lines

@@ -7,6 +7,7 @@ use nisp_compiler::model::{self, Model, Role};
 use nisp_compiler::plan::{self, GroupPlan, Plan, RowKind, ScenePlan, TermPlan};
 use nisp_compiler::symbolic::exact::to_f64;
 use nisp_compiler::unit;
+use nisp_compiler::unit::frame::Number;
 use nisp_runtime::schema::{
     Column, Coordinate, FileKind, Group, Head, Held, Jet, Loss, Origin, Place, Portion, Region, RuleFlops, Scalar,
     Scene, Term, TermKind, Unit,
@@ -49,8 +50,8 @@ fn head(field: &model::Field) -> Head {
         name: text(&field.name.text),
         unit: unit(&field.unit),
         source: field.role == Role::Source,
-        lower: field.lower,
-        upper: field.upper,
+        lower: field.lower.map(Number::si),
+        upper: field.upper.map(Number::si),
         transformed: field.lower.is_some() || field.upper.is_some(),
         hard: field.hard.is_some(),
         docs: text(&describe::text(&field.docs)),
@@ -68,16 +69,18 @@ fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &pl
     match scalar {
         plan::Scalar::Parameter(at) => {
             let parameter = &model.parameters[*at];
-            let value = describe::default(model, declared, *at);
+            let value = describe::default(model, declared, *at).map(Number::si);
             Scalar {
                 name: text(&parameter.name.text),
                 unit: unit(&parameter.unit),
-                lower: parameter.lower,
-                upper: parameter.upper,
+                lower: parameter.lower.map(Number::si),
+                upper: parameter.upper.map(Number::si),
                 origin: if declared.learned[*at] { Origin::Learned { start: value } } else { Origin::Given(value) },
             }
         }
-        plan::Scalar::Literal(value, dimension) => unnamed(unit::Unit::si(dimension.clone()), Origin::Literal(*value)),
+        plan::Scalar::Literal(value, dimension) => {
+            unnamed(unit::Unit::si(dimension.clone()), Origin::Literal(Number::si(*value)))
+        }
         plan::Scalar::FieldScale(field) => {
             let head = scene.heads.iter().position(|head| head == field).unwrap_or(0);
             unnamed(unit::Unit::si(model.fields[*field].unit.dimension.clone()), Origin::HeadScale(head))
@@ -185,7 +188,7 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
             Loss::named(loss.variant, loss.threshold).expect("the runtime has every loss that the compiler names")
         }),
         weight: declared.weights[group.group][plan.term],
-        within: term.within,
+        within: term.within.map(Number::si),
         measure,
         first: plan.first,
         rows: plan.rows,

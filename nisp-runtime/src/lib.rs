@@ -42,4 +42,5 @@ pub mod verdict;
 mod weighed;
 mod wide;
 
+pub use nisp_units::frame as units;
 pub use splines::live;

@@ -5,13 +5,15 @@
 
 pub use crate::loss::Loss;
 
-/// A physical unit: exponents of m, kg, s, A, K, mol, cd, the factor to SI, and the text the user wrote.
+use crate::units::{Declared, Number, Scale, Si};
+
+/// A physical unit: exponents of m, kg, s, A, K, mol, cd, the scale to SI, and the text the user wrote.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Unit {
     /// Exponents over the SI base units.
     pub exponents: [f64; 7],
-    /// One of this unit in SI units.
-    pub factor: f64,
+    /// From numbers in this unit to SI.
+    pub factor: Scale<Declared, Si>,
     /// The unit as written; empty if dimensionless.
     pub text: &'static str,
 }
@@ -68,10 +70,10 @@ pub struct Head {
     pub unit: Unit,
     /// True for an unknown cause, false for a part of the state.
     pub source: bool,
-    /// Lower bound in SI units, kept by construction.
-    pub lower: Option<f64>,
-    /// Upper bound in SI units, kept by construction.
-    pub upper: Option<f64>,
+    /// Lower bound, kept by construction.
+    pub lower: Option<Number<Si>>,
+    /// Upper bound, kept by construction.
+    pub upper: Option<Number<Si>>,
     /// True if the network's output enters through a bound, so that it is dimensionless and neither shifted nor scaled.
     pub transformed: bool,
     /// True if a condition holds by construction: the quantity is a given value plus a distance times the network's output.
@@ -87,10 +89,10 @@ pub struct Scalar {
     pub name: &'static str,
     /// Its unit.
     pub unit: Unit,
-    /// Least value that makes sense, in SI units, if it was declared.
-    pub lower: Option<f64>,
-    /// Greatest value that makes sense, in SI units, if it was declared.
-    pub upper: Option<f64>,
+    /// Least value that makes sense, if it was declared.
+    pub lower: Option<Number<Si>>,
+    /// Greatest value that makes sense, if it was declared.
+    pub upper: Option<Number<Si>>,
     /// Where its value comes from.
     pub origin: Origin,
 }
@@ -98,15 +100,15 @@ pub struct Scalar {
 /// Where a scalar's value comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Origin {
-    /// The user gives it; the value is the declared default in SI units.
-    Given(Option<f64>),
+    /// The user gives it; the value is the declared default.
+    Given(Option<Number<Si>>),
     /// It is learned, within its bounds.
     Learned {
-        /// The declared default in SI units: where learning starts.
-        start: Option<f64>,
+        /// The declared default: where learning starts.
+        start: Option<Number<Si>>,
     },
-    /// A literal of the equations, in SI units.
-    Literal(f64),
+    /// A literal of the equations.
+    Literal(Number<Si>),
     /// The natural size of a head.
     HeadScale(usize),
     /// The natural size of one side of a complementarity.
@@ -329,9 +331,8 @@ pub struct Term {
     pub loss: Loss,
     /// The user's weight.
     pub weight: f64,
-    /// How far rows may be off, in SI units, if the user says so: the noise of data, the tolerance of a condition, the
-    /// spread of a prior.
-    pub within: Option<f64>,
+    /// How far rows may be off, if the user says so: the noise of data, the tolerance of a condition, the spread of a prior.
+    pub within: Option<Number<Si>>,
     /// Of an integral, the unit of the points' weights.
     pub measure: Option<Unit>,
     /// First row.

@@ -3,6 +3,7 @@
 use num_traits::Signed;
 
 use crate::Dimension;
+use crate::frame::{Declared, File, Number, Scale};
 use crate::rational::{Rational, ratio};
 use crate::table::{Symbol, look_up};
 
@@ -28,20 +29,19 @@ const SCALES: [(&str, f64, f64); 8] = [
     ("℉", 5.0 / 9.0, 459.67 * 5.0 / 9.0),
 ];
 
-/// How a number in one unit becomes one in another.
+/// How a number in the unit of a header becomes one in the unit that is asked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Conversion {
-    /// What it is multiplied by.
-    pub factor: f64,
+    scale: Scale<File, Declared>,
     /// What is added then: 273.15 from degrees Celsius to kelvins, zero but for temperatures.
-    pub shift: f64,
+    shift: Number<Declared>,
 }
 
 impl Conversion {
-    /// The number in the other unit; to the bit, sign of zero included, where that is the same unit.
-    pub fn of(&self, number: f64) -> f64 {
-        let product = number * self.factor;
-        if self.shift == 0.0 { product } else { product + self.shift }
+    /// The number in the unit that is asked for; to the bit, sign of zero included, where that is the header's.
+    pub fn of(&self, number: Number<File>) -> Number<Declared> {
+        let scaled = self.scale.of(number);
+        if self.shift == Number::declared(0.0) { scaled } else { scaled + self.shift }
     }
 }
 
@@ -53,9 +53,9 @@ impl Conversion {
 pub fn conversion(from: &str, to: &str) -> Option<Conversion> {
     if let Some((degree, zero)) = scale(from) {
         let kelvin = factor("K", to)?;
-        return Some(Conversion { factor: degree * kelvin, shift: zero * kelvin });
+        return Some(Conversion { scale: Scale::new(degree * kelvin), shift: Number::declared(zero * kelvin) });
     }
-    Some(Conversion { factor: factor(from, to)?, shift: 0.0 })
+    Some(Conversion { scale: Scale::new(factor(from, to)?), shift: Number::declared(0.0) })
 }
 
 /// A scale of temperature: a degree and the zero, in kelvins.
@@ -187,11 +187,12 @@ mod tests {
 
     #[test]
     fn temperatures_begin_elsewhere() {
-        let kelvins = |from, number| Some((conversion(from, "K")?.of(number) * 1e9).round() / 1e9);
+        let converted = |from, to, number| Some(conversion(from, to)?.of(Number::file(number)).as_declared());
+        let kelvins = |from, number| Some((converted(from, "K", number)? * 1e9).round() / 1e9);
         assert_eq!(kelvins("degC", -40.0), Some(233.15));
         assert_eq!(kelvins("°F", -40.0), Some(233.15));
         assert_eq!(kelvins("mK", 1.0), Some(1e-3));
-        assert_eq!(conversion("degC", "mK").map(|found| found.of(1.0)), Some(274_150.0));
+        assert_eq!(converted("degC", "mK", 1.0), Some(274_150.0));
         assert!(conversion("degC", "s").is_none() && conversion("degC/s", "K/s").is_none());
     }
 

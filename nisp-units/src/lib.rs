@@ -1,10 +1,12 @@
-//! Physical units: exact rational exponents over the SI base units, and the factor to SI. What equations, headers of tables and
-//! results know of units they know from here.
+//! Physical units: exact rational exponents over the SI base units, and the scale to SI. What equations, headers of tables and
+//! results know of units they know from here. A number's type says in which units it is: see [`frame`].
 
 use num_traits::{One, Zero};
 
+use crate::frame::{Declared, Scale, Si};
 use crate::rational::{Rational, ratio};
 
+pub mod frame;
 mod header;
 pub mod rational;
 mod show;
@@ -23,13 +25,13 @@ const LARGEST_EXPONENT: i128 = 1000;
 #[derive(Clone, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Default)]
 pub struct Dimension(pub [Rational; BASES]);
 
-/// A unit as written by the user: its dimension, its size in SI, and its text (`mm`, `N/m^2`; empty for `1`).
+/// A unit as written by the user: its dimension, its scale to SI, and its text (`mm`, `N/m^2`; empty for `1`).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Unit {
     /// Exponents over the base units.
     pub dimension: Dimension,
-    /// One of this unit in SI units: 1e-3 for `mm`.
-    pub factor: f64,
+    /// From numbers in this unit to SI: 1e-3 for `mm`.
+    pub factor: Scale<Declared, Si>,
     /// The text between the brackets, as the user wrote it.
     pub text: String,
 }
@@ -92,13 +94,13 @@ fn sensible(exponent: &Rational) -> bool {
 impl Unit {
     /// The unit of pure numbers.
     pub fn one() -> Self {
-        Self { dimension: Dimension::none(), factor: 1.0, text: String::new() }
+        Self { dimension: Dimension::none(), factor: Scale::new(1.0), text: String::new() }
     }
 
     /// The SI unit of a dimension, spelled in a way that parses again.
     pub fn si(dimension: Dimension) -> Self {
         let text = if dimension.is_none() { String::new() } else { dimension.to_string() };
-        Self { dimension, factor: 1.0, text }
+        Self { dimension, factor: Scale::new(1.0), text }
     }
 }
 

@@ -1,6 +1,8 @@
 //! How the points of a cloud count: their noise and its directions, points that are off alike, declared losses and weights.
 
+use nisp::schema::Unit;
 use nisp::solve::driver::Status;
+use nisp::units::Number;
 use nisp::{Problem, SceneRef, Tolerance, scene};
 
 use crate::drum::*;
@@ -42,6 +44,11 @@ nisp::pde! {
     }
 }
 
+/// A length in a unit, in metres.
+fn metres(unit: Unit, length: f64) -> f64 {
+    unit.factor.of(Number::declared(length)).as_si()
+}
+
 /// Tension, its deviation, and the noise of the cloud in millimetres.
 fn tension(scene: SceneRef, noise: f64, every: usize) -> (f64, f64, f64) {
     let mut problem = Problem::new(scene);
@@ -50,7 +57,7 @@ fn tension(scene: SceneRef, noise: f64, every: usize) -> (f64, f64, f64) {
     let tension = solution.learned()[0].clone();
     let terms = solution.terms();
     let cloud = terms.iter().find(|term| term.observation).unwrap();
-    (tension.value, tension.deviation.unwrap_or(f64::NAN), cloud.noise.unwrap() * cloud.unit.factor * 1e3)
+    (tension.value, tension.deviation.unwrap_or(f64::NAN), metres(cloud.unit, cloud.noise.unwrap()) * 1e3)
 }
 
 /// Whether points are off along the view alone or in all directions is found out from the points, of which some are pushed beyond
@@ -67,9 +74,9 @@ fn noise_may_be_along_the_view_or_in_all_directions() {
         let force = force(&solution);
         let off = (force / true_force(f, a) - 1.0).abs();
         let found = solution.terms().iter().find(|term| term.observation).unwrap().noise.unwrap();
-        let unit = problem.scene().schema.groups[1].terms[0].unit.factor;
+        let unit = problem.scene().schema.groups[1].terms[0].unit;
         assert!(off < 0.02, "{noise:?}: {force}");
-        assert!((1e3 * unit * found - 1.0).abs() < 0.1, "{noise:?}: {found}");
+        assert!((1e3 * metres(unit, found) - 1.0).abs() < 0.1, "{noise:?}: {found}");
         assert_eq!(solution.status, Status::Converged, "{noise:?}");
     }
 }
@@ -85,8 +92,9 @@ fn points_that_are_off_alike_count_as_one() {
         let mut cloud = seen(0.0, 1.0, ([0.0, 0.0, 0.1], 0));
         cloud.chunks_mut(3).for_each(|c| c[2] += 0.7 * (c[0] / 4.0).sin() * (c[1] / 4.0).sin());
         set_cloud(&mut problem, cloud);
-        let unit = 1e-3 / problem.scene().schema.groups[1].terms[0].unit.factor;
-        let tolerance = Tolerance { size: 0.5 * unit, region: region * unit };
+        let unit = problem.scene().schema.groups[1].terms[0].unit;
+        let declared = |metres| unit.factor.back(Number::si(metres)).as_declared();
+        let tolerance = Tolerance { size: declared(0.5e-3), region: declared(1e-3 * region) };
         problem.set_tolerance("surface", "cloud", tolerance).unwrap();
         let solution = solve(&problem, Some(PATCHES), 2);
         force(&solution)
@@ -127,12 +135,13 @@ fn terms_say_how_well_they_are_met() {
     assert_eq!(names, ["interior.balance", "surface.cloud", "rim.held"]);
     let [balance, cloud, held] = &terms[..] else { panic!("three terms") };
     assert!(cloud.observation && !balance.observation && balance.noise.is_none() && held.noise.is_none());
-    let millimetres = |term: &nisp::TermReport| term.rms * term.unit.factor * 1e3;
+    let millimetres = |term: &nisp::TermReport| metres(term.unit, term.rms) * 1e3;
     assert!((millimetres(cloud) / 0.1 - 1.0).abs() < 0.1, "{}", millimetres(cloud));
     assert!(held.rms < 1e-2 * held.size, "{held:?}");
     // The pressure in the unit of the equation, from which the splines are off by little.
     assert!(
-        (balance.size * balance.unit.factor / P - 2.0).abs() < 1.5 && balance.rms < 0.05 * balance.size,
+        (balance.unit.factor.of(Number::declared(balance.size)).as_si() / P - 2.0).abs() < 1.5
+            && balance.rms < 0.05 * balance.size,
         "{balance:?}"
     );
 }

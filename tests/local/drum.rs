@@ -12,6 +12,7 @@ use std::time::Duration;
 
 use nisp::local::{Local, Patches};
 use nisp::solve::driver::Flow;
+use nisp::units::Number;
 use nisp::{Carrier, Points, Problem, Settings, Solution, recover};
 
 nisp::pde! {
@@ -97,8 +98,8 @@ pub(crate) fn bind_with_outliers(problem: &mut Problem, f: f64, a: f64, (noise, 
 /// Binds a cloud in millimetres. Clouds are given in the unit of their term.
 pub(crate) fn set_cloud(problem: &mut Problem, cloud: Vec<f64>) {
     let term = &problem.scene().schema.groups[1].terms[0];
-    let unit = 1e-3 / term.unit.factor;
-    problem.set_cloud("surface", term.name, cloud.into_iter().map(|x| unit * x).collect()).unwrap();
+    let declared = |millimetres| term.unit.factor.back(Number::si(1e-3 * millimetres)).as_declared();
+    problem.set_cloud("surface", term.name, cloud.into_iter().map(declared).collect()).unwrap();
 }
 
 /// A cloud in millimetres that is noisy along the axes; every so many points are 8 mm too high, 0 for none.

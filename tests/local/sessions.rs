@@ -51,6 +51,25 @@ fn a_session_doubts_what_a_single_answer_doubts() {
     }
 }
 
+/// New clouds are brought into the units and scales that the first one led to: terms keep their natural sizes to the last bit. A
+/// session that begins with such a cloud finds others.
+#[test]
+fn a_session_keeps_its_scaling() {
+    let sizes = |session: &mut Session| -> Vec<f64> {
+        let terms = session.update(&mut |_| Flow::Continue).unwrap().terms();
+        terms.iter().map(|term| term.size).collect()
+    };
+    let mut session = pressed_session(0.1);
+    let first = sizes(&mut session);
+    bind(session.problem(), 12_400.0, 12.3, 0.1);
+    let followed = sizes(&mut session);
+    assert!(session.solution().unwrap().iterations < 5, "sought anew");
+    assert_eq!(followed, first);
+    let mut anew = pressed_session(0.1);
+    bind(anew.problem(), 12_400.0, 12.3, 0.1);
+    assert_ne!(sizes(&mut anew), first);
+}
+
 /// A session with the pressed drumhead, its first cloud as noisy as this.
 fn pressed_session(noise: f64) -> Session {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());

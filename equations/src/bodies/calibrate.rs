@@ -1,6 +1,7 @@
 //! Calibration of a bubble from frames in which nothing touches it.
 
 use nisp::nearest::Nearest;
+use nisp::units::Number;
 use nisp_data::{Cloud, DataError};
 
 use super::given::Given;
@@ -71,7 +72,8 @@ impl References {
         let widen = [of("widen_a")?, of("widen_b")?];
         let pose = Pose {
             turn_rad: all(["turn_x", "turn_y", "turn_z"])?,
-            shift_m: all(["shift_x", "shift_y", "shift_z"])?.map(|shift| contact.unit * shift),
+            shift_m: all(["shift_x", "shift_y", "shift_z"])?
+                .map(|shift| contact.unit.of(Number::declared(shift)).as_si()),
         };
         let known = |value: Option<f64>, what| value.ok_or_else(|| missing(what));
         let (a, b) = (known(self.given.a_m, "semi-axis a")?, known(self.given.b_m, "semi-axis b")?);

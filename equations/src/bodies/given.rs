@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use nisp::schema::{Origin, Scalar, Scene};
+use nisp::units::{Declared, Number, Scale, Si};
 use nisp::{BindError, Problem, SceneRef};
 
 use crate::PrepareError;
@@ -10,13 +11,13 @@ use crate::entry::Size;
 use crate::prepared::Assumed;
 use crate::request::Request;
 
-/// A number of a sample, in SI units.
-pub(super) struct Number {
+/// A number that a sample has a place for.
+pub(super) struct Sampled {
     /// The parameter's name in the scene.
     pub(super) name: &'static str,
     /// Its table and key in the file.
     pub(super) key: &'static str,
-    /// Its value, if the file has it.
+    /// Its value in SI units, if the file has it.
     pub(super) value: Option<f64>,
 }
 
@@ -25,7 +26,7 @@ pub(super) struct Given<'a> {
     pub(super) scene: SceneRef,
     pub(super) request: &'a Request,
     /// A sample's path and numbers.
-    pub(super) sample: Option<(&'a Path, Vec<Number>)>,
+    pub(super) sample: Option<(&'a Path, Vec<Sampled>)>,
     pub(super) sizes: &'static [Size],
 }
 
@@ -48,12 +49,12 @@ impl Given<'_> {
         let mut problem = Problem::new(self.scene);
         for scalar in scalars() {
             let Some(value) = self.value(scalar.name)? else { continue };
-            problem.set_parameter(scalar.name, value / scalar.unit.factor)?;
+            problem.set_parameter(scalar.name, scalar.unit.factor.back(value).as_declared())?;
         }
         for &(name, must) in positive {
-            let Some(value) = self.of(name)?.filter(|value| *value <= 0.0) else { continue };
+            let Some(value) = self.known(name)?.filter(|value| *value <= Number::si(0.0)) else { continue };
             let (unit, factor) = unit(schema, name);
-            return Err(PrepareError::Range { name, value: value / factor, unit, must });
+            return Err(PrepareError::Range { name, value: factor.back(value).as_declared(), unit, must });
         }
         Ok(problem)
     }
@@ -71,9 +72,9 @@ impl Given<'_> {
         let is_given = |scalar: &&Scalar| !scalar.name.is_empty() && matches!(scalar.origin, Origin::Given(_));
         let names = schema.scalars.iter().filter(is_given).map(|scalar| scalar.name);
         for name in names.chain(self.sizes.iter().map(|size| size.name)) {
-            if let (None, Some(value)) = (self.value(name)?, self.of(name)?) {
+            if let (None, Some(value)) = (self.value(name)?, self.known(name)?) {
                 let (unit, factor) = unit(schema, name);
-                assumed.push(Assumed { name, value: value / factor, unit });
+                assumed.push(Assumed { name, value: factor.back(value).as_declared(), unit });
             }
         }
         Ok(assumed)
@@ -84,13 +85,18 @@ impl Given<'_> {
     /// # Errors
     /// As [`Given::problem`].
     pub(super) fn of(&self, name: &'static str) -> Result<Option<f64>, PrepareError> {
+        Ok(self.known(name)?.map(Number::as_si))
+    }
+
+    /// A parameter or size, by whatever says it.
+    fn known(&self, name: &'static str) -> Result<Option<Number<Si>>, PrepareError> {
         let schema = self.scene.schema;
         let declared =
             schema.scalars.iter().find(|scalar| scalar.name == name).and_then(|scalar| match scalar.origin {
                 Origin::Given(value) | Origin::Learned { start: value, .. } => value,
                 _ => None,
             });
-        let usual = self.sizes.iter().find(|size| size.name == name).map(|size| size.usual);
+        let usual = self.sizes.iter().find(|size| size.name == name).map(|size| Number::si(size.usual));
         Ok(self.value(name)?.or(declared).or(usual))
     }
 
@@ -105,14 +111,15 @@ impl Given<'_> {
         Err(PrepareError::Range { name, value: size, unit: "m", must })
     }
 
-    /// What the user says, in SI units.
-    pub(super) fn says(&self, name: &str) -> Option<f64> {
+    /// What the user says.
+    pub(super) fn says(&self, name: &str) -> Option<Number<Si>> {
         let (_, factor) = unit(self.scene.schema, name);
-        self.request.parameters.iter().rev().find(|(own, _)| own == name).map(|(_, value)| value * factor)
+        let said = self.request.parameters.iter().rev().find(|(own, _)| own == name);
+        said.map(|(_, value)| factor.of(Number::declared(*value)))
     }
 
-    /// What the user or the sample says, in SI units; nothing where what is declared will do.
-    fn value(&self, name: &'static str) -> Result<Option<f64>, PrepareError> {
+    /// What the user or the sample says; nothing where what is declared will do.
+    fn value(&self, name: &'static str) -> Result<Option<Number<Si>>, PrepareError> {
         let schema = self.scene.schema;
         let (unit, _) = unit(schema, name);
         if let Some(value) = self.says(name) {
@@ -128,8 +135,8 @@ impl Given<'_> {
             .as_ref()
             .and_then(|(path, numbers)| Some((path, numbers.iter().find(|number| number.name == name)?)));
         match number {
-            Some((_, Number { value: Some(value), .. })) => Ok(Some(*value)),
-            Some((path, Number { key, .. })) => {
+            Some((_, Sampled { value: Some(value), .. })) => Ok(Some(Number::si(*value))),
+            Some((path, Sampled { key, .. })) => {
                 Err(PrepareError::SampleKey { path: path.to_path_buf(), key, name, unit })
             }
             None => match scalar.map(|scalar| &scalar.origin) {
@@ -142,8 +149,8 @@ impl Given<'_> {
     }
 }
 
-/// Unit and size in SI of a parameter; of a size, metres.
-fn unit(schema: &Scene, name: &str) -> (&'static str, f64) {
+/// The unit of a parameter; of a size, metres.
+fn unit(schema: &Scene, name: &str) -> (&'static str, Scale<Declared, Si>) {
     let scalar = schema.scalars.iter().find(|scalar| scalar.name == name);
-    scalar.map_or(("m", 1.0), |scalar| (scalar.unit.text, scalar.unit.factor))
+    scalar.map_or(("m", Scale::new(1.0)), |scalar| (scalar.unit.text, scalar.unit.factor))
 }

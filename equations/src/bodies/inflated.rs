@@ -2,12 +2,13 @@
 
 use nisp::Tolerance;
 use nisp::local::{Local, Patches};
+use nisp::units::{Number, Scale};
 use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use serde::Deserialize;
 
 use super::calibrate::region;
-use super::given::{Given, Number, Positive};
+use super::given::{Given, Positive, Sampled};
 use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
 use crate::contact::{CALIBRATES, Calibration, Contact, ContactRival, Face, Load, Membrane, References, Rule, Surface};
@@ -85,7 +86,8 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     }
     let schema = scene.schema;
     let calibrates = schema.name.starts_with(CALIBRATES);
-    let pressure = schema.heads.iter().find(|head| head.source).map(|head| head.name);
+    let source = schema.heads.iter().find(|head| head.source);
+    let pressure = source.map(|head| head.name);
     let example = if pressure.is_some() { &theory.pressed } else { &theory.inflated };
     let mut observed = if calibrates { Observed::all(request)? } else { Observed::read(entry, request, example)? };
     let sample =
@@ -100,8 +102,10 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     }
 
     let ellipse = Domain::ellipse([0.0, 0.0], [a, b])?;
-    let level = given.of("p")?.filter(|_| pressure.is_some());
-    let patches = level.map(|level| Patches { level, ..theory.patches });
+    let patches = given.of("p")?.zip(source).map(|(level, head)| {
+        let level = head.unit.factor.back(Number::si(level)).as_declared();
+        Patches { level, ..theory.patches }
+    });
     // What a calibration leaves must not be the error of a coarser lattice than later frames are solved on.
     let usual = if patches.is_some() || calibrates { CELLS_FOR_PATCHES } else { LOCAL.cells };
     let cells = request.cells.unwrap_or(usual);
@@ -149,7 +153,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
     let mut contact = Contact {
         displacement: ["u", "v", "w"],
-        unit: 1e-3,
+        unit: Scale::new(1e-3),
         pressure,
         rule: (theory.rule)(given.of("p")?.unwrap_or(0.0)),
         load: theory.load,
@@ -189,9 +193,9 @@ fn stiff(given: &Given<'_>) -> Result<f64, PrepareError> {
     Ok(0.5 * value("p")? * value("b")? / (STRETCH * value("t")?))
 }
 
-fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
+fn numbers(sample: &Sample) -> Result<Vec<Sampled>, PrepareError> {
     let Membrane { a_m, b_m, thickness_m, young, poisson, stretch, pressure } = sample.tables::<Tables>()?.membrane;
-    let number = |name, key, value| Number { name, key, value };
+    let number = |name, key, value| Sampled { name, key, value };
     let mut numbers = vec![
         number("a", "[membrane] a_m", a_m),
         number("b", "[membrane] b_m", b_m),

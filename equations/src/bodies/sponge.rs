@@ -1,10 +1,11 @@
 //! Binds the sponge's scenes to a cloud of its sides and the wrench that it carries.
 
 use nisp::local::{Local, Patches};
+use nisp::units::Scale;
 use nisp_data::domain::{Domain, Points, Sampling};
 use serde::Deserialize;
 
-use super::given::{Given, Number, Positive};
+use super::given::{Given, Positive, Sampled};
 use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
 use crate::contact::{Contact, ContactRival, Face, Load, Rule, Surface};
@@ -147,7 +148,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let square = Domain::cuboid(&low[..2], &high[..2])?;
     let mut contact = Contact {
         displacement: ["u_x", "u_y", "u_z"],
-        unit: 1e-3,
+        unit: Scale::new(1e-3),
         pressure: Some("f"),
         rule: RULE,
         load: Load::Fixed(presses),
@@ -180,9 +181,9 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     })
 }
 
-fn numbers(sample: &Sample) -> Result<Vec<Number>, PrepareError> {
+fn numbers(sample: &Sample) -> Result<Vec<Sampled>, PrepareError> {
     let Tables { sponge, pose, wrench } = sample.tables()?;
-    let number = |name, key, value| Number { name, key, value };
+    let number = |name, key, value| Sampled { name, key, value };
     let mut numbers = vec![
         number("side", "[sponge] side_m", sponge.side_m),
         number("E", "[sponge] young_Pa", sponge.young),

@@ -24,6 +24,7 @@ pub use score::{Against, ContactScore, TrueContact, Values};
 
 use nisp::nearest::Nearest;
 use nisp::schema::Scene;
+use nisp::units::{Declared, Number, Scale, Si};
 use nisp_data::{DataError, Table};
 
 use crate::truth::{Headers, Truth};
@@ -35,8 +36,8 @@ const SLACK: f64 = 0.01;
 pub struct Contact {
     /// The fields that move a point along x, y and z.
     pub displacement: [&'static str; 3],
-    /// Metres in one of the displacements' unit.
-    pub unit: f64,
+    /// From the displacements' unit to metres.
+    pub unit: Scale<Declared, Si>,
     /// The source that presses, in pascals; nothing where the scene says that nothing does.
     pub pressure: Option<&'static str>,
     /// How a touched point is told.
@@ -85,7 +86,8 @@ impl Contact {
     /// A plane body rests at z = 0.
     pub fn deformed(&self, points: &[f64], displacement: [&[f64]; 3]) -> Vec<[f64; 3]> {
         let place = |(at, rest): (usize, &[f64])| {
-            let along = |axis: usize| rest.get(axis).copied().unwrap_or(0.0) + self.unit * displacement[axis][at];
+            let moved = |axis: usize| self.unit.of(Number::declared(displacement[axis][at])).as_si();
+            let along = |axis: usize| rest.get(axis).copied().unwrap_or(0.0) + moved(axis);
             std::array::from_fn(along)
         };
         points.chunks_exact(self.face.dim.max(1)).enumerate().map(place).collect()

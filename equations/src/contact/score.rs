@@ -126,6 +126,7 @@ impl Contact {
 mod tests {
     use super::*;
     use crate::contact::{Rule, Surface};
+    use nisp::units::Scale;
     use nisp_data::domain::{Domain, Sampling};
 
     /// A plane body of one metre with its points and a truth: a disc of radius 0.3 m that carries 5 kPa, 2 mm up.
@@ -145,7 +146,7 @@ mod tests {
         let truth = Truth { points: points.clone(), heads, outside: 0 };
         let mut contact = Contact {
             displacement: ["u", "v", "w"],
-            unit: 1e-3,
+            unit: Scale::new(1e-3),
             pressure: Some("f"),
             rule: Rule { least: 2500.0, of_mean: 2.0 },
             load: Load::Fixed([0.0, 0.0, -1.0]),

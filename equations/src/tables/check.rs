@@ -53,7 +53,8 @@ pub(crate) fn assumed(schema: &Scene, request: &Request) -> Vec<Assumed> {
     let declared =
         schema.scalars.iter().filter(|_| !request.data.is_empty()).filter_map(|scalar| match scalar.origin {
             Origin::Given(Some(value)) if !scalar.name.is_empty() => {
-                Some(Assumed { name: scalar.name, value: value / scalar.unit.factor, unit: scalar.unit.text })
+                let value = scalar.unit.factor.back(value).as_declared();
+                Some(Assumed { name: scalar.name, value, unit: scalar.unit.text })
             }
             _ => None,
         });

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use nisp::schema::{Group, Scene, Term, TermKind};
+use nisp::units::Number;
 use nisp_data::DataError;
 use nisp_data::cloud::View;
 
@@ -63,8 +64,8 @@ pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) ->
             }
             cloud.thin(cloud.length() / CELLS, POINTS_OF_A_CELL);
             found.warnings.extend(cloud.warnings);
-            let size = if is_plain { 1.0 } else { term.unit.factor.recip() };
-            let points = cloud.points.iter().flat_map(|point| point.iter().take(term.rows)).map(|x| x * size);
+            let inward = |metres: &f64| term.unit.factor.inverse().of(Number::si(*metres)).as_declared();
+            let points = cloud.points.iter().flat_map(|point| point.iter().take(term.rows)).map(inward);
             found.problem.set_cloud(group.name, term.name, points.collect())?;
         }
     }

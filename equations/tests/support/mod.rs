@@ -2,6 +2,7 @@
 
 use nisp::schema::{Group, Jet, Origin};
 use nisp::simd::Isa;
+use nisp::units::Number;
 use nisp::{Precision, SceneRef};
 use nisp_runtime::residual::Points;
 
@@ -27,9 +28,9 @@ pub(crate) fn rows(scene: SceneRef, group: &str, given: &[(&str, f64)], point: &
         .map(|scalar| match scalar.origin {
             Origin::Given(value) | Origin::Learned { start: value, .. } => {
                 let given = given.iter().find(|(name, _)| *name == scalar.name).map(|(_, value)| *value);
-                given.or(value).unwrap_or_else(|| panic!("no value for {}", scalar.name))
+                given.or(value.map(Number::as_si)).unwrap_or_else(|| panic!("no value for {}", scalar.name))
             }
-            Origin::Literal(value) => value,
+            Origin::Literal(value) => value.as_si(),
             Origin::HeadScale(_) | Origin::SideScale { .. } => 1.0,
         })
         .collect();

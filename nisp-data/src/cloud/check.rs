@@ -3,6 +3,8 @@
 use std::fmt::Write;
 use std::str::FromStr;
 
+use nisp_units::frame::{File, Number, Scale, Si};
+
 use super::Cloud;
 use crate::DataError;
 
@@ -32,15 +34,15 @@ impl LengthUnit {
     const ALL: [LengthUnit; 5] =
         [LengthUnit::Millimetre, LengthUnit::Centimetre, LengthUnit::Micrometre, LengthUnit::Inch, LengthUnit::Metre];
 
-    /// Metres in one.
-    pub fn metres(self) -> f64 {
-        match self {
+    /// From coordinates in this unit to metres.
+    pub fn metres(self) -> Scale<File, Si> {
+        Scale::new(match self {
             LengthUnit::Metre => 1.0,
             LengthUnit::Centimetre => 1e-2,
             LengthUnit::Millimetre => 1e-3,
             LengthUnit::Micrometre => 1e-6,
             LengthUnit::Inch => 0.0254,
-        }
+        })
     }
 
     /// As it is written: `m`, `cm`, `mm`, `um`, `in`.
@@ -76,7 +78,7 @@ impl Cloud {
             self.warnings.push(format!("the file says its own unit, so that --unit {symbol} is not used"));
             return;
         }
-        self.points.iter_mut().flatten().for_each(|value| *value *= unit.metres());
+        self.points.iter_mut().flatten().for_each(|x| *x = unit.metres().of(Number::file(*x)).as_si());
         self.is_in_metres = true;
     }
 
@@ -108,7 +110,7 @@ impl Cloud {
         let size = |low: &[f64], high: &[f64]| low.iter().zip(high).take(axes).map(|(a, b)| b - a).fold(0.0, f64::max);
         let (cloud, domain) = (size(&from, &to), size(low, high));
         let ratio = cloud / domain;
-        let unit = LengthUnit::ALL.into_iter().find(|unit| EXPLAINED.contains(&(ratio * unit.metres())));
+        let unit = LengthUnit::ALL.into_iter().find(|unit| EXPLAINED.contains(&(ratio * unit.metres().factor())));
         if !PLAUSIBLE.contains(&ratio) {
             let spans = format!("the cloud spans {} m; the domain {} m", extents(&from, &to), extents(low, high));
             return Err(DataError::invalid(match unit {

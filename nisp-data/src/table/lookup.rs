@@ -1,6 +1,7 @@
 //! Which header answers to a name. For `q` in metres: `q`, `q [m]`, `q (m)` or `q_m`; anything longer must be asked for by its
 //! exact header, because guessing between `q_m_sigma0` and `q_m_sigma0.01` would be a quiet wrong answer.
 
+use nisp_units::frame::Number;
 use nisp_units::{Conversion, conversion, is_unit};
 
 use super::{Column, Kind, Table};
@@ -12,7 +13,7 @@ const ALIKE: f64 = 0.85;
 
 impl Table {
     /// The column that answers to `name`: an exact header, or the only one of the forms `name [unit]`, `name (unit)` and
-    /// `name_unit`.
+    /// `name_unit`. Its numbers are as they stand in the file, whatever unit the header names.
     pub fn column(&self, name: &str) -> Result<&[f64], DataError> {
         self.checked(self.find(name, None)?)
     }
@@ -59,7 +60,7 @@ impl Table {
     ) -> Result<Vec<f64>, DataError> {
         let values = read(self, column)?;
         Ok(match self.conversion_of(column, (name, unit))? {
-            Some(conversion) => values.iter().map(|&value| conversion.of(value)).collect(),
+            Some(conversion) => values.iter().map(|&value| conversion.of(Number::file(value)).as_declared()).collect(),
             None => values.to_vec(),
         })
     }
@@ -107,8 +108,8 @@ impl Table {
             return Err(DataError::Column { path: self.path.clone(), what });
         }
         let [x, y, z] = [self.raw(columns[0])?, self.raw(columns[1])?, self.raw(columns[2])?];
-        let [a, b, c] = sizes.map(|size| size.map_or(1.0, |size| size.factor));
-        let points = (0..self.rows()).map(|row| [a * x[row], b * y[row], c * z[row]]).collect();
+        let metres = |axis: usize, x: f64| sizes[axis].map_or(x, |size| size.of(Number::file(x)).as_declared());
+        let points = (0..self.rows()).map(|row| [metres(0, x[row]), metres(1, y[row]), metres(2, z[row])]).collect();
         Ok((points, sizes[0].is_some()))
     }
 

@@ -47,7 +47,7 @@ pub(crate) struct Raw {
 /// The bounds of a scene's heads; nothing for heads without.
 pub(crate) fn limits(schema: &schema::Scene, system: &UnitSystem) -> Vec<Option<Limits>> {
     let limits = |head: &schema::Head| {
-        let inward = |bound: f64| bound / system.size(&head.unit);
+        let inward = |bound| system.size(&head.unit).back(bound).as_engine();
         let limits = Limits { lower: head.lower.map(inward), upper: head.upper.map(inward) };
         head.transformed.then_some(limits)
     };

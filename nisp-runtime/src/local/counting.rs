@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use nalgebra::Vector3;
 
 use crate::loss::Loss;
-use crate::problem::Tolerance;
+use crate::problem::EngineTolerance;
 use crate::schema;
 
 /// How the misfits of a cloud's points count.
@@ -29,7 +29,7 @@ pub(super) struct Counting {
 impl Counting {
     /// As declared; `size` is the standard deviation of a term that says `within`. Clouds have outliers, so that those of one of which
     /// nothing is said count little while the surface is sought, and not at all once it is near.
-    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64, tolerance: Option<Tolerance>) -> Self {
+    pub(super) fn of(term: &schema::Term, declared: Loss, size: f64, tolerance: Option<EngineTolerance>) -> Self {
         /// Deviations from which on a point counts less, and not at all.
         const UNLIKELY: f64 = 3.0;
         const OUTLIER: f64 = 6.0;

@@ -10,7 +10,7 @@ impl Problem {
         let Some(at) = schema.groups.iter().position(|group| group.is_beliefs()) else { return self };
         let given = |name: &str| {
             let slot = schema.scalars.iter().position(|scalar| scalar.name == name)?;
-            Some(self.scalars[slot]? / schema.scalars[slot].unit.factor)
+            Some(schema.scalars[slot].unit.factor.back(self.scalars[slot]?).as_declared())
         };
         let columns = schema.groups[at].columns.iter().map(|column| vec![given(column.name).unwrap_or(0.0)]).collect();
         // Any point will do: beliefs read no coordinate.

@@ -10,6 +10,7 @@ use crate::engine::{Learned, LearnedMap};
 use crate::loss::Loss;
 use crate::network::Inputs;
 use crate::schema::{self, Origin};
+use crate::units::Number;
 
 /// Threshold of the loss of observations that are to be robust, in standard deviations of their noise: values are left out
 /// from some five of them on.
@@ -40,13 +41,18 @@ fn inward_clouds(group: &schema::Group, system: &UnitSystem, binding: &Binding) 
         schema::TermKind::Chamfer { .. } => binding.cloud(term.name).unwrap_or_default(),
         _ => &[],
     };
-    let inward = |term| cloud(term).iter().map(|x| x * system.inward(&term.unit)).collect();
-    group.terms.iter().map(inward).collect()
+    group.terms.iter().map(|term| inward(system, &term.unit, cloud(term))).collect()
 }
 
 fn inward_columns(group: &schema::Group, system: &UnitSystem, binding: &Binding) -> Vec<Vec<f64>> {
     let columns = group.columns.iter().zip(&binding.columns);
-    columns.map(|(column, values)| values.iter().map(|x| x * system.inward(&column.unit)).collect()).collect()
+    columns.map(|(column, values)| inward(system, &column.unit, values)).collect()
+}
+
+/// Numbers in their declared unit, in the engine's.
+fn inward(system: &UnitSystem, unit: &schema::Unit, numbers: &[f64]) -> Vec<f64> {
+    let inward = system.inward(unit);
+    numbers.iter().map(|&x| inward.of(Number::declared(x)).as_engine()).collect()
 }
 
 /// How learned scalars follow from their parameters.
@@ -60,7 +66,8 @@ fn learned(schema: &schema::Scene, system: &UnitSystem, scalars: &[f64]) -> Vec<
         .map(|(slot, scalar, lower, upper)| {
             let size = system.size(&scalar.unit);
             let start = scalars[slot];
-            let map = match (lower.map(|x| x / size), upper.map(|x| x / size)) {
+            let inward = |bound| size.back(bound).as_engine();
+            let map = match (lower.map(inward), upper.map(inward)) {
                 (Some(lower), Some(upper)) if lower < start && start < upper => {
                     LearnedMap::Between(lower, upper, ((start - lower) / (upper - start)).ln())
                 }
@@ -89,13 +96,13 @@ impl Bound {
             .scalars
             .iter()
             .zip(&problem.scalars)
-            .map(|(scalar, value)| value.map_or(1.0, |value| value / system.size(&scalar.unit)))
+            .map(|(scalar, value)| value.map_or(1.0, |value| system.size(&scalar.unit).back(value).as_engine()))
             .collect();
         let data = Data { coordinates: &coordinates, partners: &partners, columns: &columns, clouds: &clouds };
         let Scales { scaling, mut sizes } = scales(&problem.scene, &mut scalars, data, inputs);
         for (sizes, group) in sizes.iter_mut().zip(schema.groups) {
             for (size, term) in sizes.iter_mut().zip(group.terms) {
-                *size = term.within.map_or(*size, |within| within / system.size(&term.unit));
+                *size = term.within.map_or(*size, |within| system.size(&term.unit).back(within).as_engine());
             }
         }
         let learned = learned(schema, &system, &scalars);
@@ -132,8 +139,9 @@ impl Bound {
         let clouds = bindings.iter().zip(schema.groups);
         let clouds = clouds.map(|(binding, group)| inward_clouds(group, &self.system, binding)).collect();
         let given = schema.scalars.iter().zip(&problem.scalars).zip(&self.scalars);
-        let scalars =
-            given.map(|((scalar, value), own)| value.map_or(*own, |value| value / self.system.size(&scalar.unit)));
+        let scalars = given.map(|((scalar, value), own)| {
+            value.map_or(*own, |value| self.system.size(&scalar.unit).back(value).as_engine())
+        });
         Ok(Some(Self { clouds, scalars: scalars.collect(), problem, ..self.clone() }))
     }
 }

@@ -1,10 +1,11 @@
 //! A problem in the engine's units: what carriers read of it, and parts of it.
 
 use super::frame::inward_points;
-use super::{Frame, Problem, Tolerance, UnitSystem};
+use super::{Frame, Problem, UnitSystem};
 use crate::engine::{Learned, Powers, Scaling, is_exchangeable};
 use crate::loss::Loss;
 use crate::schema::{self, Origin};
+use crate::units::{Number, Scale};
 
 /// A problem in the engine's units, whatever the precision.
 #[derive(Clone, Debug)]
@@ -28,6 +29,13 @@ pub(crate) struct Bound {
     pub(crate) columns: Vec<Vec<Vec<f64>>>,
     /// Clouds by group and term, in the engine's units, flat and point by point; empty for other terms.
     pub(crate) clouds: Vec<Vec<Vec<f64>>>,
+}
+
+/// A [`super::Tolerance`] in the engine's units.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct EngineTolerance {
+    pub(crate) size: f64,
+    pub(crate) region: f64,
 }
 
 impl Bound {
@@ -97,8 +105,8 @@ impl Bound {
 
     /// Weights of a group's points in the engine's units, if `measure` is theirs; empty if they have none.
     pub(crate) fn weights(&self, group: usize, measure: Option<&schema::Unit>) -> Vec<f64> {
-        let inward = measure.map_or(1.0, |measure| self.system.inward(measure));
-        self.raw_weights(group).iter().map(|weight| weight * inward).collect()
+        let inward = measure.map_or(Scale::new(1.0), |measure| self.system.inward(measure));
+        self.raw_weights(group).iter().map(|&weight| inward.of(Number::declared(weight)).as_engine()).collect()
     }
 
     /// Natural size of a head: what its transformation multiplies with, or the network's scale.
@@ -114,10 +122,11 @@ impl Bound {
     }
 
     /// How far a term's cloud may be off over whole regions, if that is known.
-    pub(crate) fn tolerance(&self, group: usize, term: &schema::Term) -> Option<Tolerance> {
+    pub(crate) fn tolerance(&self, group: usize, term: &schema::Term) -> Option<EngineTolerance> {
         let declared = self.problem.groups[group].as_ref()?.tolerance(term.name)?;
+        let [size, region] = [declared.size, declared.region].map(Number::declared);
         let inward = self.system.inward(&term.unit);
-        Some(Tolerance { size: inward * declared.size, region: inward * declared.region })
+        Some(EngineTolerance { size: inward.of(size).as_engine(), region: inward.of(region).as_engine() })
     }
 
     /// Points given in declared units, in the engine's.

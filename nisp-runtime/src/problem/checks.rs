@@ -13,8 +13,8 @@ impl Problem {
                 None if !own => {
                     return Err(BindError::MissingParameter { name: scalar.name.into(), unit: scalar.unit.text });
                 }
-                Some(value) if !value.is_finite() => {
-                    return Err(BindError::Parameter { name: scalar.name.into(), value: *value });
+                Some(value) if !value.as_si().is_finite() => {
+                    return Err(BindError::Parameter { name: scalar.name.into(), value: value.as_si() });
                 }
                 Some(value) => within(scalar, *value)?,
                 None => {}

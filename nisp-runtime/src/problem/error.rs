@@ -3,6 +3,7 @@
 use thiserror::Error;
 
 use crate::schema;
+use crate::units::{Number, Si};
 
 /// Why a problem cannot be solved as it is bound.
 #[derive(Clone, Debug, PartialEq, Error)]
@@ -112,24 +113,24 @@ fn unit_text(unit: &str) -> String {
     if unit.is_empty() { String::new() } else { format!(" {unit}") }
 }
 
-/// That a value in SI units lies in the range that its scalar is declared with.
-pub(super) fn within(scalar: &schema::Scalar, value: f64) -> Result<(), BindError> {
+/// That a value lies in the range that its scalar is declared with.
+pub(super) fn within(scalar: &schema::Scalar, value: Number<Si>) -> Result<(), BindError> {
     if scalar.lower.is_none_or(|low| value >= low) && scalar.upper.is_none_or(|high| value <= high) {
         return Ok(());
     }
     let (name, unit, range) = (scalar.name.into(), scalar.unit.text, range(scalar));
-    Err(BindError::Range { name, value: value / scalar.unit.factor, unit, range })
+    Err(BindError::Range { name, value: scalar.unit.factor.back(value).as_declared(), unit, range })
 }
 
 /// The range of a scalar in its declared unit, in words.
 fn range(scalar: &schema::Scalar) -> String {
     let unit = scalar.unit.behind();
-    let shown = |bound: f64| {
+    let shown = |bound: Number<Si>| {
         // Rounding of the unit's factor should not show.
-        let outward = bound / scalar.unit.factor;
+        let outward = scalar.unit.factor.back(bound).as_declared();
         if outward.abs() < f64::MIN_POSITIVE { "0".to_string() } else { format!("{}", (outward * 1e12).round() / 1e12) }
     };
-    let is_left_out = |bound: f64| bound != 0.0 && bound.abs() < f64::MIN_POSITIVE;
+    let is_left_out = |bound: Number<Si>| bound.as_si() != 0.0 && bound.as_si().abs() < f64::MIN_POSITIVE;
     let low = scalar.lower.map(|low| {
         let word = if is_left_out(low) { "above" } else { "at least" };
         format!("{word} {}{unit}", shown(low))

@@ -8,8 +8,10 @@ use crate::schema;
 use crate::simd::Isa;
 use crate::solve::objective::LeastSquares;
 use crate::solve::vector;
+use crate::units::Number;
 
-/// A scene with its units, scales and scalars.
+/// The frozen scaling of a bound problem: a scene with its units, scales and scalars. It is saved with an answer, and new points are
+/// brought into it.
 #[derive(Clone, Debug)]
 pub(crate) struct Frame {
     pub(crate) scene: SceneRef,
@@ -55,6 +57,6 @@ impl Frame {
 
 /// Points given in declared units, in those of a system.
 pub(super) fn inward_points(schema: &schema::Scene, system: &UnitSystem, points: &[f64]) -> Vec<f64> {
-    let factors: Vec<f64> = schema.coordinates.iter().map(|c| system.inward(&c.unit)).collect();
-    points.iter().enumerate().map(|(at, x)| x * factors[at % factors.len()]).collect()
+    let inward: Vec<_> = schema.coordinates.iter().map(|c| system.inward(&c.unit)).collect();
+    points.iter().enumerate().map(|(at, &x)| inward[at % inward.len()].of(Number::declared(x)).as_engine()).collect()
 }

@@ -14,20 +14,21 @@ mod scale;
 mod system;
 mod units;
 
-pub(crate) use bound::Bound;
+pub(crate) use bound::{Bound, EngineTolerance};
 pub use error::BindError;
 pub(crate) use frame::Frame;
 pub(crate) use place::place;
 pub use system::UnitSystem;
 
 use crate::kernel::SceneRef;
+use crate::units::{Number, Si};
 
 /// A scene with what has been bound to it so far.
 #[derive(Clone, Debug)]
 pub struct Problem {
     scene: SceneRef,
-    /// Given values of scalars, in SI units.
-    scalars: Vec<Option<f64>>,
+    /// Given values of scalars.
+    scalars: Vec<Option<Number<Si>>>,
     groups: Vec<Option<Binding>>,
     /// Whether observations with a squared loss get a robust one.
     robust: bool,
@@ -154,7 +155,7 @@ impl Problem {
         if !value.is_finite() {
             return Err(BindError::Parameter { name: name.into(), value });
         }
-        let value = value * scalars[at].unit.factor;
+        let value = scalars[at].unit.factor.of(Number::declared(value));
         error::within(&scalars[at], value)?;
         self.scalars[at] = Some(value);
         Ok(())
@@ -230,7 +231,7 @@ impl Problem {
     pub fn with_parameters(mut self, values: &[(&str, f64)]) -> Self {
         for &(name, value) in values {
             if let Some(at) = self.scene.schema.scalars.iter().position(|s| s.name == name) {
-                self.scalars[at] = Some(value * self.scene.schema.scalars[at].unit.factor);
+                self.scalars[at] = Some(self.scene.schema.scalars[at].unit.factor.of(Number::declared(value)));
             }
         }
         self

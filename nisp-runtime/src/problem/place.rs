@@ -2,6 +2,7 @@
 
 use super::Bound;
 use crate::schema::Coordinate;
+use crate::units::Number;
 
 /// Numbers from here on are written without an exponent, and those below the other are rounding.
 const SHORT: f64 = 0.01;
@@ -24,15 +25,19 @@ impl Bound {
     /// A point given in the engine's units.
     pub(crate) fn place(&self, point: &[f64]) -> String {
         let coordinates = self.problem.scene().schema.coordinates;
-        let outward = coordinates.iter().zip(point).map(|(c, x)| x * self.system.outward(&c.unit));
+        let outward = coordinates.iter().zip(point).map(|(c, x)| self.outward(c, *x));
         place(coordinates, &outward.collect::<Vec<_>>())
     }
 
     /// Some of a point's coordinates, given in the engine's units.
     pub(crate) fn place_along(&self, axes: &[usize], point: &[f64]) -> String {
         let coordinates = self.problem.scene().schema.coordinates;
-        let word =
-            |&axis: &usize| along(&coordinates[axis], point[axis] * self.system.outward(&coordinates[axis].unit));
+        let word = |&axis: &usize| along(&coordinates[axis], self.outward(&coordinates[axis], point[axis]));
         axes.iter().map(word).collect::<Vec<_>>().join(", ")
+    }
+
+    /// A coordinate given in the engine's unit, in its declared one.
+    fn outward(&self, coordinate: &Coordinate, x: f64) -> f64 {
+        self.system.outward(&coordinate.unit).of(Number::engine(x)).as_declared()
     }
 }

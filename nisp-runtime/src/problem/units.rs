@@ -3,6 +3,7 @@
 
 use super::{Binding, Bound, Problem, UnitSystem};
 use crate::schema::{Jet, Unit};
+use crate::units::{Number, Scale, Si};
 
 /// A derivative this many times larger or smaller than one is too near the ends of single precision (1e38) for what
 /// becomes of it: it is multiplied with parameters, and its adjoint with weights.
@@ -14,25 +15,26 @@ impl Problem {
         UnitSystem::fitting(self.quantities(bindings))
     }
 
-    /// Typical sizes of what is bound, in SI, with their units.
-    fn quantities(&self, bindings: &[&Binding]) -> Vec<(Unit, f64)> {
+    /// Typical sizes of what is bound, with their units.
+    fn quantities(&self, bindings: &[&Binding]) -> Vec<(Unit, Number<Si>)> {
         let schema = self.scene.schema;
         let inputs = schema.coordinates.len();
         let mut quantities = Vec::new();
         for (i, coordinate) in schema.coordinates.iter().enumerate() {
             let values = bindings.iter().flat_map(|b| b.points.coordinates.iter().skip(i).step_by(inputs));
             let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
-            quantities.push((coordinate.unit, (high - low) / 2.0 * coordinate.unit.factor));
+            let half = Number::declared((high - low) / 2.0);
+            quantities.push((coordinate.unit, coordinate.unit.factor.of(half)));
         }
         for (scalar, value) in schema.scalars.iter().zip(&self.scalars) {
-            quantities.push((scalar.unit, value.unwrap_or(0.0)));
+            quantities.push((scalar.unit, value.unwrap_or(Number::si(0.0))));
         }
         for (group, binding) in schema.groups.iter().zip(bindings) {
             for (column, values) in group.columns.iter().zip(&binding.columns) {
                 // Cells that were not measured are NaN.
                 let measured: Vec<f64> = values.iter().copied().filter(|x| !x.is_nan()).collect();
                 let square = measured.iter().map(|x| x * x).sum::<f64>() / measured.len().max(1) as f64;
-                quantities.push((column.unit, square.sqrt() * column.unit.factor));
+                quantities.push((column.unit, column.unit.factor.of(Number::declared(square.sqrt()))));
             }
         }
         quantities
@@ -52,7 +54,7 @@ impl Bound {
         let mut quantities = self.problem.quantities(&self.problem.bindings().ok()?);
         quantities.extend(jets().map(|jet| {
             let unit = self.unit(jet);
-            (unit, self.typical(jet) * self.system.size(&unit))
+            (unit, self.system.size(&unit).of(Number::engine(self.typical(jet))))
         }));
         Some(UnitSystem::fitting(quantities))
     }
@@ -72,6 +74,6 @@ impl Bound {
                 *exponent -= f64::from(degree) * by;
             }
         }
-        Unit { exponents, factor: 1.0, text: "" }
+        Unit { exponents, factor: Scale::new(1.0), text: "" }
     }
 }

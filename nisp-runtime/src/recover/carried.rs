@@ -51,14 +51,14 @@ impl Values {
     }
 }
 
-/// An answer on its carrier. Points are flat and in declared units; everything else is in the engine's.
+/// An answer on its carrier. All numbers are in the engine's units; points are flat.
 pub(super) trait Carried: Send {
     /// Every head at points, without error bars.
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values>;
     /// Every head at points, with error bars where there are any.
     fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values>;
     /// Standard deviation of a weighted sum of a head's values at points; none where they are not known jointly.
-    fn deviation_of_sum(&self, _: &Bound, _head: usize, _points: &[f64], _weights: &[f64]) -> Option<f64> {
+    fn deviation_of_sum(&self, _head: usize, _points: &[f64], _weights: &[f64]) -> Option<f64> {
         None
     }
     /// Learned scalars and their standard deviations.

@@ -2,6 +2,7 @@
 
 use super::Solution;
 use crate::schema::{TermKind, Unit};
+use crate::units::Number;
 
 /// What is left of one measured quantity.
 #[derive(Clone, Debug, PartialEq)]
@@ -29,13 +30,14 @@ impl Solution {
             let rows = facts.plain_rows(kernels[at].programs, group, &answer.scalars);
             for term in group.terms.iter().filter(|term| term.kind == TermKind::Observation) {
                 let outward = bound.system.outward(&term.unit);
+                let outward = |x| outward.of(Number::engine(x)).as_declared();
                 for (component, row) in rows[term.first..][..term.rows].iter().enumerate() {
                     let number = if term.rows > 1 { format!("[{component}]") } else { String::new() };
                     all.push(Misfits {
                         name: format!("{}.{}{number}", group.name, term.name),
                         unit: term.unit,
                         points: bound.measured(at, term, &points.coordinates),
-                        values: bound.measured(at, term, row).into_iter().map(|x| x * outward).collect(),
+                        values: bound.measured(at, term, row).into_iter().map(outward).collect(),
                     });
                 }
             }

@@ -68,19 +68,17 @@ pub(super) fn solved(found: LocalSolution, open: Vec<Warning>, optimizer: Optimi
 
 impl Carried for LocalSolution {
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let points = bound.inward(points);
-        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, &points))).collect()
+        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, points))).collect()
     }
 
     fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let inward = bound.inward(points);
         let mut all = self.values(bound, points);
-        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, &inward));
+        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, points));
         all
     }
 
-    fn deviation_of_sum(&self, bound: &Bound, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
-        LocalSolution::deviation_of_sum(self, head, &bound.inward(points), weights)
+    fn deviation_of_sum(&self, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
+        LocalSolution::deviation_of_sum(self, head, points, weights)
     }
 
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {

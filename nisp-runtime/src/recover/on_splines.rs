@@ -47,14 +47,12 @@ impl Carrier for OnSplines {
 
 impl Carried for SplineSolution {
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let points = bound.inward(points);
-        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, &points))).collect()
+        (0..heads(bound)).map(|head| Values::plain(self.kept.evaluate(head, points))).collect()
     }
 
     fn with_deviations(&mut self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let inward = bound.inward(points);
         let mut all = self.values(bound, points);
-        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, &inward));
+        all.iter_mut().enumerate().for_each(|(head, own)| own.deviations = self.kept.deviations(head, points));
         all
     }
 

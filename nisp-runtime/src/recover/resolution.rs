@@ -5,6 +5,7 @@ use crate::noise::{Noise, ObservationNoise};
 use crate::problem::Bound;
 use crate::schema::{Loss, Term, TermKind};
 use crate::solve::driver::{Warning, WarningKind};
+use crate::units::Number;
 
 /// Misfit beside the noise, below which the noise is followed: three quarters of the data are used up by the fit.
 const TIGHT: f64 = 0.5;
@@ -30,14 +31,14 @@ pub(super) fn warnings(bound: &Bound, engine: &mut Engine<f64>, theta: &[f64], n
                 TermKind::Observation if bound.losses[at][number] == Loss::Square => {
                     let own: Vec<f64> =
                         own.chunks_exact(points).flat_map(|row| bound.measured(at, term, row)).collect();
-                    let outward = bound.system.outward(&term.unit);
+                    let outward = |x| bound.system.outward(&term.unit).of(Number::engine(x));
                     if let Some(message) = too_few(term, own.len() / term.rows, noise.of(at, number)) {
                         warnings.push(Warning { kind: WarningKind::Unresolved, message });
                     }
                     let rms = (own.iter().map(|x| x * x).sum::<f64>() / own.len().max(1) as f64).sqrt();
                     let level = noise.of(at, number).filter(|level| follows_noise(rms, *level));
                     level.map(|level| {
-                        let (rms, sigma, unit) = (rms * outward, level.deviation * outward, term.unit.behind());
+                        let (rms, sigma, unit) = (outward(rms), outward(level.deviation), term.unit.behind());
                         format!(
                             "`{}` follows its noise: the misfit is far below that of the data; take the optimizer `evidence`, \
                              or a smaller network (rms {rms:.2e}{unit}, noise {sigma:.2e}{unit})",

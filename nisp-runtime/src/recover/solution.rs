@@ -12,6 +12,7 @@ use crate::saved::{Extent, SavedAnswer, SavedError, save_frame};
 use crate::schema::{self, Origin, TermKind};
 use crate::simd::Isa;
 use crate::solve::driver::{Status, Warning, WarningKind};
+use crate::units::Number;
 use crate::verdict::{Check, Verdict, determined, judge, patches};
 
 /// A solved problem.
@@ -118,8 +119,8 @@ impl Solution {
         self.verdict = judge(&self.bound, &answer, &values, &noise);
         if let Some(prior) = self.settings.carrier.patches_everywhere(self.scene()) {
             for (head, values) in self.scene().heads.iter().zip(&values).filter(|(head, _)| head.source) {
-                let level = prior.level * self.bound.system.inward(&head.unit);
-                self.verdict.checks.push(patches(head.name, values, level));
+                let level = self.bound.system.inward(&head.unit).of(Number::declared(prior.level));
+                self.verdict.checks.push(patches(head.name, values, level.as_engine()));
             }
         }
         self.verdict.checks.extend(self.left_open());
@@ -178,16 +179,17 @@ impl Solution {
         /// Points of a group that say how large a head is, at most.
         const MOST: usize = 2000;
         let inputs = self.scene().coordinates.len();
-        let units: Vec<f64> = self.scene().coordinates.iter().map(|c| self.bound.system.outward(&c.unit)).collect();
+        let outward: Vec<_> = self.scene().coordinates.iter().map(|c| self.bound.system.outward(&c.unit)).collect();
         let some = |group: &Vec<f64>| {
             let points = group.chunks_exact(inputs);
             let step = points.len().div_ceil(MOST).max(1);
-            points.step_by(step).flatten().zip(units.iter().cycle()).map(|(x, unit)| x * unit).collect::<Vec<f64>>()
+            let along = points.step_by(step).flatten().zip(outward.iter().cycle());
+            along.map(|(&x, outward)| outward.of(Number::engine(x)).as_declared()).collect::<Vec<f64>>()
         };
         let points: Vec<f64> = self.bound.coordinates.iter().flat_map(some).collect();
         let inward = |estimate: Estimate| {
             let inward = self.bound.system.inward(&estimate.unit);
-            estimate.values.into_iter().map(|x| x * inward).collect()
+            estimate.values.into_iter().map(|x| inward.of(Number::declared(x)).as_engine()).collect()
         };
         self.evaluate(&points).into_iter().map(inward).collect()
     }
@@ -242,7 +244,7 @@ impl Solution {
 
     /// Every head at points given in declared units, point by point, without error bars.
     pub fn evaluate(&self, points: &[f64]) -> Vec<Estimate> {
-        self.estimates(self.carried.values(&self.bound, points))
+        self.estimates(self.carried.values(&self.bound, &self.bound.inward(points)))
     }
 
     /// As [`Solution::evaluate`], with standard deviations: those of the Laplace approximation of the posterior, in which the
@@ -255,7 +257,7 @@ impl Solution {
         if !self.has_bars() {
             return self.evaluate(points);
         }
-        let known = self.carried.with_deviations(&self.bound, points);
+        let known = self.carried.with_deviations(&self.bound, &self.bound.inward(points));
         self.estimates(known)
     }
 
@@ -266,13 +268,15 @@ impl Solution {
     pub fn deviation_of_sum(&self, head: &str, points: &[f64], weights: &[f64]) -> Option<f64> {
         let at = self.scene().heads.iter().position(|own| own.name == head).filter(|_| self.has_bars())?;
         let outward = self.bound.system.outward(&self.scene().heads[at].unit);
-        Some(outward * self.carried.deviation_of_sum(&self.bound, at, points, weights)?)
+        let deviation = self.carried.deviation_of_sum(at, &self.bound.inward(points), weights)?;
+        Some(outward.of(Number::engine(deviation)).as_declared())
     }
 
     fn estimates(&self, known: Vec<Values>) -> Vec<Estimate> {
         let of = |(head, known): (&schema::Head, Values)| {
             let outward = self.bound.system.outward(&head.unit);
-            let scaled = |values: Vec<f64>| values.into_iter().map(|x| x * outward).collect();
+            let outward = |x| outward.of(Number::engine(x)).as_declared();
+            let scaled = |values: Vec<f64>| values.into_iter().map(outward).collect();
             Estimate {
                 name: head.name,
                 unit: head.unit,
@@ -292,9 +296,9 @@ impl Solution {
         learned
             .map(|(learned, (value, deviation))| {
                 let scalar = &self.scene().scalars[learned.slot];
-                let outward = self.bound.system.outward(&scalar.unit);
-                let deviation = deviation.filter(|_| self.has_bars()).map(|deviation| deviation * outward);
-                LearnedValue { name: scalar.name, unit: scalar.unit, value: value * outward, deviation }
+                let outward = |x| self.bound.system.outward(&scalar.unit).of(Number::engine(x)).as_declared();
+                let deviation = deviation.filter(|_| self.has_bars()).map(outward);
+                LearnedValue { name: scalar.name, unit: scalar.unit, value: outward(value), deviation }
             })
             .collect()
     }
@@ -326,7 +330,8 @@ impl Solution {
         for (slot, scalar) in scene.schema.scalars.iter().enumerate() {
             if matches!(scalar.origin, Origin::Given(_)) {
                 let key = format!("given {}", scalar.name);
-                state = state.with(&key, &[frame.scalars[slot] * frame.system.outward(&scalar.unit)]);
+                let value = frame.system.outward(&scalar.unit).of(Number::engine(frame.scalars[slot]));
+                state = state.with(&key, &[value.as_declared()]);
                 texts.push((key, scalar.unit.text.into()));
             }
         }
@@ -344,7 +349,7 @@ impl Solution {
         let mut reports = Vec::new();
         for (group, schema) in self.scene().groups.iter().enumerate() {
             for (at, term) in schema.terms.iter().enumerate() {
-                let outward = self.bound.system.outward(&term.unit);
+                let outward = |x| self.bound.system.outward(&term.unit).of(Number::engine(x)).as_declared();
                 let observation = matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. });
                 let (misfits, noise) = self.carried.misfits(group, at);
                 let rms = (misfits.iter().map(|x| x * x).sum::<f64>() / misfits.len().max(1) as f64).sqrt();
@@ -352,9 +357,9 @@ impl Solution {
                     name: format!("{}.{}", schema.name, term.name),
                     equation: term.equation,
                     unit: term.unit,
-                    rms: rms * outward,
-                    size: self.bound.sizes[group][at] * outward,
-                    noise: noise.filter(|_| observation).map(|noise| noise * outward),
+                    rms: outward(rms),
+                    size: outward(self.bound.sizes[group][at]),
+                    noise: noise.filter(|_| observation).map(outward),
                     observation,
                 });
             }

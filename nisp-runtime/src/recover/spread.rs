@@ -6,6 +6,7 @@ use crate::problem::Bound;
 use crate::solve::curvature::Curvature;
 use crate::solve::posterior;
 use crate::splines::{Root, SplineSolution};
+use crate::units::Number;
 
 /// Points that an answer is looked at, at most.
 const SAMPLE: usize = 64;
@@ -72,7 +73,8 @@ fn sample(bound: &Bound) -> Vec<f64> {
     let points: Vec<&[f64]> = largest.map_or(Vec::new(), |points| points.chunks_exact(coordinates.len()).collect());
     let step = points.len().div_ceil(SAMPLE).max(1);
     let outward = |point: &&[f64]| -> Vec<f64> {
-        point.iter().zip(coordinates).map(|(x, c)| x * bound.system.outward(&c.unit)).collect()
+        let along = point.iter().zip(coordinates).map(|(&x, c)| bound.system.outward(&c.unit).of(Number::engine(x)));
+        along.map(Number::as_declared).collect()
     };
     points.iter().step_by(step).flat_map(outward).collect()
 }

@@ -29,7 +29,7 @@ pub(super) struct Trained {
 
 impl Carried for Trained {
     fn values(&self, bound: &Bound, points: &[f64]) -> Vec<Values> {
-        let mut readout: Engine<f64> = bound.frame().readout(self.architecture, &bound.inward(points));
+        let mut readout: Engine<f64> = bound.frame().readout(self.architecture, points);
         let rows = readout.raw_rows(0, &self.theta);
         let count = rows.len() / heads(bound).max(1);
         (0..heads(bound)).map(|head| Values::plain(rows[head * count..][..count].to_vec())).collect()
@@ -44,7 +44,7 @@ impl Carried for Trained {
         let block = inputs * (TOGETHER / (self.theta.len() * heads(bound)).max(1)).max(1);
         let empty = Values { values: Vec::new(), deviations: Some(Vec::new()), by_prior: Some(Vec::new()) };
         let mut all = vec![empty; heads(bound)];
-        for some in bound.inward(points).chunks(block) {
+        for some in points.chunks(block) {
             let Some((rows, derivatives)) = bound.frame().sensitivities(self.architecture, &self.theta, some) else {
                 return self.values(bound, points);
             };

@@ -5,6 +5,7 @@ use super::spread::Spread;
 use crate::problem::{Bound, place};
 use crate::schema::Scalar;
 use crate::solve::vector;
+use crate::units::{Declared, Engine, Number, Scale};
 
 /// Part of a scalar in a direction, beside the largest, from which on it is named.
 const NAMED: f64 = 0.1;
@@ -24,7 +25,8 @@ impl Words<'_> {
         let head = &self.bound.problem.scene().schema.heads[head];
         let shape = &open.direction.shape;
         let peak = vector::largest(shape);
-        let size = open.direction.deviation * shape[peak] * self.bound.system.outward(&head.unit);
+        let size = Number::engine(open.direction.deviation * shape[peak]);
+        let size = self.bound.system.outward(&head.unit).of(size);
         let (name, at) = (head.name, self.place(spread, peak));
         format!(
             "the data do not determine `{name}`: {} may be added to it{along}, by about {size:.2e} {} at {at}, and only the \
@@ -82,13 +84,14 @@ impl Words<'_> {
         let named = self.named(open);
         let (value, _) = self.learned[named[0]];
         // Standard deviations that change it by a hundredth, or by its unit where it is zero.
-        let step = if value == 0.0 { self.inward(named[0]) } else { value.abs() / 100.0 };
+        let unit = self.inward(named[0]).of(Number::declared(1.0)).as_engine();
+        let step = if value == 0.0 { unit } else { value.abs() / 100.0 };
         let count = step / self.change(open, named[0]);
         let scalars = named.iter().map(|&at| {
             let (change, value) = (count * self.change(open, at), self.learned[at].0);
             let Scalar { name, unit, .. } = self.scalar(at);
             if value == 0.0 {
-                more(name, change / self.inward(at), unit.text)
+                more(name, self.inward(at).back(Number::engine(change)).as_declared(), unit.text)
             } else {
                 more(name, 100.0 * change / value.abs(), "%")
             }
@@ -97,8 +100,9 @@ impl Words<'_> {
             self.bound.problem.scene().schema.heads.iter().zip(&spread.heads).filter_map(|(head, (_, rows))| {
                 let moved = open.moved(rows)?;
                 let peak = vector::largest(&moved);
-                let change = count * moved[peak] * self.bound.system.outward(&head.unit);
-                Some(format!("{} at {}", more(head.name, change, head.unit.text), self.place(spread, peak)))
+                let change = self.bound.system.outward(&head.unit).of(Number::engine(count * moved[peak]));
+                let more = more(head.name, change.as_declared(), head.unit.text);
+                Some(format!("{more} at {}", self.place(spread, peak)))
             });
         scalars.chain(heads).collect::<Vec<_>>().join(" with ")
     }
@@ -127,9 +131,9 @@ impl Words<'_> {
         &self.bound.problem.scene().schema.scalars[self.bound.learned[at].slot]
     }
 
-    /// A scalar's unit in the engine's.
-    fn inward(&self, at: usize) -> f64 {
-        self.bound.system.outward(&self.scalar(at).unit).recip()
+    /// From a scalar's unit to the engine's.
+    fn inward(&self, at: usize) -> Scale<Declared, Engine> {
+        self.bound.system.outward(&self.scalar(at).unit).inverse()
     }
 
     fn place(&self, spread: &Spread, point: usize) -> String {

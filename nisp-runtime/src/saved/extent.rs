@@ -4,6 +4,7 @@ use crate::problem::Frame;
 use crate::schema::Scene;
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
+use crate::units::Number;
 
 /// Rounding of a coordinate, as a share of its range.
 const ROUNDING: f64 = 1e-9;
@@ -33,10 +34,11 @@ impl Extent {
     pub(crate) fn of(frame: &Frame, groups: &[Vec<f64>]) -> Self {
         let coordinates = frame.scene.schema.coordinates;
         let axes = coordinates.len();
-        let outward: Vec<f64> = coordinates.iter().map(|c| frame.system.outward(&c.unit)).collect();
+        let outward: Vec<_> = coordinates.iter().map(|c| frame.system.outward(&c.unit)).collect();
+        let outward = &|axis: usize, x: f64| outward[axis].of(Number::engine(x)).as_declared();
         let along = |axis: usize| {
             let values = groups.iter().flat_map(move |points| points.iter().skip(axis).step_by(axes));
-            values.map(move |x| x * frame.system.outward(&coordinates[axis].unit))
+            values.map(move |&x| outward(axis, x))
         };
         let range = |axis: usize| {
             along(axis).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
@@ -49,7 +51,7 @@ impl Extent {
         let pairs = (0..axes).flat_map(|a| (a + 1..axes).map(move |b| [a, b]));
         let hulls = pairs.map(|axes_of| {
             let points = groups.iter().flat_map(|points| points.chunks_exact(axes));
-            let plane = points.map(|point| axes_of.map(|axis| point[axis] * outward[axis]));
+            let plane = points.map(|point| axes_of.map(|axis| outward(axis, point[axis])));
             Hull { axes: axes_of, corners: hull(plane.collect()) }
         });
         Self { slack, hulls: hulls.collect(), ranges }

@@ -11,6 +11,7 @@ use crate::problem::{Frame, UnitSystem};
 use crate::schema::{self, Origin};
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
+use crate::units::Number;
 
 /// An answer that can be asked for values.
 pub struct OpenAnswer {
@@ -105,7 +106,8 @@ impl OpenAnswer {
             .flat_map(|term| (term.first..term.first + term.rows).map(move |row| (term, row)));
         let estimate = |(term, row): (&schema::Term, usize)| {
             let outward = self.frame.system.outward(&term.unit);
-            let own = |all: &[f64]| all[row * count..][..count].iter().map(|x| x * outward).collect::<Vec<f64>>();
+            let outward = |x: &f64| outward.of(Number::engine(*x)).as_declared();
+            let own = |all: &[f64]| all[row * count..][..count].iter().map(outward).collect::<Vec<f64>>();
             let head = schema.heads.get(row).filter(|head| head.name == term.name);
             Estimate {
                 name: term.name,
@@ -183,7 +185,6 @@ fn asked_frame(frame: &Frame, scene: SceneRef) -> Result<Frame, SavedError> {
             .find(|term| term.jets.iter().any(|&jet| Some(schema.outputs.jets[jet].head) == head));
         return Err(SavedError::Absent { name: reader.map_or(reads, |term| term.name).into(), reads: reads.into() });
     }
-    let size = |scalar: &schema::Scalar| frame.system.size(&scalar.unit);
     let same = |scalar: &schema::Scalar| {
         let known = own.scalars.iter().position(|other| match scalar.origin {
             Origin::HeadScale(_) | Origin::SideScale { .. } => other.origin == scalar.origin,
@@ -191,7 +192,9 @@ fn asked_frame(frame: &Frame, scene: SceneRef) -> Result<Frame, SavedError> {
         });
         match (known, scalar.origin) {
             (Some(slot), _) => Ok(frame.scalars[slot]),
-            (None, Origin::Literal(value) | Origin::Given(Some(value))) => Ok(value / size(scalar)),
+            (None, Origin::Literal(value) | Origin::Given(Some(value))) => {
+                Ok(frame.system.size(&scalar.unit).back(value).as_engine())
+            }
             (None, Origin::SideScale { .. }) => Ok(1.0),
             (None, Origin::HeadScale(head)) => Ok(frame.scaling.scale[head]),
             (None, Origin::Given(None) | Origin::Learned { .. }) => Err(SavedError::NoValue(scalar.name.into())),

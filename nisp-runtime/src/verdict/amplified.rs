@@ -6,6 +6,7 @@ use crate::facts::{Answer, Facts};
 use crate::problem::Bound;
 use crate::residual::Programs;
 use crate::schema::{self, Term, TermKind};
+use crate::units::Number;
 
 /// A field over what is given of it.
 const AMPLIFIED: f64 = 1e2;
@@ -19,14 +20,14 @@ pub(super) fn checks(bound: &Bound, answer: &Answer, values: &[Vec<f64>]) -> Vec
         let largest = values[at].iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let natural = bound.scaling.offset[at].abs() + bound.head_scale(at);
         let given = stated(bound, answer, at).fold(natural, f64::max);
-        let outward = bound.system.outward(&head.unit);
+        let outward = |x| bound.system.outward(&head.unit).of(Number::engine(x));
         let said = format!(
             "`{}` is as large as {:.1e}{unit}, where conditions and equations speak of {:.1e}{unit}: a condition stands at the wrong end \
              or is missing (what flows in is given where it enters, what begins where time begins), or small errors grow along the \
              equations",
             head.name,
-            largest * outward,
-            given * outward,
+            outward(largest),
+            outward(given),
             unit = head.unit.behind()
         );
         Check::new("amplified", ("", head.name), (largest / given, AMPLIFIED), said)

@@ -8,6 +8,7 @@ use crate::facts::CloudFacts;
 use crate::nearest::{Nearest, Neighbour};
 use crate::problem::Bound;
 use crate::roughness::{middle, roughness};
+use crate::units::Number;
 
 /// Misfit over roughness.
 const MISFIT: f64 = 1.35;
@@ -27,7 +28,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let schema = &bound.problem.scene().schema.groups[cloud.group];
     let Some(term) = schema.terms.iter().find(|term| term.name == cloud.term) else { return Vec::new() };
     let place = (schema.name, term.name);
-    let outward = bound.system.outward(&term.unit);
+    let outward = |x| bound.system.outward(&term.unit).of(Number::engine(x));
     let unit = term.unit.behind();
     let all = cloud.points.iter().zip(&cloud.places).zip(&cloud.misfits);
     let found: Vec<_> = all.filter_map(|((point, place), misfit)| Some((*point, *place, (*misfit)?))).collect();
@@ -47,7 +48,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let kept: Vec<f64> = found.iter().map(|(.., m)| if is_stray(*m) { 0.0 } else { *m }).collect();
     let rms = root_mean_square(kept.iter().copied());
     let tolerance = bound.tolerance(cloud.group, term).map(|tolerance| tolerance.size);
-    let within = tolerance.or(term.within.map(|within| within / bound.system.size(&term.unit)));
+    let within = tolerance.or(term.within.map(|within| bound.system.size(&term.unit).back(within).as_engine()));
     let own = found.iter().filter(|(.., misfit)| !is_stray(*misfit)).map(|(point, place, _)| (*point, *place));
     let rough = within
         .or_else(|| {
@@ -60,8 +61,8 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
         "the surface misses `{}` by {:.2e}{unit} (rms), while the cloud's own roughness is {:.2e}{unit}: check the pose, the \
          unit and the parameters; if they are right, the equations do not describe this body",
         term.name,
-        rms * outward,
-        rough * outward
+        outward(rms),
+        outward(rough)
     );
     checks.push(Check::new("distance", place, (rms / rough, MISFIT), said));
     if !cloud.signed {
@@ -76,7 +77,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
         "what is left of `{}` is no noise: neighbours correlate by {correlation:.2}, so the surface is off by some {:.2e}{unit} \
          over whole regions: wrong equations (large strains?), a wrong parameter or a wrong pose",
         term.name,
-        systematic * outward
+        outward(systematic)
     );
     checks.push(Check::new("pattern", place, (if matters { z } else { z.min(PATTERN) }, PATTERN), said));
     checks

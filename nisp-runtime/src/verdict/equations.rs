@@ -9,6 +9,7 @@ use crate::facts::{Answer, Facts};
 use crate::problem::Bound;
 use crate::residual::Programs;
 use crate::schema::{self, Jet, Term, TermKind};
+use crate::units::Number;
 
 /// Residual of an equation over its source.
 const SOURCE: f64 = 0.3;
@@ -102,7 +103,7 @@ pub(super) fn checks(
 impl Judged<'_> {
     fn residual(&self, (term, natural): (&'static Term, f64), rows: &[Vec<f64>]) -> Vec<Check> {
         let name = self.schema.name;
-        let outward = self.bound.system.outward(&term.unit);
+        let outward = |x| self.bound.system.outward(&term.unit).of(Number::engine(x));
         let unit = term.unit.behind();
         let condition = self.facts.points <= FEW_POINTS;
         let mut worst: Option<Check> = None;
@@ -110,7 +111,7 @@ impl Judged<'_> {
         for (row, values) in rows.iter().enumerate().skip(term.first).take(term.rows) {
             let rms = root_mean_square(values.iter().copied());
             let (kind, scale, limit, said) = if let Some(within) = term.within {
-                let within = within / self.bound.system.size(&term.unit);
+                let within = self.bound.system.size(&term.unit).back(within).as_engine();
                 ("tolerance", within, TOLERANCE, "its declared tolerance")
             } else {
                 let parts = self.parts(term, row);
@@ -128,8 +129,8 @@ impl Judged<'_> {
                 "`{name}.{}` is off by {:.2e}{unit}, where {said} is {:.2e}{unit}: the answer does not solve it; check the \
                  parameters and data that contradict it, or the carrier is too coarse ({})",
                 term.name,
-                rms * outward,
-                scale * outward,
+                outward(rms),
+                outward(scale),
                 self.finer
             );
             let check = Check::new(kind, (name, term.name), (value, limit), message);
@@ -156,14 +157,14 @@ impl Judged<'_> {
         let mut jets = self.facts.jets.clone();
         jets[jet * self.facts.stride..][..self.facts.stride].fill(0.0);
         let stated = root_mean_square(self.row(row, &jets, &self.facts.columns));
-        let outward = self.bound.system.outward(&term.unit);
+        let outward = |x| self.bound.system.outward(&term.unit).of(Number::engine(x));
         let said = format!(
             "`{}.{}` states {:.2e}{unit}, where the equations and the data speak of {:.2e}{unit}: check its value and the units \
              of the data",
             self.schema.name,
             term.name,
-            stated * outward,
-            natural * outward,
+            outward(stated),
+            outward(natural),
             unit = term.unit.behind()
         );
         let check = Check::new("stated", (self.schema.name, term.name), (stated / natural, STATED), said);
@@ -274,7 +275,7 @@ impl Judged<'_> {
         let size = self.bound.system.size(&declared.unit);
         // A network output of zero: softplus is the logarithm of two, a sigmoid one half.
         let moved = match (declared.lower, declared.upper) {
-            (Some(lower), Some(upper)) => (upper - lower) / size / 2.0,
+            (Some(lower), Some(upper)) => size.back(upper - lower).as_engine() / 2.0,
             _ => std::f64::consts::LN_2 * self.bound.head_scale(head),
         };
         root_mean_square(change) / moved
@@ -306,7 +307,7 @@ impl Judged<'_> {
         let mut targets = vec![0.0; self.schema.rows];
         self.programs.target(self.scalars, &mut targets);
         let weights = self.bound.weights(group, term.measure.as_ref());
-        let outward = self.bound.system.outward(&term.unit);
+        let outward = |x| self.bound.system.outward(&term.unit).of(Number::engine(x));
         let whole = self.facts.plain_rows(self.programs, self.schema, self.scalars);
         let mut checks = Vec::new();
         for row in term.first..term.first + term.rows {
@@ -314,7 +315,7 @@ impl Judged<'_> {
             let (sum, size) = parts.fold((0.0, 0.0f64), |(sum, size), x| (sum + x, size + x.abs()));
             let off = (sum - targets[row]).abs();
             let (scale, limit) = match term.within {
-                Some(within) => (within / self.bound.system.size(&term.unit), TOLERANCE),
+                Some(within) => (self.bound.system.size(&term.unit).back(within).as_engine(), TOLERANCE),
                 None => (size.max(targets[row].abs()), PART),
             };
             let said = format!(
@@ -322,9 +323,9 @@ impl Judged<'_> {
                  other data",
                 self.schema.name,
                 term.name,
-                sum * outward,
+                outward(sum),
                 term.unit.behind(),
-                targets[row] * outward
+                outward(targets[row])
             );
             let value = if off == 0.0 { 0.0 } else { off / scale };
             checks.push(Check::new("sum", (self.schema.name, term.name), (value, limit), said));

@@ -7,6 +7,7 @@
 use super::Check;
 use crate::facts::{Answer, Known, Score, spread};
 use crate::problem::Bound;
+use crate::units::{Number, Scale};
 
 /// What the loss may gain: five standard deviations.
 const GAIN: f64 = 12.5;
@@ -53,7 +54,8 @@ pub(super) fn check(bound: &Bound, answer: &Answer) -> Option<Check> {
 fn may_be(bound: &Bound, answer: &Answer, score: &Score) -> bool {
     let Known::Scalar(slot) = score.known else { return true };
     let scalar = &bound.problem.scene().schema.scalars[slot];
-    let changed = answer.scalars[slot] * (1.0 + score.change) * bound.system.size(&scalar.unit);
+    let changed = Number::engine(answer.scalars[slot] * (1.0 + score.change));
+    let changed = bound.system.size(&scalar.unit).of(changed);
     scalar.lower.is_none_or(|lower| changed >= lower) && scalar.upper.is_none_or(|upper| changed <= upper)
 }
 
@@ -69,15 +71,16 @@ fn said(bound: &Bound, answer: &Answer, score: &Score) -> String {
     match score.known {
         Known::Scalar(slot) => {
             let scalar = &schema.scalars[slot];
-            let now = answer.scalars[slot] * bound.system.outward(&scalar.unit);
+            let now = bound.system.outward(&scalar.unit).of(Number::engine(answer.scalars[slot])).as_declared();
             let unit = scalar.unit.behind();
             format!("`{}` about {:.3e}{unit} instead of {now:.3e}{unit}", scalar.name, now * (1.0 + score.change))
         }
         Known::Place { cloud, axis: at } => {
             let (name, unit) = term(cloud);
-            let (outward, text) = unit.map_or((1.0, ""), |unit| (bound.system.outward(&unit), unit.text));
+            let (outward, text) = unit.map_or((Scale::new(1.0), ""), |unit| (bound.system.outward(&unit), unit.text));
             let (_, radius) = spread(answer.clouds[cloud].points.iter().map(|&point| point.into()));
-            format!("`{name}` moved by {:.1e} {text} along {}", score.change * radius * outward, axis(at))
+            let moved = outward.of(Number::engine(score.change * radius));
+            format!("`{name}` moved by {moved:.1e} {text} along {}", axis(at))
         }
         Known::Direction { cloud, axis: at } => {
             format!("`{}` turned by {:.1} degrees about {}", term(cloud).0, score.change.to_degrees(), axis(at))

@@ -5,6 +5,7 @@ use super::slow::chance;
 use crate::noise::{Noise, ObservationNoise, deviation};
 use crate::problem::Bound;
 use crate::schema;
+use crate::units::Number;
 
 /// Misfit over the noise that differences between neighbouring data show.
 pub(super) const MISFIT: f64 = 1.6;
@@ -67,7 +68,8 @@ impl<'a> Misfits<'a> {
 
     /// A number as it is read: in the declared unit, with its name.
     pub(super) fn words(&self, value: f64) -> String {
-        format!("{:.2e}{}", value * self.bound.system.outward(&self.term.unit), self.term.unit.behind())
+        let value = self.bound.system.outward(&self.term.unit).of(Number::engine(value));
+        format!("{value:.2e}{}", self.term.unit.behind())
     }
 
     /// How much larger than their deviation normal numbers may be by chance: few may be large.

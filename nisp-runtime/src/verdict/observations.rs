@@ -7,6 +7,7 @@ use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
 use crate::schema::TermKind;
+use crate::units::Number;
 
 /// Misfit over a declared tolerance.
 const TOLERANCE: f64 = 1.5;
@@ -78,7 +79,7 @@ fn noisy(left: &Misfits) -> Option<Check> {
 fn misfit(left: &Misfits, finer: &str) -> Option<Check> {
     let (bound, term) = (left.bound, left.term);
     let rms = left.size;
-    if let Some(within) = term.within.map(|within| within / bound.system.size(&term.unit)) {
+    if let Some(within) = term.within.map(|within| bound.system.size(&term.unit).back(within).as_engine()) {
         let said = format!(
             "`{}` is not resolved: it is missed by {} (rms), where {} is declared: check the equations, the parameters and the tolerance",
             term.name,
@@ -170,7 +171,7 @@ fn stuck(left: &Misfits, column: usize) -> Check {
          range, or one that failed, says nothing there; leave these cells empty",
         left.bound.problem.scene().schema.groups[left.group].columns[column].name,
         values.len(),
-        value * left.bound.system.outward(&left.term.unit),
+        left.bound.system.outward(&left.term.unit).of(Number::engine(value)),
     );
     Check::new("held", left.name(), (share, HELD), said)
 }

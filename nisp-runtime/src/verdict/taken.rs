@@ -3,6 +3,7 @@
 use crate::noise::{by_differences, deviation, in_order};
 use crate::problem::Bound;
 use crate::schema::TermKind;
+use crate::units::Number;
 
 /// Noise of a column that matters, as a share of what it varies by.
 const NOISY: f64 = 2e-3;
@@ -24,7 +25,7 @@ pub(super) fn noisy(bound: &Bound) -> Option<String> {
             "equations take `{}` as exact, and it has a noise of {:.2e}{}: where it is measured, declare it among the sources instead of \
              the columns, and observe it with the others",
             column.name,
-            noise * bound.system.outward(&column.unit),
+            bound.system.outward(&column.unit).of(Number::engine(noise)),
             column.unit.behind(),
         ))
     })

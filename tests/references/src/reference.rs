@@ -240,7 +240,9 @@ fn powers(problem: &Problem, architecture: Architecture) -> Vec<Vec<f64>> {
         .scalars
         .iter()
         .filter_map(|scalar| match scalar.origin {
-            schema::Origin::Learned { start, .. } => Some((scalar.name, start.expect("a start"))),
+            schema::Origin::Learned { start, .. } => {
+                Some((scalar.name, scalar.unit.factor.back(start.expect("a start")).as_declared()))
+            }
             _ => None,
         })
         .collect();

@@ -5,6 +5,7 @@ use super::{public, unit_text};
 use crate::model::{Definition, Field, Model, Name, Parameter, Part, Role};
 use crate::plan::ScenePlan;
 use crate::unit::Unit;
+use crate::unit::frame::Number;
 
 /// Lines for a module: what it declares and defines.
 pub(super) fn quantities(model: &Model) -> Vec<String> {
@@ -84,7 +85,7 @@ fn bounds(lower: Option<f64>, upper: Option<f64>, unit: &Unit) -> Option<String>
 
 /// A value in SI units as a number in the declared one, without the last digits that conversion spoils.
 pub(super) fn in_unit(value: f64, unit: &Unit) -> f64 {
-    let converted = value / unit.factor;
+    let converted = unit.factor.back(Number::si(value)).as_declared();
     format!("{converted:.12e}").parse().unwrap_or(converted)
 }
 

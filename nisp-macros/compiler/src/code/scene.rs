@@ -25,7 +25,7 @@ pub(super) fn emit(model: &Model, plan: &Plan, scene: &ScenePlan, declared: &mod
         #(#equations)*
         pub mod #name {
             use super::kernels;
-            use ::nisp::__private::{CompiledPrograms, GroupKernel, schema};
+            use ::nisp::__private::{CompiledPrograms, GroupKernel, schema, units};
 
             /// This scene, as the engine takes it.
             #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

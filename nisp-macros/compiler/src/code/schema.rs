@@ -70,7 +70,15 @@ fn scalar(model: &Model, scene: &ScenePlan, declared: &model::Scene, scalar: &Sc
         }
         Scalar::Literal(value, dimension) => {
             let unit = si(dimension);
-            quote!(schema::Scalar { name: "", unit: #unit, lower: None, upper: None, origin: schema::Origin::Literal(#value) })
+            quote! {
+                schema::Scalar {
+                    name: "",
+                    unit: #unit,
+                    lower: None,
+                    upper: None,
+                    origin: schema::Origin::Literal(units::Number::si(#value)),
+                }
+            }
         }
         Scalar::FieldScale(field) => {
             let unit = si(&model.fields[*field].unit.dimension);
@@ -233,14 +241,15 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
 /// A unit as the schema holds it.
 pub(super) fn unit(unit: &Unit) -> TokenStream {
     let exponents = unit.dimension.0.iter().map(|&e| to_f64(e));
-    let (factor, text) = (unit.factor, &unit.text);
-    quote!(schema::Unit { exponents: [#(#exponents),*], factor: #factor, text: #text })
+    let (factor, text) = (unit.factor.factor(), &unit.text);
+    quote!(schema::Unit { exponents: [#(#exponents),*], factor: units::Scale::new(#factor), text: #text })
 }
 
 fn si(dimension: &Dimension) -> TokenStream {
     unit(&Unit::si(dimension.clone()))
 }
 
+/// A number in SI units, where there is one.
 fn optional(value: Option<f64>) -> TokenStream {
-    value.map_or_else(|| quote!(None), |value| quote!(Some(#value)))
+    value.map_or_else(|| quote!(None), |value| quote!(Some(units::Number::si(#value))))
 }

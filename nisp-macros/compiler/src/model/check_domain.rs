@@ -181,7 +181,7 @@ fn round(parts: [&Expr; 4], units: &[&Unit], elaborator: &mut Elaborator<'_>) ->
 /// A constant in a unit; numbers without one are in it.
 fn number(expr: &Expr, unit: &Unit, elaborator: &mut Elaborator<'_>) -> Checked<f64> {
     match constant::in_unit(expr, unit, elaborator)?.as_slice() {
-        [one] => Ok(one.value / unit.factor),
+        [one] => Ok(unit.factor.back(one.value).as_declared()),
         _ => Err(elaborator.errors.report(expr.place, catalogue::no_region())),
     }
 }

@@ -6,6 +6,7 @@ use super::{Coordinate, Expr, TermKind, build};
 use crate::error::{Checked, catalogue};
 use crate::rational::ratio;
 use crate::syntax::{self, Comparison, Relation, print_text};
+use crate::unit::frame::Scale;
 use crate::unit::{Dimension, Unit};
 
 /// Past this many coordinates only areas and volumes are tried as measures.
@@ -85,8 +86,9 @@ impl TermInput<'_, '_> {
 
 /// A measure in the coordinates' declared units, if it is one.
 fn as_declared(measure: &Dimension, coordinates: &[Coordinate]) -> Option<Unit> {
-    let unit = |factor: f64| Some(Unit { factor, ..Unit::si(measure.clone()) });
-    let length = coordinates.iter().find(|c| c.unit.dimension == Dimension::length()).map_or(1.0, |c| c.unit.factor);
+    let unit = |factor: f64| Some(Unit { factor: Scale::new(factor), ..Unit::si(measure.clone()) });
+    let length =
+        coordinates.iter().find(|c| c.unit.dimension == Dimension::length()).map_or(1.0, |c| c.unit.factor.factor());
     let power = (1..=3).find(|&n| Dimension::length().power(ratio(n, 1)).as_ref() == Some(measure));
     if let Some(power) = power {
         return unit(length.powi(power as i32));
@@ -99,5 +101,5 @@ fn as_declared(measure: &Dimension, coordinates: &[Coordinate]) -> Option<Unit> 
         product.as_ref() == Some(measure)
     })?;
     let chosen = known.iter().enumerate().filter(|(index, _)| subset >> index & 1 == 1);
-    unit(chosen.map(|(_, c)| c.unit.factor).product())
+    unit(chosen.map(|(_, c)| c.unit.factor.factor()).product())
 }

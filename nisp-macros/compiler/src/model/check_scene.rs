@@ -140,7 +140,7 @@ fn fix(
                 if scene.learned[index] {
                     return Err(elaborator.errors.report(name.span, catalogue::learned_and_fixed(&name.text)));
                 }
-                if scene.fixed_parameters[index].replace(constant.value).is_some() {
+                if scene.fixed_parameters[index].replace(constant.value.as_si()).is_some() {
                     return twice(elaborator);
                 }
             }

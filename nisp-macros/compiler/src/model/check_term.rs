@@ -7,6 +7,7 @@ use super::{Column, Expr, Field, Node, Term, TermKind, build, cancel};
 use crate::error::{Checked, catalogue};
 use crate::rational::Rational;
 use crate::syntax::{self, Comparison, Condition, ExprKind, Relation, TermBody, print_latex, print_text, real};
+use crate::unit::frame::Number;
 use crate::unit::{Dimension, Unit};
 
 /// What terms are checked against.
@@ -54,7 +55,7 @@ impl TermInput<'_, '_> {
             let message = catalogue::within_unit(&unit.dimension, &of.dimension);
             return Err(self.elaborator.errors.report(within.place, message));
         }
-        Ok(within.value * unit.factor)
+        Ok(unit.factor.of(Number::declared(within.value)).as_si())
     }
 
     pub(super) fn latex(&self, expr: &syntax::Expr) -> String {

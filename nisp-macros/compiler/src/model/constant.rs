@@ -7,10 +7,11 @@ use crate::error::{Checked, catalogue};
 use crate::rational::Rational;
 use crate::syntax::{Expr, ExprKind, print_text, real};
 use crate::unit::Unit;
+use crate::unit::frame::{Number, Si};
 
-/// A value in SI units.
+/// A value that is known when it compiles.
 pub(super) struct Constant {
-    pub(super) value: f64,
+    pub(super) value: Number<Si>,
     /// Its exact value as written, if it has one.
     pub(super) exact: Option<Rational>,
 }
@@ -27,9 +28,9 @@ pub(super) fn in_unit(expr: &Expr, unit: &Unit, elaborator: &mut Elaborator<'_>)
         let message = catalogue::value_has_other_unit(&print_text(expr), &found, &unit.dimension);
         return Err(elaborator.errors.report(expr.place, message));
     }
-    let factor = if bare { unit.factor } else { 1.0 };
+    let in_si = |value| if bare { unit.factor.of(Number::declared(value)) } else { Number::si(value) };
     let evaluated = value.entries.iter().map(|entry| {
-        let value = evaluate(&entry.expr).map(|value| value * factor).filter(|value| value.is_finite())?;
+        let value = evaluate(&entry.expr).map(in_si).filter(|value| value.as_si().is_finite())?;
         Some(Constant { value, exact: entry.as_number() })
     });
     let all: Option<Vec<Constant>> = evaluated.collect();

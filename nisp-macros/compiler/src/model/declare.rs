@@ -8,6 +8,7 @@ use super::value::{Dim, Extent, Reads, Scalar, Value};
 use super::{Coordinate, Definition, Field, Model, Name, Node, Parameter, Part, Role};
 use crate::error::{Checked, catalogue};
 use crate::syntax::{Declaration, Expr, ExprKind, Kind, Module, Shape, print_latex, print_text};
+use crate::unit::frame::Scale;
 use crate::unit::{Dimension, Unit};
 
 /// Declares everything a module declares outside its groups.
@@ -15,7 +16,7 @@ pub(super) fn declare(module: &Module, elaborator: &mut Elaborator<'_>, model: &
     module.declarations.iter().filter_map(|declaration| declaration.unit.as_ref()).for_each(|unit| {
         let base = unit.dimension.to_string();
         let is_compound = base.contains([' ', '/', '^']);
-        if is_compound && unit.factor == 1.0 && unit.text.len() <= base.len() && unit.text != base {
+        if is_compound && unit.factor == Scale::new(1.0) && unit.text.len() <= base.len() && unit.text != base {
             elaborator.errors.write_unit(format!("[{base}]"), format!("[{}]", unit.text));
         }
     });
@@ -96,10 +97,10 @@ fn constant(declaration: &Declaration, elaborator: &mut Elaborator<'_>, model: &
     });
     let found = in_unit(expr, &unit, elaborator);
     let value = found.ok().and_then(|constants| constants.into_iter().next()).map(|Constant { value, exact }| {
-        let scalar = match exact.filter(|_| unit.dimension.is_none() && unit.factor == 1.0) {
+        let scalar = match exact.filter(|_| unit.dimension.is_none() && unit.factor == Scale::new(1.0)) {
             Some(exact) => Scalar::number(exact),
-            None if unit.dimension.is_none() || !elaborator.units_checked => build::real(value),
-            None => Scalar::leaf(Node::Quantity(value, unit.dimension.clone()), Reads::default()),
+            None if unit.dimension.is_none() || !elaborator.units_checked => build::real(value.as_si()),
+            None => Scalar::leaf(Node::Quantity(value.as_si(), unit.dimension.clone()), Reads::default()),
         };
         Value::scalar(scalar, dim)
     });
@@ -224,8 +225,10 @@ fn each(expr: Option<&Expr>, count: usize, unit: &Unit, elaborator: &mut Elabora
     let Some(expr) = expr else { return vec![None; count] };
     match in_unit(expr, unit, elaborator) {
         Err(_) => vec![None; count],
-        Ok(values) if values.len() == count => values.into_iter().map(|constant| Some(constant.value)).collect(),
-        Ok(values) if values.len() == 1 => vec![Some(values[0].value); count],
+        Ok(values) if values.len() == count => {
+            values.into_iter().map(|constant| Some(constant.value.as_si())).collect()
+        }
+        Ok(values) if values.len() == 1 => vec![Some(values[0].value.as_si()); count],
         Ok(values) => {
             elaborator.errors.push(expr.place, catalogue::wrong_number_of_values(count, values.len()));
             vec![None; count]

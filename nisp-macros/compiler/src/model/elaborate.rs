@@ -5,6 +5,7 @@ use super::value::{DEEPEST, Dim, LARGEST, Reads, Scalar, Value};
 use super::{Coordinate, Node, build};
 use crate::error::{Checked, Errors, Place, catalogue};
 use crate::syntax::{Expr, ExprKind, Number, print_text};
+use crate::unit::frame::{self, Scale};
 use crate::unit::{Dimension, Unit};
 
 /// What expressions are read against, and where mistakes go.
@@ -90,13 +91,13 @@ impl<'e> Elaborator<'e> {
     }
 
     fn number(&mut self, number: &Number, unit: Option<&Unit>) -> Value {
-        let exact = number.exact.filter(|_| unit.is_none_or(|unit| unit.factor == 1.0));
-        let factor = unit.map_or(1.0, |unit| unit.factor);
+        let exact = number.exact.filter(|_| unit.is_none_or(|unit| unit.factor == Scale::new(1.0)));
+        let value = unit.map_or(number.value, |unit| unit.factor.of(frame::Number::declared(number.value)).as_si());
         let dimension = unit.map(|unit| unit.dimension.clone()).filter(|_| self.units_checked).unwrap_or_default();
         let node = match exact {
-            Some(value) if dimension.is_none() => Node::Number(value),
-            _ if dimension.is_none() => Node::Real(number.value * factor),
-            _ => Node::Quantity(number.value * factor, dimension.clone()),
+            Some(exact) if dimension.is_none() => Node::Number(exact),
+            _ if dimension.is_none() => Node::Real(value),
+            _ => Node::Quantity(value, dimension.clone()),
         };
         let scalar = Scalar::leaf(node, Reads::default());
         let dim = if scalar.is_zero() { Dim::Any } else { self.dim(&dimension) };

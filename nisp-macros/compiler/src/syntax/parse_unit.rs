@@ -7,6 +7,7 @@ use super::parse_number;
 use super::stream::{Context, Stream};
 use crate::error::{Checked, Place, catalogue};
 use crate::rational::Rational;
+use crate::unit::frame::Scale;
 use crate::unit::{Dimension, Unit, look_up};
 
 /// A product of powers under construction.
@@ -36,7 +37,7 @@ fn parse(stream: &mut Stream<'_>, place: Place, context: &mut Context<'_>) -> Ch
         return Err(context.errors.report(place, catalogue::absurd_unit()));
     }
     let text = if text == "1" { String::new() } else { text };
-    Ok(Unit { dimension: product.dimension, factor, text })
+    Ok(Unit { dimension: product.dimension, factor: Scale::new(factor), text })
 }
 
 fn product(stream: &mut Stream<'_>, place: Place, context: &mut Context<'_>, text: &mut String) -> Checked<Product> {

@@ -6,6 +6,7 @@ use nisp_compiler::model::{
     Column, Coordinate, Expr, Field, Function, Group, Model, Name, Node, Parameter, Role, Scene, Term, TermKind,
 };
 use nisp_compiler::rational::ratio;
+use nisp_compiler::unit::frame::Scale;
 use nisp_compiler::unit::{Dimension, Unit};
 use proc_macro2::Span;
 
@@ -29,7 +30,7 @@ pub(crate) fn dimension(exponents: [i128; 3]) -> Dimension {
 }
 
 pub(crate) fn unit(exponents: [i128; 3]) -> Unit {
-    Unit { dimension: dimension(exponents), factor: 1.0, text: String::new() }
+    Unit { dimension: dimension(exponents), factor: Scale::new(1.0), text: String::new() }
 }
 
 pub(crate) fn n(value: i128) -> Expr {

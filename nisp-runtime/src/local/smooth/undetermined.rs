@@ -10,6 +10,7 @@ use crate::schema;
 use crate::solve::driver::{Warning, WarningKind};
 use crate::solve::vector::{largest, root_mean_square};
 use crate::tolerance::LOOSE;
+use crate::units::Number;
 
 /// Stiffness of every coefficient beside its own, and ten times that.
 const LIFTS: [f64; 2] = [1e-13, 1e-12];
@@ -55,7 +56,7 @@ impl Solver<'_> {
                 return None;
             }
             let most = largest(&deviations);
-            let off = deviations[most] * self.bound.system.outward(&declared.unit);
+            let off = self.bound.system.outward(&declared.unit).of(Number::engine(deviations[most]));
             let message = format!(
                 "equations and conditions do not determine `{}`: it may be off by about {} at {}; give the conditions that are \
                  missing",

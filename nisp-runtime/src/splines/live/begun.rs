@@ -8,11 +8,12 @@ use super::grid::Grid;
 use super::lag::{settled_lag, sought, width};
 use super::met::Nearby;
 use super::opening::Opening;
-use super::record::{Layout, MeasuredRow};
+use super::record::{Inward, Layout, MeasuredRow};
 use super::under_way::{Live, SLACK};
 use super::window::Window;
 use super::{LiveError, Smoothed};
 use crate::problem::Problem;
+use crate::units::{Declared, Engine, Number};
 
 /// The last rows, of which nothing says yet whether they are strays. What the first rows say does not rest on them.
 const UNTOLD: usize = 3;
@@ -25,17 +26,17 @@ pub(super) struct Begun {
     pub(super) answers: Vec<Smoothed>,
     /// The others under way; nothing where there is a gap among the rows.
     pub(super) live: Option<Live>,
-    /// Rows behind the gap, in declared units.
-    pub(super) behind: Vec<MeasuredRow>,
+    /// Rows behind the gap.
+    pub(super) behind: Vec<MeasuredRow<Declared>>,
 }
 
 impl Begun {
-    /// Finds noise, smoothness and, where it is not given, the lag from rows in declared units, and answers them as a whole, but for the
+    /// Finds noise, smoothness and, where it is not given, the lag from rows, and answers them as a whole, but for the
     /// last ones, of which later rows tell more: `open` is that stretch over the lag.
     pub(super) fn with(
         problem: &Problem,
         layout: &Layout,
-        mut rows: Vec<MeasuredRow>,
+        mut rows: Vec<MeasuredRow<Declared>>,
         (lag, open): (Option<f64>, f64),
     ) -> Result<Self, LiveError> {
         layout.mark_strays(&mut rows);
@@ -45,21 +46,23 @@ impl Begun {
         let stretch = stretch?;
         let schema = problem.scene().schema;
         let system = bound.system;
-        let by = system.inward(&schema.coordinates[0].unit);
-        let inward = (by, layout.columns.iter().map(|column| system.inward(&column.unit)).collect::<Vec<_>>());
-        let rows: Vec<MeasuredRow> = rows.iter().map(|row| row.scaled(&inward)).collect();
+        let inward = Inward {
+            at: system.inward(&schema.coordinates[0].unit),
+            values: layout.columns.iter().map(|column| system.inward(&column.unit)).collect(),
+        };
+        let rows: Vec<MeasuredRow<Engine>> = rows.iter().map(|row| row.inward(&inward)).collect();
         let (start, end) = (rows[0].at, rows[told - 1].at);
         let width = width(&rows);
         let sought: Vec<usize> = sought(&bound);
         let settled = settled_lag(&stretch, &sought, (start, end), width);
         // Rows that a value says something of.
         let reach = (settled / width).round() as usize;
-        let lag = match lag {
-            Some(lag) if lag * by > MOST_CELLS as f64 * width => {
+        let given = lag.map(|lag| inward.at.of(Number::declared(lag)).as_engine());
+        let lag = match (lag, given) {
+            (Some(lag), Some(given)) if given > MOST_CELLS as f64 * width => {
                 return Err(LiveError::Lag { lag, most: MOST_CELLS });
             }
-            Some(lag) => lag * by,
-            None => settled,
+            _ => given.unwrap_or(settled),
         };
         let grid = Grid::new(start, width, lag);
         let mut conditions: Vec<Event> = Vec::new();
@@ -98,11 +101,11 @@ impl Begun {
         };
         let mut answers = Vec::new();
         let behind = live.replay(layout, rows, &known, &mut answers)?;
+        let behind: Vec<MeasuredRow<Declared>> = behind.iter().map(|row| row.outward(&live.inward)).collect();
         if behind.is_empty() {
             return Ok(Self { answers, live: Some(live), behind });
         }
         answers.extend(live.finish());
-        let behind = live.outward(behind.iter());
         Ok(Self { answers, live: None, behind })
     }
 }

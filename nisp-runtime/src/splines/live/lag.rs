@@ -3,6 +3,7 @@
 use super::evidence::Stretch;
 use super::record::MeasuredRow;
 use crate::problem::Bound;
+use crate::units::Engine;
 
 /// How much larger a source's deviation may be at the lag than after any wait.
 const NEAR: f64 = 1.05;
@@ -15,7 +16,7 @@ pub(super) fn sought(bound: &Bound) -> Vec<usize> {
 }
 
 /// Width of a cell: the usual distance of two rows. The median does not mind gaps, and the mean not that rows come in bursts.
-pub(super) fn width(rows: &[MeasuredRow]) -> f64 {
+pub(super) fn width(rows: &[MeasuredRow<Engine>]) -> f64 {
     let mut apart: Vec<f64> = rows.windows(2).map(|pair| pair[1].at - pair[0].at).collect();
     apart.sort_by(f64::total_cmp);
     let mean = apart.iter().sum::<f64>() / apart.len() as f64;

@@ -1,34 +1,62 @@
 //! Rows of a record, and stretches of them as problems of their own.
 
+use std::marker::PhantomData;
+
 use super::alone;
 use super::event::Event;
 use super::{LiveError, RowColumn};
 use crate::network::Inputs;
 use crate::problem::{Bound, Problem};
 use crate::schema::{Group, TermKind};
+use crate::units::{Declared, Engine, Number, Scale};
 
 /// Places of an equation that stand for a whole stretch.
 const ALONG: usize = 32;
 
-/// A row of a record.
+/// A row of a record, in the units of a frame.
 #[derive(Clone, Debug)]
-pub(super) struct MeasuredRow {
+pub(super) struct MeasuredRow<Frame> {
     pub(super) at: f64,
     /// All columns of all measured groups, one after the other.
     pub(super) values: Vec<f64>,
     /// Whether what is observed there does not count.
     pub(super) is_stray: bool,
+    frame: PhantomData<Frame>,
 }
 
-impl MeasuredRow {
+/// How rows come to the engine.
+pub(super) struct Inward {
+    /// Of the coordinate.
+    pub(super) at: Scale<Declared, Engine>,
+    /// Of each column.
+    pub(super) values: Vec<Scale<Declared, Engine>>,
+}
+
+impl MeasuredRow<Declared> {
     pub(super) fn new(at: f64, values: &[f64]) -> Self {
-        Self { at, values: values.to_vec(), is_stray: false }
+        Self { at, values: values.to_vec(), is_stray: false, frame: PhantomData }
     }
 
-    /// In other units: factors of the coordinate and of each column.
-    pub(super) fn scaled(&self, (by, factors): &(f64, Vec<f64>)) -> Self {
-        let values = self.values.iter().zip(factors).map(|(value, factor)| value * factor).collect();
-        Self { at: self.at * by, values, ..*self }
+    pub(super) fn inward(&self, inward: &Inward) -> MeasuredRow<Engine> {
+        let values = self.values.iter().zip(&inward.values);
+        MeasuredRow {
+            at: inward.at.of(Number::declared(self.at)).as_engine(),
+            values: values.map(|(&x, inward)| inward.of(Number::declared(x)).as_engine()).collect(),
+            is_stray: self.is_stray,
+            frame: PhantomData,
+        }
+    }
+}
+
+impl MeasuredRow<Engine> {
+    pub(super) fn outward(&self, inward: &Inward) -> MeasuredRow<Declared> {
+        let values = self.values.iter().zip(&inward.values);
+        MeasuredRow {
+            at: inward.at.inverse().of(Number::engine(self.at)).as_declared(),
+            values: values.map(|(&x, inward)| inward.inverse().of(Number::engine(x)).as_declared()).collect(),
+            is_stray: self.is_stray,
+            frame: PhantomData,
+        }
     }
 }
 
@@ -68,7 +96,7 @@ impl Layout {
     }
 
     /// The events of a row: one for every group of which something was measured.
-    pub(super) fn events<'a>(&'a self, row: &'a MeasuredRow) -> impl Iterator<Item = Event> + 'a {
+    pub(super) fn events<'a, Frame>(&'a self, row: &'a MeasuredRow<Frame>) -> impl Iterator<Item = Event> + 'a {
         let ends = self.measured.iter().skip(1).map(|(_, first)| *first).chain([self.columns.len()]);
         self.measured.iter().zip(ends).filter_map(|(&(group, first), end)| {
             let columns = &row.values[first..end];
@@ -78,7 +106,7 @@ impl Layout {
     }
 
     /// Finds the rows that are strays by their neighbours alone. Columns that equations read are what they are.
-    pub(super) fn mark_strays(&self, rows: &mut [MeasuredRow]) {
+    pub(super) fn mark_strays(&self, rows: &mut [MeasuredRow<Declared>]) {
         rows.iter_mut().for_each(|row| row.is_stray = false);
         for column in (0..self.columns.len()).filter(|&column| self.columns[column].may_lack) {
             let there: Vec<usize> = (0..rows.len()).filter(|&row| !rows[row].values[column].is_nan()).collect();
@@ -88,14 +116,14 @@ impl Layout {
     }
 
     /// A row without what was observed at a stray.
-    fn counted(&self, row: &MeasuredRow) -> MeasuredRow {
+    fn counted<Frame>(&self, row: &MeasuredRow<Frame>) -> MeasuredRow<Frame> {
         let counts =
             |(value, column): (&f64, &RowColumn)| if row.is_stray && column.may_lack { f64::NAN } else { *value };
         MeasuredRow { values: row.values.iter().zip(&self.columns).map(counts).collect(), ..*row }
     }
 
-    /// The problem of the first rows, which are in declared units.
-    pub(super) fn bound(&self, problem: &Problem, rows: &[MeasuredRow]) -> Result<Bound, LiveError> {
+    /// The problem of the first rows.
+    pub(super) fn bound(&self, problem: &Problem, rows: &[MeasuredRow<Declared>]) -> Result<Bound, LiveError> {
         let schema = problem.scene().schema;
         let mut problem = problem.clone();
         for &group in &self.continuous {
@@ -108,8 +136,8 @@ impl Layout {
         Ok(problem.bound(Inputs::Automatic)?)
     }
 
-    /// A later stretch of a record whose first rows are bound: rows are in the engine's units.
-    pub(super) fn stretch(&self, first: &Bound, rows: &[MeasuredRow]) -> Bound {
+    /// A later stretch of a record whose first rows are bound, in the same units and with the same scales.
+    pub(super) fn stretch(&self, first: &Bound, rows: &[MeasuredRow<Engine>]) -> Bound {
         let (low, high) = (rows[0].at, rows[rows.len() - 1].at);
         let mut bound = first.between(low, high);
         for &group in &self.continuous {
@@ -122,8 +150,8 @@ impl Layout {
     }
 
     /// Places and columns of a group, of the rows in which something of it was measured and counts.
-    fn table(&self, group: usize, rows: &[MeasuredRow]) -> (Vec<f64>, Vec<Vec<f64>>) {
-        let rows: Vec<MeasuredRow> = rows.iter().map(|row| self.counted(row)).collect();
+    fn table<Frame>(&self, group: usize, rows: &[MeasuredRow<Frame>]) -> (Vec<f64>, Vec<Vec<f64>>) {
+        let rows: Vec<MeasuredRow<Frame>> = rows.iter().map(|row| self.counted(row)).collect();
         let own: Vec<Event> = rows.iter().flat_map(|row| self.events(row)).filter(|e| e.group == group).collect();
         let count = own.first().map_or(0, |event| event.columns.len());
         let column = |column: usize| own.iter().map(|event| event.columns[column]).collect();
@@ -131,7 +159,7 @@ impl Layout {
     }
 }
 
-fn along(rows: &[MeasuredRow]) -> Vec<f64> {
+fn along<Frame>(rows: &[MeasuredRow<Frame>]) -> Vec<f64> {
     let (low, high) = (rows[0].at, rows[rows.len() - 1].at);
     (0..ALONG).map(|i| low + (high - low) * i as f64 / (ALONG - 1) as f64).collect()
 }

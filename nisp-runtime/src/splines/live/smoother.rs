@@ -6,6 +6,7 @@ use super::record::{Layout, MeasuredRow};
 use super::under_way::{Live, Reach};
 use super::{LagSettings, LiveError, RowColumn, Smoothed};
 use crate::problem::{BindError, Problem};
+use crate::units::Declared;
 
 /// Rows that say anything of a noise and a source.
 const FEWEST: usize = 10;
@@ -24,10 +25,10 @@ pub struct FixedLagSmoother {
     /// Place of the last row that was taken, in the declared unit.
     last: Option<f64>,
     /// A row far ahead of it, which the next one tells from a wrong place; and the place of the last one that was wrong.
-    ahead: Option<MeasuredRow>,
+    ahead: Option<MeasuredRow<Declared>>,
     left_out: Option<f64>,
-    /// Rows in declared units until noise and smoothness are known.
-    waiting: Vec<MeasuredRow>,
+    /// Rows until noise and smoothness are known.
+    waiting: Vec<MeasuredRow<Declared>>,
     /// How many of them are asked next.
     due: usize,
     live: Option<Live>,
@@ -105,19 +106,19 @@ impl FixedLagSmoother {
     /// Whether a row is so far ahead that its place may be a wrong one.
     fn leaps(&self, at: f64) -> bool {
         match (&self.live, &self.waiting[..]) {
-            (Some(live), _) => live.cells_to(at * live.inward.0) > live.window.grid().cells as f64,
+            (Some(live), _) => live.cells_to(live.place(at)) > live.window.grid().cells as f64,
             (None, [first, .., last]) => at - last.at > LEAP * (last.at - first.at) / (self.waiting.len() - 1) as f64,
             (None, _) => true,
         }
     }
 
     /// Takes a row whose place is a right one.
-    fn take(&mut self, row: MeasuredRow) -> Result<Vec<Smoothed>, LiveError> {
+    fn take(&mut self, row: MeasuredRow<Declared>) -> Result<Vec<Smoothed>, LiveError> {
         self.last = Some(row.at);
         let mut found = Vec::new();
         if let Some(live) = &mut self.live {
             self.patience.row();
-            match live.push(&self.layout, row.scaled(&live.inward), &|_, _| None, &mut found) {
+            match live.push(&self.layout, row.inward(&live.inward), &|_, _| None, &mut found) {
                 Ok(Reach::Whole) => {
                     found.extend(self.recover());
                     return Ok(found);
@@ -211,7 +212,12 @@ impl FixedLagSmoother {
         found
     }
 
-    fn begin_with(&mut self, rows: Vec<MeasuredRow>, lag: Option<f64>, open: f64) -> Result<Vec<Smoothed>, LiveError> {
+    fn begin_with(
+        &mut self,
+        rows: Vec<MeasuredRow<Declared>>,
+        lag: Option<f64>,
+        open: f64,
+    ) -> Result<Vec<Smoothed>, LiveError> {
         let Begun { answers, live, behind } = Begun::with(&self.problem, &self.layout, rows, (lag, open))?;
         self.live = live;
         self.waiting = behind;
@@ -219,10 +225,10 @@ impl FixedLagSmoother {
     }
 
     /// Takes a row that a window could not reach, after that has begun again.
-    fn push_anew(&mut self, row: MeasuredRow) -> Result<Vec<Smoothed>, LiveError> {
+    fn push_anew(&mut self, row: MeasuredRow<Declared>) -> Result<Vec<Smoothed>, LiveError> {
         let mut found = Vec::new();
         let reach =
-            self.live.as_mut().map(|live| live.push(&self.layout, row.scaled(&live.inward), &|_, _| None, &mut found));
+            self.live.as_mut().map(|live| live.push(&self.layout, row.inward(&live.inward), &|_, _| None, &mut found));
         if !matches!(reach.transpose()?, Some(Reach::Whole)) {
             found.extend(self.live.take().iter_mut().flat_map(Live::finish));
             self.waiting.push(row);

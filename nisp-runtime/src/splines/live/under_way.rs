@@ -7,11 +7,12 @@ use super::event::Event;
 use super::evidence::{Stretch, Weights};
 use super::met::{Nearby, count_all, count_bend, count_near};
 use super::opening::Opening;
-use super::record::{Layout, MeasuredRow};
+use super::record::{Inward, Layout, MeasuredRow};
 use super::strays::Strays;
 use super::window::{Known, Window};
 use super::{LiveError, Smoothed};
 use crate::solve::fault::Fault;
+use crate::units::{Declared, Engine, Number, Scale};
 
 /// Steps over the first cells at most, and the change that no longer matters.
 const FIRST_STEPS: usize = 20;
@@ -30,9 +31,9 @@ pub(super) struct Live {
     pub(super) window: Window,
     /// The answer to the first rows, while one of them waits.
     pub(super) opening: Option<Opening>,
-    /// From declared units to the engine's: of the coordinate, and of each column.
-    pub(super) inward: (f64, Vec<f64>),
-    pub(super) outward: Vec<f64>,
+    pub(super) inward: Inward,
+    /// Of each head.
+    pub(super) outward: Vec<Scale<Engine, Declared>>,
     pub(super) lag: f64,
     /// Places of rows that have no answer yet, with what was measured there.
     pub(super) pending: VecDeque<(f64, Vec<Event>)>,
@@ -47,7 +48,7 @@ pub(super) struct Live {
     /// How far sources bend, up to the row that is answered and up to one behind it.
     pub(super) bends: [Nearby; 2],
     /// The last rows, for the next stretch.
-    pub(super) recent: VecDeque<MeasuredRow>,
+    pub(super) recent: VecDeque<MeasuredRow<Engine>>,
     pub(super) rows: usize,
     /// Number of the row at which a stretch is asked next, or its answer taken over.
     pub(super) due: usize,
@@ -71,10 +72,10 @@ impl Live {
     pub(super) fn replay(
         &mut self,
         layout: &Layout,
-        rows: Vec<MeasuredRow>,
+        rows: Vec<MeasuredRow<Engine>>,
         known: Known<'_>,
         found: &mut Vec<Smoothed>,
-    ) -> Result<Vec<MeasuredRow>, LiveError> {
+    ) -> Result<Vec<MeasuredRow<Engine>>, LiveError> {
         let right = self.window.grid().right();
         let mut rows = rows.into_iter().peekable();
         while let Some(row) = rows.next_if(|row| row.at <= right) {
@@ -95,7 +96,7 @@ impl Live {
         Ok(Vec::new())
     }
 
-    fn ask(&mut self, layout: &Layout, row: MeasuredRow) {
+    fn ask(&mut self, layout: &Layout, row: MeasuredRow<Engine>) {
         let events: Vec<Event> = layout.events(&row).collect();
         events.iter().for_each(|event| self.window.ask(event.clone()));
         self.last = row.at;
@@ -117,7 +118,7 @@ impl Live {
     pub(super) fn push(
         &mut self,
         layout: &Layout,
-        row: MeasuredRow,
+        row: MeasuredRow<Engine>,
         known: Known<'_>,
         found: &mut Vec<Smoothed>,
     ) -> Result<Reach, LiveError> {
@@ -189,33 +190,32 @@ impl Live {
 
     /// Whether the row at a place in the declared unit is among those that were taken.
     pub(super) fn has(&self, at: f64) -> bool {
-        self.recent.back().is_some_and(|row| row.at >= at * self.inward.0)
+        self.recent.back().is_some_and(|row| row.at >= self.place(at))
     }
 
-    /// So many of the last rows at most, in declared units.
-    pub(super) fn last_rows(&self, most: usize) -> Vec<MeasuredRow> {
-        self.outward(self.recent.iter().skip(self.recent.len().saturating_sub(most)))
+    /// A place in the declared unit, in the engine's.
+    pub(super) fn place(&self, at: f64) -> f64 {
+        self.inward.at.of(Number::declared(at)).as_engine()
     }
 
-    /// Rows in declared units.
-    pub(super) fn outward<'a>(&self, rows: impl Iterator<Item = &'a MeasuredRow>) -> Vec<MeasuredRow> {
-        let (by, factors) = &self.inward;
-        let outward: (f64, Vec<f64>) = (by.recip(), factors.iter().map(|factor| factor.recip()).collect());
-        rows.map(|row| row.scaled(&outward)).collect()
+    /// So many of the last rows at most.
+    pub(super) fn last_rows(&self, most: usize) -> Vec<MeasuredRow<Declared>> {
+        let last = self.recent.iter().skip(self.recent.len().saturating_sub(most));
+        last.map(|row| row.outward(&self.inward)).collect()
     }
 
     /// The lag, and the place of the first row without an answer, in the declared unit.
     pub(super) fn declared_lag(&self) -> f64 {
-        self.lag / self.inward.0
+        self.inward.at.back(Number::engine(self.lag)).as_declared()
     }
 
     pub(super) fn first_waiting(&self) -> Option<f64> {
-        self.pending.front().map(|(at, _)| at / self.inward.0)
+        self.pending.front().map(|(at, _)| self.inward.at.back(Number::engine(*at)).as_declared())
     }
 
     /// Answers the rows that wait before a place in the declared unit.
     pub(super) fn answer_before(&mut self, place: f64) -> Vec<Smoothed> {
-        let place = place * self.inward.0;
+        let place = self.place(place);
         let mut found = Vec::new();
         while self.pending.front().is_some_and(|(at, _)| *at < place) {
             found.extend(self.answer_next());
@@ -241,17 +241,18 @@ impl Live {
         let counted = self.nearby.iter_mut().chain(&mut self.bends);
         counted.for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
         count_all((window, opening), &events, &mut self.square);
-        let read = |(head, outward): (usize, &f64)| {
+        let read = |(head, outward): (usize, &Scale<Engine, Declared>)| {
             let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
-            (value * outward, deviation * outward)
+            let outward = |x| outward.of(Number::engine(x)).as_declared();
+            (outward(value), outward(deviation))
         };
         let heads = self.outward.iter().enumerate().map(read).collect();
-        let outward = self.inward.0.recip();
+        let outward = |at| self.inward.at.inverse().of(Number::engine(at)).as_declared();
         let most = |means: &[Nearby]| means.iter().map(|mean| mean.square.sqrt()).fold(0.0, f64::max);
         let (nearby, bend) = (most(&self.nearby), most(&self.bends));
-        let (lag, misfit, leaning) = ((self.last - at) * outward, self.square.sqrt(), self.window.weights().leaning);
+        let (lag, misfit, leaning) = (outward(self.last - at), self.square.sqrt(), self.window.weights().leaning);
         let is_stray = events.iter().any(|event| event.is_stray);
-        Some(Smoothed { at: at * outward, lag, heads, misfit, nearby, bend, leaning, is_stray })
+        Some(Smoothed { at: outward(at), lag, heads, misfit, nearby, bend, leaning, is_stray })
     }
 
     /// Answers all rows that wait.
