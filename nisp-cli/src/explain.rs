@@ -55,7 +55,8 @@ pub(crate) fn explain(entry: &Entry, scene: Option<&str>, architecture: Architec
 /// A scene in a few lines: what it is, its coordinates, what is unknown, what is given.
 pub(crate) fn unknowns(schema: &Scene) -> Vec<String> {
     let about = schema.docs.lines().next().unwrap_or_default();
-    let mut lines = vec![format!("{}, scene {}: {about}", schema.module, schema.name)];
+    let mut lines =
+        vec![format!("{}, scene {}: {about}", schema.module, schema.name).trim_end_matches(": ").to_string()];
     let mut line = |content: String| lines.push(content);
     for coordinate in schema.coordinates {
         line(format!("  coordinate {:5} {}", coordinate.name, unit(&coordinate.unit)));
