@@ -3,6 +3,7 @@
 
 mod bounded;
 mod clouds;
+mod mixed;
 mod sources;
 
 use std::f64::consts::PI;

@@ -52,10 +52,15 @@ pub(super) fn filled(bound: &Bound, points: usize) -> Option<Bound> {
 }
 
 /// The problem with no more measurements than an answer can use where equations are asked at so many points; nothing where it has no
-/// more. Measurements must be exact: many noisy ones tell more than few.
+/// more. Measurements must be exact: many noisy ones tell more than few. What else is stated where they were made is asked at those that
+/// are left.
 pub(super) fn thinned(bound: &Bound, points: usize) -> Option<Bound> {
     let schema = bound.problem.scene().schema;
-    let measures = |at: &usize| schema.groups[*at].terms.iter().all(|term| term.kind == TermKind::Observation);
+    let measures = |at: &usize| {
+        let kinds = || schema.groups[*at].terms.iter().map(|term| &term.kind);
+        kinds().any(|kind| *kind == TermKind::Observation)
+            && kinds().all(|kind| matches!(kind, TermKind::Observation | TermKind::Residual))
+    };
     let most = (MEASURED * points).max(ENOUGH);
     let large: Vec<usize> = (0..schema.groups.len()).filter(measures).filter(|&at| count(bound, at) > most).collect();
     if large.is_empty() {
