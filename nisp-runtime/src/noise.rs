@@ -80,7 +80,7 @@ impl Noise {
 }
 
 /// True where noise of some deviation is no more than rounding, for data of some spread.
-pub(crate) fn is_exact(deviation: f64, spread: f64) -> bool {
+pub fn is_exact(deviation: f64, spread: f64) -> bool {
     deviation <= EXACT * spread
 }
 
@@ -125,7 +125,14 @@ fn of_columns(bound: &Bound, group: usize, term: usize, columns: &[Vec<f64>]) ->
         return None;
     }
     let outliers = bound.losses[group][term].is_robust();
-    let noise_of = |values: &Vec<f64>| match (inputs, outliers) {
+    let noise_of = |values: &Vec<f64>| of_values(places, inputs, values, outliers);
+    columns.iter().map(noise_of).collect::<Option<Vec<f64>>>().map(root_mean_square)
+}
+
+/// The standard deviation of the noise of values at places, flat and point by point: what neighbours differ by beside a smooth course,
+/// and rounding to steps. With `outliers` one value in ten may be far off. Nothing where there are too few to judge.
+pub fn of_values(places: &[f64], inputs: usize, values: &[f64], outliers: bool) -> Option<f64> {
+    let found = match (inputs, outliers) {
         (1, false) => by_differences(&in_order(places, values)),
         (1, true) => by_few_differences(&in_order(places, values)),
         _ => {
@@ -134,8 +141,7 @@ fn of_columns(bound: &Bound, group: usize, term: usize, columns: &[Vec<f64>]) ->
             around.into_iter().chain(along).reduce(f64::min)
         }
     };
-    let noise_of = |values: &Vec<f64>| Some(noise_of(values)?.max(steps(values)));
-    columns.iter().map(noise_of).collect::<Option<Vec<f64>>>().map(root_mean_square)
+    Some(found?.max(steps(values)))
 }
 
 /// The noise of rounding to steps: a step over the root of twelve. Values that seldom repeat have none to speak of.
@@ -155,7 +161,7 @@ pub(crate) fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// Standard deviation of values about their mean.
-pub(crate) fn deviation(values: &[f64]) -> f64 {
+pub fn deviation(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count).sqrt()
