@@ -4,6 +4,7 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use nisp::noise;
 use nisp::schema::{Group, Portion};
 use nisp_equations::{Entry, Prepared, Request, Survey};
 
@@ -40,6 +41,7 @@ pub(crate) fn check(
         }
         if let Some(prepared) = &prepared {
             held(entry, group, prepared).into_iter().for_each(&mut line);
+            seen(group, prepared).into_iter().for_each(&mut line);
         }
     }
     for warning in schema.warnings {
@@ -103,11 +105,32 @@ fn held(entry: &Entry, group: &Group, prepared: &Prepared) -> Vec<String> {
     lines
 }
 
+/// The clouds of a group: their ranges, in the order of the surface's entries, and their noise.
+fn seen(group: &Group, prepared: &Prepared) -> Vec<String> {
+    let clouds = group.terms.iter().filter_map(|term| Some((term, prepared.problem.cloud(group.name, term.name)?)));
+    let said = clouds.map(|(term, cloud)| {
+        let entry = |at: usize| {
+            let [low, high] = ends(cloud.iter().skip(at).step_by(term.rows).copied());
+            format!("{} to {}", short(low), short(high))
+        };
+        let entries: Vec<String> = (0..term.rows).map(entry).collect();
+        let in_space = if term.rows == 3 { cloud.as_chunks::<3>().0 } else { &[] };
+        let noise = noise::of_cloud(in_space).map(|noise| format!(", noise about {noise:.1e}")).unwrap_or_default();
+        let (points, unit) = (cloud.len() / term.rows.max(1), unit(&term.unit));
+        format!("  cloud of {} {unit}: {points} points, {}{noise}", term.name, entries.join(", "))
+    });
+    said.collect()
+}
+
 fn range(name: &str, unit: String, values: impl Iterator<Item = f64>) -> String {
-    let ends = values.filter(|value| !value.is_nan());
-    let [low, high] =
-        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+    let [low, high] = ends(values);
     format!("  {name} {unit}: {} to {}", short(low), short(high))
+}
+
+/// The least and the greatest of the numbers among some values.
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let numbers = values.filter(|value| !value.is_nan());
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
 /// Six digits at most.

@@ -66,7 +66,7 @@ impl Noise {
         let clouds = terms.filter(|(.., own)| matches!(own.kind, TermKind::Chamfer { .. }) && own.rows == 3);
         self.observations.extend(clouds.filter_map(|(group, term, _)| {
             let points = bound.clouds[group][term].as_chunks::<3>().0;
-            let deviation = roughness(points, points)?;
+            let deviation = of_cloud(points)?;
             let (_, spread) = spread(points.iter().map(|&point| point.into()));
             Some(ObservationNoise { group, term, deviation, spread })
         }));
@@ -142,6 +142,11 @@ pub fn of_values(places: &[f64], inputs: usize, values: &[f64], outliers: bool) 
         }
     };
     Some(found?.max(steps(values)))
+}
+
+/// The standard deviation of the points of a cloud in space about smooth pieces of its surface; nothing where they are few.
+pub fn of_cloud(points: &[[f64; 3]]) -> Option<f64> {
+    roughness(points, points)
 }
 
 /// The noise of rounding to steps: a step over the root of twelve. Values that seldom repeat have none to speak of.

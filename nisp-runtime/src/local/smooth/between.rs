@@ -6,7 +6,6 @@ use rand::seq::index::sample;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-use crate::local::meshes::axes;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
@@ -31,7 +30,7 @@ const MEASURED: usize = 2;
 /// anything between the given ones. Where nothing is measured two lattices tell how far an answer is off, so that the first is coarser.
 pub(super) fn first(bound: &Bound) -> usize {
     let schema = bound.problem.scene().schema;
-    let is_of_all = |head: usize| schema.heads[head].source && axes(schema, head).len() == schema.coordinates.len();
+    let is_of_all = |head: usize| schema.heads[head].source && schema.axes(head).len() == schema.coordinates.len();
     let given = largest(bound).map_or(0, |at| count(bound, at));
     if schema.observed().is_empty() {
         return ENOUGH / 2;
