@@ -136,12 +136,23 @@ pub fn of_values(places: &[f64], inputs: usize, values: &[f64], outliers: bool) 
         (1, false) => by_differences(&in_order(places, values)),
         (1, true) => by_few_differences(&in_order(places, values)),
         _ => {
-            let around = by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF });
+            let around = by_fits(&shares(places, inputs), inputs, values, if outliers { FEW_CLEAN } else { HALF });
             let along = (0..inputs).filter_map(|axis| by_stations(places, (inputs, axis), values));
             around.into_iter().chain(along).reduce(f64::min)
         }
     };
     Some(found?.max(steps(values)))
+}
+
+/// Places as shares of their range along each coordinate: metres and seconds make no distance, and a field varies over its domain.
+fn shares(places: &[f64], inputs: usize) -> Vec<f64> {
+    let width = |axis: usize| {
+        let along = places.iter().skip(axis).step_by(inputs);
+        let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)]);
+        if high > low { high - low } else { 1.0 }
+    };
+    let widths: Vec<f64> = (0..inputs).map(width).collect();
+    places.iter().zip(widths.iter().cycle()).map(|(x, width)| x / width).collect()
 }
 
 /// The standard deviation of the points of a cloud in space about smooth pieces of its surface; nothing where they are few.
@@ -329,6 +340,21 @@ mod tests {
             let found = by_few_differences(&dirty).unwrap();
             assert!((0.7..2.2).contains(&(found / 0.03)), "{share}: {found}");
         }
+    }
+
+    /// Metres and seconds: places that are far apart in seconds may be neighbours.
+    #[test]
+    fn noise_does_not_depend_on_units_of_coordinates() {
+        let mut random = StdRng::seed_from_u64(7);
+        let mut places = Vec::new();
+        let mut values = Vec::new();
+        for _ in 0..600 {
+            let [x, y]: [f64; 2] = [random.random(), random.random()];
+            places.extend([1e-3 * x, 1e3 * y]);
+            values.push((4.0 * x).sin() * (3.0 * y).cos() + 0.03 * normal(&mut random));
+        }
+        let found = of_values(&places, 2, &values, false).unwrap();
+        assert!((found / 0.03 - 1.0).abs() < 0.2, "{found}");
     }
 
     /// Three stations far apart, and what passes them.
