@@ -37,7 +37,7 @@ pub use nisp_runtime::recover::{
 };
 pub use nisp_runtime::saved::{OpenAnswer, SavedAnswer, SavedError, SavedParameter};
 pub use nisp_runtime::verdict::{Check, Verdict};
-pub use nisp_runtime::{engine, local, nearest, network, peak, real, schema, simd, solve, units};
+pub use nisp_runtime::{engine, local, nearest, network, noise, peak, real, schema, simd, solve, units};
 
 /// What emitted code refers to; not for direct use.
 #[doc(hidden)]

@@ -33,6 +33,7 @@ pub mod rlc;
 mod series;
 #[cfg(feature = "shipped")]
 pub mod sponge;
+mod survey;
 mod tables;
 pub mod truth;
 mod yardsticks;
@@ -48,5 +49,6 @@ pub use frames::Frames;
 pub use prepared::{Assumed, Measured, Prepared};
 pub use record::Record;
 pub use request::{Request, Wanted};
+pub use survey::Survey;
 pub use truth::Truth;
 pub use yardsticks::{Yardstick, yardsticks};

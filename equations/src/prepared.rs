@@ -5,8 +5,11 @@ use nisp::{Carrier, Problem, Settings};
 
 use crate::contact::{Contact, References};
 use crate::frames::Frames;
-use crate::rivals::{Answer, Measurements, System, contest, noise_level};
+use crate::rivals::{Answer, Measurements, RivalError, System, contest, noise_level};
 use crate::truth::Truth;
+
+/// Rivals have no way to be quick on more measurements than this.
+const MOST_ROWS: usize = 2000;
 
 /// A bound problem, what was measured, and what is true if that is known.
 pub struct Prepared {
@@ -71,16 +74,22 @@ impl Prepared {
         }
     }
 
-    /// What the classical rivals answer at times `at`, where `truth` is true; nothing where none knows this scene. They
-    /// are given the noise that they find themselves.
-    pub fn contest(&self, at: &[f64], truth: &[f64]) -> Vec<Answer> {
-        let Some(system) = &self.rival else { return Vec::new() };
+    /// What the classical rivals answer at times `at`, where `truth` is true. They are given the noise that they find
+    /// themselves.
+    ///
+    /// # Errors
+    /// None knows this scene, or can read these measurements.
+    pub fn contest(&self, at: &[f64], truth: &[f64]) -> Result<Vec<Answer>, RivalError> {
+        let system = self.rival.as_ref().ok_or(RivalError::Unknown)?;
+        if self.points.len() > MOST_ROWS {
+            return Err(RivalError::Input(format!("more than {MOST_ROWS} rows take them too long")));
+        }
         let states: Vec<&[f64]> = self.measured.iter().map(|measured| measured.values.as_slice()).collect();
-        let noise: Result<Vec<f64>, _> = states.iter().map(|values| noise_level(&self.points, values)).collect();
-        let answers = noise.and_then(|noise| {
-            contest(system.as_ref(), &Measurements { times: &self.points, states: &states, noise: &noise }, at, truth)
-        });
-        // Rivals that cannot answer have no row in a table.
-        answers.unwrap_or_default()
+        if states.iter().any(|values| values.iter().any(|value| value.is_nan())) {
+            return Err(RivalError::Input("they know no gaps, and the record has some".into()));
+        }
+        let noise: Vec<f64> =
+            states.iter().map(|values| noise_level(&self.points, values)).collect::<Result<_, RivalError>>()?;
+        contest(system.as_ref(), &Measurements { times: &self.points, states: &states, noise: &noise }, at, truth)
     }
 }

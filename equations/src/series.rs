@@ -83,8 +83,7 @@ impl Series {
         let truth = truth.map(|truth| Truth::read(truth, schema, span, Headers::default())).transpose()?;
         let given =
             Given { start: span.map_or(0.0, |[first, _]| first), parameter: &|name| parameter(schema, request, name) };
-        // Rivals know no gaps.
-        let rival = (self.rival)(schema.name, given).filter(|_| found.warnings.is_empty());
+        let rival = (self.rival)(schema.name, given);
         Ok(Prepared {
             problem: found.problem,
             points: found.places,

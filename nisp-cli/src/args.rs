@@ -226,7 +226,7 @@ pub(crate) struct Options {
     /// Folder for results; made if it is not there.
     #[arg(long, value_name = "DIR", default_value = "nisp-out", help_heading = RESULTS)]
     pub(crate) out: PathBuf,
-    /// With a truth, show the errors of classical methods too.
+    /// Show the errors of classical methods too, where a truth is given and they know the equation.
     #[arg(long, help_heading = RESULTS)]
     pub(crate) rivals: bool,
     /// Keep checkpoint.nisp there: every few seconds and at the end.

@@ -4,9 +4,9 @@ use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
+use nisp::noise;
 use nisp::schema::{Group, Portion};
-use nisp_equations::rivals::noise_level;
-use nisp_equations::{Entry, Prepared, Request};
+use nisp_equations::{Entry, Prepared, Request, Survey};
 
 use crate::explain::{unit, unknowns};
 
@@ -32,7 +32,7 @@ pub(crate) fn check(
     };
     unknowns(schema).into_iter().for_each(&mut line);
     for group in schema.groups.iter().filter(|group| !group.is_beliefs()) {
-        line(format!("group {}{}", group.name, origin(group, prepared.as_ref())));
+        line(format!("group {}{}", group.name, origin(entry, group, prepared.as_ref())));
         for term in group.terms {
             line(format!("  {} {}: {}", term.name, unit(&term.unit), term.equation));
             if latex {
@@ -40,7 +40,8 @@ pub(crate) fn check(
             }
         }
         if let Some(prepared) = &prepared {
-            held(group, prepared).into_iter().for_each(&mut line);
+            held(entry, group, prepared).into_iter().for_each(&mut line);
+            seen(group, prepared).into_iter().for_each(&mut line);
         }
     }
     for warning in schema.warnings {
@@ -56,8 +57,8 @@ pub(crate) fn check(
     Ok(ExitCode::SUCCESS)
 }
 
-/// How many points a group has, and where they come from.
-fn origin(group: &Group, prepared: Option<&Prepared>) -> String {
+/// How many points a group has, and where they come from; of a single one, where it is.
+fn origin(entry: &Entry, group: &Group, prepared: Option<&Prepared>) -> String {
     let lies = match group.place.map(|place| place.portion) {
         Some(Portion::Inside) => " inside its domain",
         Some(Portion::Boundary) => " on the boundary of its domain",
@@ -65,51 +66,71 @@ fn origin(group: &Group, prepared: Option<&Prepared>) -> String {
         Some(Portion::End) => " where its domain ends",
         None => "",
     };
-    let axes = prepared.map(|prepared| prepared.problem.scene().schema.coordinates.len());
-    let points = prepared.and_then(|prepared| prepared.problem.group(group.name));
-    match points.zip(axes) {
-        Some(((points, _), axes)) => match points.coordinates.len() / axes {
-            1 => format!(": 1 point{lies}"),
-            count => format!(": {count} points{lies}"),
-        },
+    let survey = prepared.and_then(|prepared| Survey::of(entry, prepared, group));
+    match survey.map(|survey| (survey.axis(0).count(), survey)) {
+        Some((1, survey)) => format!(": 1 point{lies}, {}", survey.place(survey.points)),
+        Some((count, _)) => format!(": {count} points{lies}"),
         None if lies.is_empty() => String::new(),
         None => format!(":{lies}"),
     }
 }
 
-/// The columns of a group: their ranges, gaps and noise.
-fn held(group: &Group, prepared: &Prepared) -> Vec<String> {
+/// The columns of a group: their ranges, gaps, noise and strays, and how its rows lie in their domain.
+fn held(entry: &Entry, group: &Group, prepared: &Prepared) -> Vec<String> {
     let schema = prepared.problem.scene().schema;
-    let Some((points, columns)) = prepared.problem.group(group.name) else { return Vec::new() };
-    if columns.is_empty() {
-        return Vec::new();
+    let Some((_, columns)) = prepared.problem.group(group.name) else { return Vec::new() };
+    let Some(survey) = Survey::of(entry, prepared, group).filter(|_| !columns.is_empty()) else { return Vec::new() };
+    let mut lines = Vec::new();
+    for (at, own) in schema.coordinates.iter().enumerate() {
+        let domain =
+            survey.declared(at).map(|[low, high]| format!(", in a domain of {} to {}", short(low), short(high)));
+        lines.push(range(own.name, unit(&own.unit), survey.axis(at)) + &domain.unwrap_or_default());
     }
-    let axes = schema.coordinates.len();
-    let axis = |at: usize| points.coordinates.iter().skip(at).step_by(axes).copied();
-    let ranges = schema.coordinates.iter().enumerate().map(|(at, own)| range(own.name, unit(&own.unit), axis(at)));
-    let mut lines: Vec<String> = ranges.collect();
-    for (column, values) in group.columns.iter().zip(columns) {
+    let is_observed = |at: usize| group.terms.iter().any(|term| term.columns.contains(&at));
+    for (at, (column, values)) in group.columns.iter().zip(columns).enumerate() {
         let mut text = range(column.name, unit(&column.unit), values.iter().copied());
-        let measured: Vec<(f64, f64)> =
-            axis(0).zip(values.iter().copied()).filter(|(_, value)| !value.is_nan()).collect();
-        if measured.len() < values.len() {
-            let _ = write!(text, ", not measured in {} of {} rows", values.len() - measured.len(), values.len());
+        let gaps = values.iter().filter(|value| value.is_nan()).count();
+        if gaps > 0 {
+            let _ = write!(text, ", not measured in {gaps} of {} rows", values.len());
         }
-        let (at, values): (Vec<f64>, Vec<f64>) = measured.into_iter().unzip();
-        // A classical smoother takes a course that it cannot follow for no noise at all.
-        if let (1, Some(noise)) = (axes, noise_level(&at, &values).ok().filter(|noise| *noise > 0.0)) {
+        if let Some(noise) = survey.noise(values).filter(|_| is_observed(at)) {
             let _ = write!(text, ", noise about {noise:.1e}");
+        }
+        if let Some(strays) = survey.strays(values).filter(|_| is_observed(at)) {
+            let _ = write!(text, ", {strays}");
         }
         lines.push(text);
     }
+    lines.extend(survey.notes().into_iter().map(|note| format!("  {note}")));
     lines
 }
 
+/// The clouds of a group: their ranges, in the order of the surface's entries, and their noise.
+fn seen(group: &Group, prepared: &Prepared) -> Vec<String> {
+    let clouds = group.terms.iter().filter_map(|term| Some((term, prepared.problem.cloud(group.name, term.name)?)));
+    let said = clouds.map(|(term, cloud)| {
+        let entry = |at: usize| {
+            let [low, high] = ends(cloud.iter().skip(at).step_by(term.rows).copied());
+            format!("{} to {}", short(low), short(high))
+        };
+        let entries: Vec<String> = (0..term.rows).map(entry).collect();
+        let in_space = if term.rows == 3 { cloud.as_chunks::<3>().0 } else { &[] };
+        let noise = noise::of_cloud(in_space).map(|noise| format!(", noise about {noise:.1e}")).unwrap_or_default();
+        let (points, unit) = (cloud.len() / term.rows.max(1), unit(&term.unit));
+        format!("  cloud of {} {unit}: {points} points, {}{noise}", term.name, entries.join(", "))
+    });
+    said.collect()
+}
+
 fn range(name: &str, unit: String, values: impl Iterator<Item = f64>) -> String {
-    let ends = values.filter(|value| !value.is_nan());
-    let [low, high] =
-        ends.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)]);
+    let [low, high] = ends(values);
     format!("  {name} {unit}: {} to {}", short(low), short(high))
+}
+
+/// The least and the greatest of the numbers among some values.
+fn ends(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    let numbers = values.filter(|value| !value.is_nan());
+    numbers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], value| [low.min(value), high.max(value)])
 }
 
 /// Six digits at most.

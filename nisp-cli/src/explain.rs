@@ -55,14 +55,18 @@ pub(crate) fn explain(entry: &Entry, scene: Option<&str>, architecture: Architec
 /// A scene in a few lines: what it is, its coordinates, what is unknown, what is given.
 pub(crate) fn unknowns(schema: &Scene) -> Vec<String> {
     let about = schema.docs.lines().next().unwrap_or_default();
-    let mut lines = vec![format!("{}, scene {}: {about}", schema.module, schema.name)];
+    let mut lines =
+        vec![format!("{}, scene {}: {about}", schema.module, schema.name).trim_end_matches(": ").to_string()];
     let mut line = |content: String| lines.push(content);
     for coordinate in schema.coordinates {
         line(format!("  coordinate {:5} {}", coordinate.name, unit(&coordinate.unit)));
     }
-    for head in schema.heads {
+    for (at, head) in schema.heads.iter().enumerate() {
         let kind = if head.source { "source" } else { "field" };
-        line(format!("  {kind:10} {:5} {:9} {}", head.name, unit(&head.unit), head.docs));
+        let axes: Vec<&str> = schema.axes(at).into_iter().map(|axis| schema.coordinates[axis].name).collect();
+        let of_some = axes.len() < schema.coordinates.len();
+        let name = if of_some { format!("{}({})", head.name, axes.join(", ")) } else { head.name.into() };
+        line(format!("  {kind:10} {name:5} {:9} {}", unit(&head.unit), head.docs));
     }
     for scalar in schema.scalars {
         let (kind, value) = match scalar.origin {

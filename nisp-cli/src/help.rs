@@ -92,6 +92,9 @@ it; no data are needed. --of takes the name of every `let` outside of groups and
 written as in equations. Fields, sources and parameters come in their declared units and everything else in SI units,
 which stand in the headers.
 
+An answer has values at places, and no integrals: sums of deviations would need how all places vary together. Over one
+coordinate declare the integral as a field, `d(E, t) == P` with `E == 0` at the start: it has its own deviations.
+
 A column NAME_sd holds the standard deviation, where the answer has any. Those of derivatives and expressions follow
 from the same posterior, to first order.
 

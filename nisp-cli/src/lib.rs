@@ -16,6 +16,7 @@ pub mod options;
 mod program;
 mod report;
 mod results;
+mod rivals;
 mod run;
 pub mod score;
 mod solve;

@@ -3,8 +3,7 @@
 use nisp::schema::Origin;
 use nisp::{Estimate, LearnedValue, Solution, TermReport};
 use nisp_equations::contact::ContactScore;
-use nisp_equations::rivals::mean_abs_error;
-use nisp_equations::{Contact, Prepared, Truth};
+use nisp_equations::{Prepared, Truth};
 
 /// All that is said of an answer.
 pub struct Found {
@@ -16,8 +15,6 @@ pub struct Found {
     pub seen: Option<f64>,
     /// Standard deviation of the contact's net force in newtons, where the method gives it.
     pub force_deviation: Option<f64>,
-    /// Of the contact by a classical way.
-    pub rival: Option<Rival>,
     /// What the scene learned.
     pub learned: Vec<LearnedValue>,
     /// Of every source.
@@ -50,16 +47,6 @@ impl Size {
     }
 }
 
-/// What a classical way finds of a contact.
-pub struct Rival {
-    /// The way.
-    pub name: &'static str,
-    /// Mean absolute error of the pressure, where the truth is known.
-    pub mean_abs: Option<f64>,
-    /// Of the contact.
-    pub contact: ContactScore,
-}
-
 impl Found {
     /// What is said of a solution; `estimates` are its values at the points of [`Prepared`].
     pub fn of(solution: &mut Solution, prepared: &Prepared, estimates: &[Estimate]) -> Self {
@@ -83,17 +70,10 @@ impl Found {
             contact: scored.map(|(_, score)| score),
             seen: prepared.contact.as_ref().and_then(|contact| contact.seen(&values)),
             force_deviation,
-            rival: None,
             learned,
             sizes: estimates.iter().filter(|estimate| estimate.source).map(Size::of).collect(),
             terms,
         }
-    }
-
-    /// Asks the classical way too, which is shown to people only.
-    pub fn with_rival(mut self, prepared: &Prepared) -> Self {
-        self.rival = prepared.contact.as_ref().and_then(|contact| rival(contact, prepared.truth.as_ref()));
-        self
     }
 
     /// What could not be measured, and why.
@@ -102,14 +82,6 @@ impl Found {
         let why = "no point, or no point of the truth, counts as touched: the patches have no distance";
         against.patch_chamfer_mm2.is_none().then(|| why.into())
     }
-}
-
-fn rival(contact: &Contact, truth: Option<&Truth>) -> Option<Rival> {
-    let (pressure, way) = (contact.pressure?, contact.rival.as_ref()?);
-    let values = |name: &str, points: &[f64]| (name == pressure).then(|| (way.pressure)(points));
-    let real = truth.and_then(|truth| Some((truth, truth.of(pressure)?)));
-    let mean_abs = real.map(|(truth, real)| mean_abs_error(&(way.pressure)(&truth.points), real));
-    Some(Rival { name: way.name, mean_abs, contact: contact.score(&values, truth)? })
 }
 
 /// Mean absolute errors of one head.

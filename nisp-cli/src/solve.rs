@@ -18,6 +18,7 @@ use crate::options::view;
 use crate::program::Program;
 use crate::report::{self, Run};
 use crate::results;
+use crate::rivals::Rivals;
 
 /// Solves, writes the results, and says how well it went.
 pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, String> {
@@ -69,12 +70,11 @@ pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, St
     }
     let found = Found::of(&mut solution, &prepared, &answer.estimates);
     let warnings = warnings(&prepared, &solution, &found, failure.into_iter().chain(answer.warnings.iter().cloned()));
-    let run = Run { options, settings: &settings, prepared: &prepared, answer: &answer, written: &written, warnings };
-    let text = if options.json {
-        report::json(&solution, &run, &found)
-    } else {
-        report::table(&solution, &run, &if options.rivals { found.with_rival(&prepared) } else { found })
-    };
+    let rivals = options.rivals.then(|| Rivals::of(&prepared));
+    let (settings, prepared, answer, written) = (&settings, &prepared, &answer, &written);
+    let run = Run { options, settings, prepared, answer, written, warnings, rivals };
+    let text =
+        if options.json { report::json(&solution, &run, &found) } else { report::table(&solution, &run, &found) };
     if let Err(message) = print(&text) {
         note(&format!("{}: {message}\n", program.name));
         return Ok(ExitCode::from(NOT_WRITTEN));

@@ -105,6 +105,21 @@ fn maps_over_quantities_of_two_kinds_fill_their_frame() {
     }
 }
 
+/// Marks every 2.5 have longer texts than those every 5, which a lower map has.
+#[test]
+fn a_label_stands_clear_of_its_marks() {
+    let svg = field_map(&scattered([30.0, 24.0])).unwrap().svg().to_string();
+    let texts = || svg.split("<text ").skip(1).map(|text| text.split_once("</text>").unwrap().0);
+    let x = |text: &str| -> f64 { text.split('"').nth(1).unwrap().parse().unwrap() };
+    // A figure is 5/9 of its size wide in the usual fonts, a point half of that.
+    let width = |text: &str| text.chars().map(|c| if c == '.' { 0.28 } else { 0.56 } * 15.0).sum::<f64>();
+    let marks = texts().filter(|text| text.contains("anchor=\"end\""));
+    let nearest = marks.map(|text| x(text) - width(text.rsplit('>').next().unwrap())).fold(f64::INFINITY, f64::min);
+    let label = x(texts().find(|text| text.contains("rotate(-90")).unwrap());
+    // Brackets hang a quarter of the label's size below its base line.
+    assert!(nearest > label + 17.0 / 4.0, "{nearest} {label}");
+}
+
 #[test]
 fn surfaces_are_drawn_with_a_scale() {
     let view = SurfaceView {

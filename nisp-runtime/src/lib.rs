@@ -20,7 +20,7 @@ pub mod loss;
 pub mod memory;
 pub mod nearest;
 pub mod network;
-mod noise;
+pub mod noise;
 pub mod peak;
 pub mod problem;
 pub mod real;

@@ -67,7 +67,7 @@ impl Noise {
         let clouds = terms.filter(|(.., own)| matches!(own.kind, TermKind::Chamfer { .. }) && own.rows == 3);
         self.observations.extend(clouds.filter_map(|(group, term, _)| {
             let points = bound.clouds[group][term].as_chunks::<3>().0;
-            let deviation = roughness(points, points)?;
+            let deviation = of_cloud(points)?;
             let (_, spread) = spread(points.iter().map(|&point| point.into()));
             Some(ObservationNoise { group, term, deviation, spread })
         }));
@@ -81,7 +81,7 @@ impl Noise {
 }
 
 /// True where noise of some deviation is no more than rounding, for data of some spread.
-pub(crate) fn is_exact(deviation: f64, spread: f64) -> bool {
+pub fn is_exact(deviation: f64, spread: f64) -> bool {
     deviation <= EXACT * spread
 }
 
@@ -126,17 +126,39 @@ fn of_columns(bound: &Bound, group: usize, term: usize, columns: &[Vec<f64>]) ->
         return None;
     }
     let outliers = bound.losses[group][term].is_robust();
-    let noise_of = |values: &Vec<f64>| match (inputs, outliers) {
+    let noise_of = |values: &Vec<f64>| of_values(places, inputs, values, outliers);
+    columns.iter().map(noise_of).collect::<Option<Vec<f64>>>().map(root_mean_square)
+}
+
+/// The standard deviation of the noise of values at places, flat and point by point: what neighbours differ by beside a smooth course,
+/// and rounding to steps. With `outliers` one value in ten may be far off. Nothing where there are too few to judge.
+pub fn of_values(places: &[f64], inputs: usize, values: &[f64], outliers: bool) -> Option<f64> {
+    let found = match (inputs, outliers) {
         (1, false) => by_differences(&in_order(places, values)),
         (1, true) => by_few_differences(&in_order(places, values)),
         _ => {
-            let around = by_fits(places, inputs, values, if outliers { FEW_CLEAN } else { HALF });
+            let around = by_fits(&shares(places, inputs), inputs, values, if outliers { FEW_CLEAN } else { HALF });
             let along = (0..inputs).filter_map(|axis| by_stations(places, (inputs, axis), values));
             around.into_iter().chain(along).reduce(f64::min)
         }
     };
-    let noise_of = |values: &Vec<f64>| Some(noise_of(values)?.max(steps(values)));
-    columns.iter().map(noise_of).collect::<Option<Vec<f64>>>().map(root_mean_square)
+    Some(found?.max(steps(values)))
+}
+
+/// Places as shares of their range along each coordinate: metres and seconds make no distance, and a field varies over its domain.
+fn shares(places: &[f64], inputs: usize) -> Vec<f64> {
+    let width = |axis: usize| {
+        let along = places.iter().skip(axis).step_by(inputs);
+        let [low, high] = along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)]);
+        if high > low { high - low } else { 1.0 }
+    };
+    let widths: Vec<f64> = (0..inputs).map(width).collect();
+    places.iter().zip(widths.iter().cycle()).map(|(x, width)| x / width).collect()
+}
+
+/// The standard deviation of the points of a cloud in space about smooth pieces of its surface; nothing where they are few.
+pub fn of_cloud(points: &[[f64; 3]]) -> Option<f64> {
+    roughness(points, points)
 }
 
 /// The noise of rounding to steps: a step over the root of twelve. Values that seldom repeat have none to speak of.
@@ -156,7 +178,7 @@ pub(crate) fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
 }
 
 /// Standard deviation of values about their mean.
-pub(crate) fn deviation(values: &[f64]) -> f64 {
+pub fn deviation(values: &[f64]) -> f64 {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count).sqrt()
@@ -241,6 +263,21 @@ mod tests {
             let found = by_few_differences(&dirty).unwrap();
             assert!((0.7..2.2).contains(&(found / 0.03)), "{share}: {found}");
         }
+    }
+
+    /// Metres and seconds: places that are far apart in seconds may be neighbours.
+    #[test]
+    fn noise_does_not_depend_on_units_of_coordinates() {
+        let mut random = StdRng::seed_from_u64(7);
+        let mut places = Vec::new();
+        let mut values = Vec::new();
+        for _ in 0..600 {
+            let [x, y]: [f64; 2] = [random.random(), random.random()];
+            places.extend([1e-3 * x, 1e3 * y]);
+            values.push((4.0 * x).sin() * (3.0 * y).cos() + 0.03 * normal(&mut random));
+        }
+        let found = of_values(&places, 2, &values, false).unwrap();
+        assert!((found / 0.03 - 1.0).abs() < 0.2, "{found}");
     }
 
     /// Three stations far apart, and what passes them.

@@ -156,6 +156,19 @@ pub struct Group {
 }
 
 impl Scene {
+    /// The coordinates that a head depends on.
+    pub fn axes(&self, head: usize) -> Vec<usize> {
+        let groups = || self.groups.iter().chain([&self.outputs]);
+        let is_held = |axis: &usize| {
+            groups().any(|group| {
+                let jets = group.jets.iter().filter(|jet| jet.head == head);
+                jets.filter_map(|jet| jet.site.checked_sub(1 + usize::from(group.paired)))
+                    .any(|held| group.held[held].coordinates.contains(axis))
+            })
+        };
+        (0..self.coordinates.len()).filter(|axis| !is_held(axis)).collect()
+    }
+
     /// The heads that observations and clouds read.
     pub(crate) fn observed(&self) -> Vec<usize> {
         let is_data = |term: &&Term| matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. });

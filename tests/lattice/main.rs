@@ -3,7 +3,9 @@
 
 mod bounded;
 mod clouds;
+mod mixed;
 mod sources;
+mod units;
 
 use std::f64::consts::PI;
 use std::time::Duration;

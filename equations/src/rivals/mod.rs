@@ -68,6 +68,9 @@ pub struct Estimate {
 /// Why a rival has no answer.
 #[derive(Debug, thiserror::Error)]
 pub enum RivalError {
+    /// No method knows the equation.
+    #[error("they are written by hand for `pendulum`, `rlc` and some contacts, and read no other equation")]
+    Unknown,
     /// The measurements do not fit the system or the method.
     #[error("{0}")]
     Input(String),

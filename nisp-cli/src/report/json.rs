@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::rivals::{self, Rivals};
 use crate::score::Found;
 use nisp::solve::driver::Status;
 use nisp::{Estimate, LearnedValue, Solution, TermReport};
@@ -47,7 +48,21 @@ pub(crate) fn json(solution: &Solution, run: &Run<'_>, found: &Found) -> String 
         object["seen"] = json!(found.seen);
         object["patches"] = contact.patches.iter().map(patch).collect();
     }
+    if let Some(asked) = &run.rivals {
+        object["rivals"] = rivals(asked);
+    }
     format!("{object}\n")
+}
+
+/// Classical methods: their errors, or why there is none.
+fn rivals(rivals: &Rivals) -> Value {
+    let error =
+        |error: &rivals::Error| json!({ "source": error.source, "method": error.method, "mean_abs": error.mean_abs });
+    json!({
+        "errors": rivals.errors.iter().map(error).collect::<Vec<_>>(),
+        "force_N": rivals.contact.as_ref().map(|(_, contact)| contact.magnitude()),
+        "none": rivals.none,
+    })
 }
 
 /// An interrupted run is one that has not converged.

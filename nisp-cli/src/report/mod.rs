@@ -11,6 +11,7 @@ use nisp_equations::Prepared;
 
 use crate::args::Options;
 use crate::results::Answer;
+use crate::rivals::Rivals;
 
 pub(crate) use json::{json, learned, patch, status};
 pub(crate) use table::table;
@@ -24,6 +25,8 @@ pub(crate) struct Run<'a> {
     pub(crate) written: &'a Written,
     /// All of them, one line each.
     pub(crate) warnings: Vec<String>,
+    /// What classical methods find, where they were asked for.
+    pub(crate) rivals: Option<Rivals>,
 }
 
 impl Run<'_> {

@@ -2,17 +2,12 @@
 
 use std::fmt::Write;
 
-use crate::score::{Found, Rival, Score};
+use crate::score::Found;
 use nisp::Solution;
 use nisp::solve::driver::Status;
-use nisp_equations::Prepared;
 use nisp_equations::contact::ContactScore;
-use nisp_equations::rivals::mean_abs_error;
 
 use super::Run;
-
-/// Rivals have no way to be quick on more measurements than this.
-const ROWS_FOR_RIVALS: usize = 2000;
 
 /// How the run ended, in words.
 fn end(solution: &Solution) -> &'static str {
@@ -70,14 +65,20 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
     for score in &found.scores {
         line(format!("  {:26} {:.2e} {}", score.name, score.mean_abs, score.unit));
         if let Some(if_zero) = score.if_zero {
-            let others = if run.options.rivals { rivals(prepared, found, score) } else { Vec::new() };
-            for (name, error) in std::iter::once((format!("{} = 0", score.name), if_zero)).chain(others) {
+            let zero = (format!("{} = 0", score.name), if_zero);
+            let others = run.rivals.iter().flat_map(|rivals| &rivals.errors).filter(|error| error.source == score.name);
+            let others = others.map(|error| (error.method.to_string(), error.mean_abs));
+            for (name, error) in std::iter::once(zero).chain(others) {
                 line(format!("    {name:24} {error:.2e} {}", score.unit));
             }
         }
     }
+    if let Some(why) = run.rivals.as_ref().and_then(|rivals| rivals.none.as_ref()) {
+        line(format!("  no classical method: {why}"));
+    }
     if let Some(contact) = &found.contact {
-        contact_rows(contact, found.force_deviation, found.rival.as_ref()).into_iter().for_each(&mut line);
+        let rival = run.rivals.as_ref().and_then(|rivals| rivals.contact.as_ref());
+        contact_rows(contact, found.force_deviation, rival).into_iter().for_each(&mut line);
         if let Some(seen) = found.seen {
             line(format!("  {:26} {:.0} % of the surface", "seen", 100.0 * seen));
         }
@@ -99,27 +100,30 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
 
 /// What was found, where no truth is known.
 fn found_rows(found: &Found) -> Vec<String> {
+    let of = |value: f64, unit: &str| format!("{value:.2e} {unit}").trim_end().to_string();
     let sizes = found.sizes.iter().map(|size| {
-        let bars = size
-            .deviation
-            .map_or_else(String::new, |deviation| format!(", standard deviation {deviation:.2e} {}", size.unit));
-        (size.name.to_string(), format!("{:.2e} {}{bars}", size.value, size.unit))
+        let bars = size.deviation.map(|deviation| format!(", standard deviation {}", of(deviation, size.unit)));
+        (size.name.to_string(), of(size.value, size.unit) + &bars.unwrap_or_default())
     });
     let noise = found.terms.iter().filter_map(|term| {
         let name = term.name.rsplit('.').next().unwrap_or(&term.name);
-        Some((format!("noise of {name}"), format!("{:.2e} {}", term.noise?, term.unit.text)))
+        Some((format!("noise of {name}"), of(term.noise?, term.unit.text)))
     });
     let rows: Vec<String> = sizes.chain(noise).map(|(name, value)| format!("  {name:26} {value}")).collect();
     if rows.is_empty() { rows } else { [vec!["root mean square".into()], rows].concat() }
 }
 
 /// A contact's net force and how well it was found, beside those of a classical way.
-fn contact_rows(contact: &ContactScore, deviation: Option<f64>, rival: Option<&Rival>) -> Vec<String> {
+fn contact_rows(
+    contact: &ContactScore,
+    deviation: Option<f64>,
+    rival: Option<&(&'static str, ContactScore)>,
+) -> Vec<String> {
     let mut rows = vec!["contact".into()];
     let mut add = |name: &str, unit: &str, value: &dyn Fn(&ContactScore) -> Option<f64>| {
         let Some(own) = value(contact) else { return };
         rows.push(format!("  {name:26} {own:.3} {unit}"));
-        let other = rival.and_then(|rival| Some((rival.name, value(&rival.contact)?)));
+        let other = rival.and_then(|(name, contact)| Some((name, value(contact)?)));
         rows.extend(other.map(|(name, value)| format!("    {name:24} {value:.3} {unit}")));
     };
     add("net force", "N", &|contact| Some(contact.magnitude()));
@@ -139,16 +143,4 @@ fn contact_rows(contact: &ContactScore, deviation: Option<f64>, rival: Option<&R
         ));
     }
     rows
-}
-
-/// Errors of the classical rivals, where they can be asked.
-fn rivals(prepared: &Prepared, found: &Found, score: &Score) -> Vec<(String, f64)> {
-    if let Some((name, mean_abs)) = found.rival.as_ref().and_then(|rival| Some((rival.name, rival.mean_abs?))) {
-        return vec![(name.into(), mean_abs)];
-    }
-    let known = prepared.truth.as_ref().and_then(|truth| Some((&truth.points, truth.of(score.name)?)));
-    let Some((at, values)) = known.filter(|_| prepared.points.len() <= ROWS_FOR_RIVALS) else { return Vec::new() };
-    let answers = prepared.contest(at, values).into_iter();
-    let errors = answers.map(|answer| (answer.name.into(), mean_abs_error(&answer.source, values)));
-    errors.filter(|(_, error)| error.is_finite()).collect()
 }

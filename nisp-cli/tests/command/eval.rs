@@ -164,6 +164,7 @@ fn what_cannot_be_read_is_refused_with_what_to_do() {
         ("eval beam/answer.nisp --grid 5 --of sin(w)", "pure number"),
         ("eval beam/answer.nisp --grid 5 --of q_xxxxx", "order 4 is the highest"),
         ("eval beam/answer.nisp --grid 5 --of ,", "expected"),
+        ("eval beam/answer.nisp --grid 5 --of integral(q)", "declare a field `F` with `d(F, t) == 2 * f`"),
     ] {
         let said = refusal(line);
         assert!(said.contains(expected), "{line}: {said}");
@@ -214,4 +215,34 @@ fn an_answer_that_failed_a_check_says_so_again() {
         ran.stderr
     );
     assert!(ran.stdout.starts_with("t [s],v [V],f [V]\n"), "{}", ran.stdout);
+}
+
+/// A load of `q0 sin(pi x)` on a string under the tension `S` bends it by `q0 sin(pi x) / (S pi^2)`; up to `x` it weighs
+/// `q0 (1 - cos(pi x)) / pi`.
+#[test]
+fn an_integral_is_read_as_a_field_of_its_own() {
+    let place = Place::new();
+    let text = "coordinates: x [m]; fields: w [mm], Q [N]; sources: q [N/m]; parameters: S [N] = 50;
+        domains: string = 0 .. 1;
+        on inside in string { balance: -S * d(w, x, 2) == q; weight: d(Q, x) == q; }
+        on left start of string { none: Q == 0 [N]; held: w == 0; }
+        on right end of string { held: w == 0; }
+        on gauges { observe w; }";
+    place.put("string.pde", text);
+    let pi = std::f64::consts::PI;
+    let row = |i: usize| {
+        let x = i as f64 / 79.0;
+        let w = 1e3 * 100.0 * (pi * x).sin() / (50.0 * pi * pi);
+        format!("{x},{}\n", w + 0.3 * ((i * i) as f64 * 0.7548).sin())
+    };
+    place.put("w.csv", &("x,w\n".to_string() + &(0..80).map(row).collect::<String>()));
+    let ran = place.run("solve string.pde --data w.csv");
+    assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
+    let object = object(&run(&place, "eval nisp-out/answer.nisp --grid 5 --json", "Q"));
+    let (values, deviations) = (numbers(&object, 0, "values"), numbers(&object, 0, "deviations"));
+    for (at, (value, deviation)) in values.iter().zip(&deviations).enumerate() {
+        let exact = 100.0 * (1.0 - (pi * at as f64 / 4.0).cos()) / pi;
+        assert!((value - exact).abs() < 3.0 * deviation + 1e-6, "{at}: {value} ± {deviation} for {exact}");
+        assert!(*deviation < 4.0, "{at}: {deviation}");
+    }
 }

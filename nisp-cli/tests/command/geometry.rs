@@ -34,6 +34,7 @@ fn a_steady_source_is_the_same_at_all_times() {
     };
     let table: String = (0..15).flat_map(|i| (0..8).map(move |j| cell(i, j))).collect();
     place.put("u.csv", &format!("x,t,u\n{table}"));
+    assert!(place.run("check bar.pde").stdout.contains("source     q(x)"));
     let ran = place.run("solve bar.pde --data u.csv --grid 11x4 --budget 40 --json");
     assert!(matches!(ran.code, Some(0 | 3)), "{}", ran.stderr);
     let found = place.rows("nisp-out/source.csv");
@@ -146,6 +147,17 @@ fn a_text_takes_a_cloud() {
         format!("{},{},{}\n", r * turn.cos(), r * turn.sin(), 10.0 * (1.0 - r * r / 1e4))
     };
     place.put("scan.csv", &format!("x,y,z\n{}", (0..400).map(sunflower).collect::<String>()));
+    let metres = |i: usize| {
+        sunflower(i).trim().split(',').map(|x| format!("{},", 1e-3 * x.parse::<f64>().unwrap())).collect::<String>()
+    };
+    place.put(
+        "metres.csv",
+        &format!("x,y,z\n{}", (0..400).map(|i| metres(i).trim_end_matches(',').to_string() + "\n").collect::<String>()),
+    );
+    let checked = place.run("check drum.pde --data metres.csv").stdout;
+    // The paraboloid's rim and crown, but for the outermost and the innermost point.
+    assert!(checked.contains("cloud of seen [m]: 400 points, -0.09"), "{checked}");
+    assert!(checked.contains(" to 0.0099875"), "{checked}");
     let ran = place.run("solve drum.pde --data scan.csv --unit mm --grid 9x9 --budget 20 --json");
     assert!(matches!(ran.code, Some(0 | 3)), "{}", ran.stderr);
     let off = place.rows("nisp-out/state.csv").into_iter().map(|row| {

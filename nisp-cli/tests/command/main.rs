@@ -3,6 +3,7 @@
 mod bad_cloud;
 mod bad_input;
 mod bubble;
+mod check;
 mod common;
 mod contact;
 mod contract;

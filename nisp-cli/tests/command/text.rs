@@ -196,3 +196,37 @@ fn one_reading_tells_one_number() {
     let ran = place.run("solve open.pde --data reading.csv");
     assert!(ran.code == Some(2) && ran.stderr.contains("nothing says where `inside` lies"), "{}", ran.stderr);
 }
+
+#[test]
+fn rivals_that_do_not_know_an_equation_say_so() {
+    let place = Place::new();
+    place.run("new cup");
+    let line = "solve cup/cup.pde --data cup/data.csv --truth cup/truth.csv --rivals";
+    let ran = place.run(line);
+    assert!(
+        ran.stdout.contains("no classical method: they are written by hand for `pendulum`, `rlc`"),
+        "{}",
+        ran.stdout
+    );
+    let rivals = &object(&place.run(&format!("{line} --json")))["rivals"];
+    assert!(rivals["none"].as_str().unwrap().contains("read no other equation"), "{rivals}");
+    assert_eq!(rivals["errors"].as_array().unwrap().len(), 0);
+    // An equation that they know has errors of all three, unless there is nothing to score them by or a value is missing.
+    let asked =
+        |line: &str| object(&place.run(&format!("solve rlc --iterations 3 --rivals --json {line}")))["rivals"].clone();
+    let known = asked("");
+    let methods: Vec<&str> =
+        known["errors"].as_array().unwrap().iter().map(|error| error["method"].as_str().unwrap()).collect();
+    assert_eq!(
+        (methods, &known["none"]),
+        (vec!["collocation", "smoothing spline", "Savitzky-Golay (oracle)"], &Value::Null)
+    );
+    place.put("volts.csv", &circuit_table());
+    assert!(asked("--data volts.csv")["none"].as_str().unwrap().contains("give it with --truth FILE"));
+    let table = circuit_table();
+    let (kept, last) = table.trim_end().rsplit_once(',').unwrap();
+    assert!(!last.is_empty());
+    place.put("gap.csv", &format!("{kept},\n"));
+    place.put("truth.csv", "t_s,f_V\n0,6\n1,0.298722\n2,0.0148725\n");
+    assert!(asked("--data gap.csv --truth truth.csv")["none"].as_str().unwrap().contains("they know no gaps"));
+}

@@ -57,15 +57,20 @@ pub fn field_map(map: &FieldMap) -> Result<Picture, DataError> {
     let (shown_x, shown_y) = shown_axes(map, [left_x, right_x], [low_y, high_y]);
     let y_scale =
         |height: f64| Scale::linear(low_y / shown_y.factor, high_y / shown_y.factor, (height / 42.0).max(4.0));
-    let left = MARGIN + y_axis_width(y_scale(200.0).text_width());
     let count = map.panels.len() as f64;
     let gap = 3.0 * GAP;
     // Maps side by side span two columns of a page.
     let page = WIDTH * (0.75 + 0.25 * count);
-    let width = ((page - left - 1.8 * MARGIN - gap * (count - 1.0)) / count).min(WIDEST);
     let stretched = is_stretched(right_x - left_x, high_y - low_y);
     let ratio = if stretched { STRETCHED } else { (high_y - low_y) / (right_x - left_x) };
-    let height = (width * ratio).min(page);
+    // Beside the marks of an axis of about this height.
+    let beside = |about: f64| {
+        let left = MARGIN + y_axis_width(y_scale(about).text_width());
+        let width = ((page - left - 1.8 * MARGIN - gap * (count - 1.0)) / count).min(WIDEST);
+        (left, width, (width * ratio).min(page))
+    };
+    let (.., about) = beside(200.0);
+    let (left, width, height) = beside(about);
 
     let mut canvas = Canvas::new();
     let mut top = MARGIN;

@@ -24,6 +24,8 @@ pub(super) enum Corruption {
     Parameter(&'static str, f64),
     /// The data come from other equations than the scene's.
     Physics,
+    /// The scene of this name, which states something else than what is true.
+    Stated(&'static str),
     /// A column is multiplied: a wrong unit.
     Scaled(&'static str, f64),
     /// A constant is added to a column: another zero, or another place.
@@ -60,7 +62,7 @@ impl Corruption {
 
     fn spoil(self, samples: &mut Samples, random: &mut Random) {
         match self {
-            Nothing | Exact | Early(_) | Parameter(..) | Physics => {}
+            Nothing | Exact | Early(_) | Parameter(..) | Physics | Stated(_) => {}
             Few(count) => {
                 let all = samples.rows();
                 let kept: Vec<usize> = (0..count).map(|i| i * (all - 1) / (count - 1).max(1)).collect();
@@ -119,6 +121,7 @@ impl fmt::Display for Corruption {
             Outliers(share) => write!(f, "{:.0} % outliers", 100.0 * share),
             Parameter(name, value) => write!(f, "{name} = {value}"),
             Physics => write!(f, "other physics"),
+            Stated(scene) => write!(f, "{}", scene.replace('_', " ")),
             Scaled(name, factor) => write!(f, "{name} times {factor}"),
             Moved(name, by) => write!(f, "{name} moved by {by}"),
             Mirrored(name, about) => write!(f, "{name} mirrored at {about}"),

@@ -26,6 +26,8 @@ pub(super) struct Truth {
     pub(super) scalars: Vec<(&'static str, f64)>,
     /// What an error is compared with where the true value is zero.
     pub(super) size: f64,
+    /// Relative error without bars from which on an answer is wrong, if not that of unknown sources.
+    pub(super) limit: Option<f64>,
 }
 
 /// A problem, ready to be solved, and what is true of it.
@@ -63,6 +65,8 @@ impl Experiment {
 pub(super) enum Physics {
     Scene,
     Other,
+    /// A scene that states something else.
+    Stated(&'static str),
 }
 
 /// A corruption of an experiment.

@@ -21,6 +21,8 @@ pub(super) struct Unknown {
     pub(super) truth: Vec<f64>,
     /// What an error is compared with where the truth is zero.
     pub(super) size: f64,
+    /// Relative error without bars above which it is wrong, if not that of all unknowns.
+    pub(super) limit: Option<f64>,
 }
 
 /// How far an unknown is off.
@@ -65,7 +67,7 @@ impl Unknown {
             // One number is beyond two deviations once in twenty.
             Some([two, four]) => ((two > BEYOND_TWO && !is_parameter) || four > BEYOND_FOUR).then_some(Wrong::Bars),
             None => {
-                let limit = if is_parameter { OFF_PARAMETER } else { OFF_FUNCTION };
+                let limit = self.limit.unwrap_or(if is_parameter { OFF_PARAMETER } else { OFF_FUNCTION });
                 (error.is_nan() || error > limit).then_some(Wrong::Value)
             }
         };
@@ -104,7 +106,7 @@ mod tests {
     fn unknown(error: f64, share: usize, deviation: Option<f64>) -> (Unknown, Off) {
         let values = (0..100).map(|i| if i < share { 1.0 + error } else { 1.0 }).collect();
         let deviations = deviation.map(|deviation| vec![deviation; 100]);
-        let unknown = Unknown { name: "f", values, deviations, truth: vec![1.0; 100], size: 1.0 };
+        let unknown = Unknown { name: "f", values, deviations, truth: vec![1.0; 100], size: 1.0, limit: None };
         let off = unknown.off();
         (unknown, off)
     }
@@ -145,6 +147,7 @@ mod tests {
                 deviations: Some(vec![deviation]),
                 truth: vec![1.0],
                 size: 1.0,
+                limit: None,
             };
             let off = unknown.off();
             (unknown, off)

@@ -8,6 +8,7 @@ mod bodies;
 mod corruption;
 mod equations;
 mod experiment;
+mod forward;
 mod judge;
 mod report;
 mod samples;

@@ -10,7 +10,7 @@ use nisp_cli::interrupt;
 use super::corruption::Corruption;
 use super::experiment::{Case, Physics, Ready, Stated, Subject, Truth};
 use super::judge::{Judgement, Off, Unknown, judge};
-use super::{bodies, equations, series};
+use super::{bodies, equations, forward, series};
 use crate::random::Random;
 
 /// How cases are run.
@@ -46,6 +46,7 @@ pub(super) fn subjects(repository: &Path) -> Vec<Subject> {
     let mut subjects = series::subjects(repository);
     subjects.extend(bodies::subjects(repository));
     subjects.extend(equations::subjects());
+    subjects.extend(forward::subjects());
     subjects
 }
 
@@ -53,7 +54,11 @@ pub(super) fn subjects(repository: &Path) -> Vec<Subject> {
 pub(super) fn run(subject: &Subject, case: &Case, how: &Run) -> Result<Row, String> {
     let start = Instant::now();
     let corruption = case.corruption;
-    let physics = if corruption == Corruption::Physics { Physics::Other } else { Physics::Scene };
+    let physics = match corruption {
+        Corruption::Physics => Physics::Other,
+        Corruption::Stated(scene) => Physics::Stated(scene),
+        _ => Physics::Scene,
+    };
     let experiment = (subject.make)(physics)?;
     let mut random = Random::new(how.seed);
     let samples = corruption.measure(&experiment.samples, experiment.noise, &mut random);
@@ -129,14 +134,21 @@ fn unknowns(solution: &mut Solution, truth: &Truth) -> Vec<(Unknown, Off)> {
     let heads = truth.heads.iter().filter_map(|(name, truth_of)| {
         let found = estimates.iter().find(|estimate| estimate.name == *name)?;
         let (values, deviations) = (found.values.clone(), found.deviations.clone());
-        Some(Unknown { name, values, deviations, truth: truth_of.clone(), size: truth.size })
+        Some(Unknown { name, values, deviations, truth: truth_of.clone(), size: truth.size, limit: truth.limit })
     });
     let mut all: Vec<Unknown> = heads.collect();
     let learned = if truth.scalars.is_empty() { Vec::new() } else { solution.learned() };
     all.extend(truth.scalars.iter().filter_map(|&(name, value)| {
         let found = learned.iter().find(|learned| learned.name == name)?;
         let deviations = found.deviation.map(|deviation| vec![deviation]);
-        Some(Unknown { name, values: vec![found.value], deviations, truth: vec![value], size: truth.size })
+        Some(Unknown {
+            name,
+            values: vec![found.value],
+            deviations,
+            truth: vec![value],
+            size: truth.size,
+            limit: truth.limit,
+        })
     }));
     let with_off = |unknown: Unknown| {
         let off = unknown.off();

@@ -89,9 +89,10 @@ impl Group {
         Self { schema, kernel, operators, towers, sigma, growth, losses, sites, weights, tests, degree, order, highest }
     }
 
-    /// Other points than the group's own, without columns.
+    /// Other points than the group's own, at which no measurement is known. Rows that are no observations read none.
     pub(super) fn sites_at(&self, heads: &Heads, flat: &[f64]) -> Sites {
-        Sites::new(heads, &self.highest, flat, &[])
+        let none = vec![0.0; flat.len() / heads.lattices[0].inputs()];
+        Sites::new(heads, &self.highest, flat, &vec![none; self.schema.columns.len()])
     }
 
     /// Where the first row of a term that is asked for at every point is among those of [`Group::blocks`].

@@ -4,7 +4,6 @@ use super::draws::Deviations;
 use super::group::Group;
 use super::heads::Heads;
 use super::lattice::{Exponents, Lattice, MOST_COORDINATES};
-use super::meshes::axes;
 use crate::bounds::limits;
 use crate::carrier::{Kept, Outputs};
 use crate::engine::Learned;
@@ -141,7 +140,7 @@ impl KeptLattices {
         let (inputs, count) = (schema.coordinates.len(), schema.heads.len());
         let lattice = |head: usize| {
             let name = |part: &str| format!("head {head} {part}");
-            let axes = axes(schema, head);
+            let axes = schema.axes(head);
             let [low, spacing] = ["low", "spacing"].map(|part| state.sized(&name(part), axes.len()));
             let (low, spacing) = (low?, spacing?);
             let (cells, full) = (state.indices(&name("cells"))?, state.indices(&name("functions"))?);

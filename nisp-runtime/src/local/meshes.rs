@@ -4,7 +4,6 @@ use super::Local;
 use super::heads::Heads;
 use super::lattice::{Lattice, MOST_COORDINATES, NONE, Span};
 use crate::problem::Bound;
-use crate::schema;
 
 /// The lattice of the state: `cells` of them along the longest of the coordinates that share a scale.
 pub(super) fn base(bound: &Bound, cells: usize, tests: usize) -> Lattice {
@@ -30,19 +29,6 @@ pub(super) fn base(bound: &Bound, cells: usize, tests: usize) -> Lattice {
         count.push(own as usize);
     }
     Lattice::new(1, low, spacing, count)
-}
-
-/// The coordinates that a head depends on.
-pub(super) fn axes(schema: &schema::Scene, head: usize) -> Vec<usize> {
-    let groups = || schema.groups.iter().chain([&schema.outputs]);
-    let is_held = |axis: &usize| {
-        groups().any(|group| {
-            let jets = group.jets.iter().filter(|jet| jet.head == head);
-            jets.filter_map(|jet| jet.site.checked_sub(1 + usize::from(group.paired)))
-                .any(|held| group.held[held].coordinates.contains(axis))
-        })
-    };
-    (0..schema.coordinates.len()).filter(|axis| !is_held(axis)).collect()
 }
 
 /// A head's lattice: splines of at least its highest derivative for a field, hats on finer cells for a source.

@@ -29,15 +29,23 @@ pub(super) fn refuse_what_networks_do(schema: &schema::Scene, settings: &Local) 
     found.map_or(Ok(()), |what| Err(LocalError::Unsupported(what)))
 }
 
-/// Clouds whose points have no foot on a surface (see `surface`).
+/// Clouds whose points have no foot on a surface (see `surface`), or one where columns that the surface may read are not known.
 pub(super) fn clouds(schema: &schema::Scene) -> Option<&'static str> {
     let clouds = || {
         let terms = schema.groups.iter().flat_map(|group| group.terms);
         terms.filter(|term| matches!(term.kind, TermKind::Chamfer { .. }))
     };
+    let is_known =
+        |group: &schema::Group, column: usize| group.terms.iter().all(|term| !term.columns.contains(&column));
+    let has_known = |group: &schema::Group| (0..group.columns.len()).any(|column| is_known(group, column));
+    let has_cloud =
+        |group: &schema::Group| group.terms.iter().any(|term| matches!(term.kind, TermKind::Chamfer { .. }));
     let is_surface = (2..=3).contains(&schema.coordinates.len());
     let is_symmetric = |term: &schema::Term| term.kind == TermKind::Chamfer { symmetric: true, plane: false };
     match () {
+        () if schema.groups.iter().any(|group| has_cloud(group) && has_known(group)) => {
+            Some("clouds in groups with columns")
+        }
         () if clouds().any(is_symmetric) => Some("symmetric Chamfer distances"),
         () if clouds().any(|term| term.rows != 3 || !is_surface) => Some("clouds that are not in space"),
         () => None,

@@ -143,6 +143,12 @@ impl Problem {
         self.groups[at].as_ref().map(|binding| (&binding.points, binding.columns.as_slice()))
     }
 
+    /// The cloud that is bound to a Chamfer term, flat and point by point, in the term's unit; nothing where there is none.
+    pub fn cloud(&self, group: &str, term: &str) -> Option<&[f64]> {
+        let at = self.scene.schema.groups.iter().position(|own| own.name == group)?;
+        self.groups[at].as_ref()?.cloud(term)
+    }
+
     /// Gives a parameter its value, in its declared unit.
     ///
     /// # Errors

@@ -26,7 +26,7 @@ pub(super) fn subject() -> Subject {
     let make = |physics: Kind| {
         let times = line(0.0, 12.0, 60);
         let grown = |t: &f64| match physics {
-            Kind::Scene => CAPACITY / (1.0 + 29.0 * (-RATE * t).exp()),
+            Kind::Scene | Kind::Stated(_) => CAPACITY / (1.0 + 29.0 * (-RATE * t).exp()),
             Kind::Other => CAPACITY * (-30.0_f64.ln() * (-0.4 * t).exp()).exp(),
         };
         let n = times.iter().map(grown).collect();

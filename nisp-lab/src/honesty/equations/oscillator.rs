@@ -34,7 +34,7 @@ pub(super) fn subject() -> Subject {
         let omega = (K / M - decay * decay).sqrt();
         let free = |t: &f64| START * (-decay * t).exp() * ((omega * t).cos() + decay / omega * (omega * t).sin());
         let y = match physics {
-            Kind::Scene => times.iter().map(free).collect(),
+            Kind::Scene | Kind::Stated(_) => times.iter().map(free).collect(),
             Kind::Other => {
                 let slope = |_, [y, v]: [f64; 2]| [v, -(8.0 * v * v.abs() + K * y) / M];
                 integrate(slope, [START, 0.0], &times).into_iter().map(|[y, _]| y).collect()

@@ -147,7 +147,22 @@ fn numbers(region: &syntax::Region, units: &[&Unit], elaborator: &mut Elaborator
             Some(Region::Minus(Box::new([numbers(a, units, elaborator)?, numbers(b, units, elaborator)?])))
         }
     };
-    found.ok_or_else(|| elaborator.errors.report(region.place, catalogue::no_region()))
+    found.ok_or_else(|| elaborator.errors.report(region.place, catalogue::no_such_region(name(&region.kind))))
+}
+
+/// What a region is called.
+fn name(kind: &RegionKind) -> &'static str {
+    match kind {
+        RegionKind::Box(ranges) if ranges.len() == 1 => "interval",
+        RegionKind::Box(_) => "box",
+        RegionKind::Disc(_) => "disc",
+        RegionKind::Ellipse(_) => "ellipse",
+        RegionKind::Polygon(_) | RegionKind::File(FileKind::Polygon, ..) => "polygon",
+        RegionKind::Ball(_) => "ball",
+        RegionKind::Cylinder(..) => "cylinder",
+        RegionKind::File(FileKind::Solid, ..) => "solid",
+        RegionKind::Plus(..) | RegionKind::Minus(..) => "region",
+    }
 }
 
 /// How many coordinates a region goes over; nothing where its parts do not agree.

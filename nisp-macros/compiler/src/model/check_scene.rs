@@ -32,7 +32,9 @@ pub(super) fn check(
     groups: &[GroupNames],
 ) -> Scene {
     let mut checked = everything(model, scene.name.clone());
-    checked.docs = scene.docs.clone();
+    if !scene.docs.is_empty() {
+        checked.docs.clone_from(&scene.docs);
+    }
     if scene.items.iter().any(|item| matches!(item, SceneItem::Only(_))) {
         checked.uses.iter_mut().flatten().for_each(|used| *used = false);
     }

@@ -1,7 +1,7 @@
 //! Values known when it compiles: defaults, bounds and constants.
 
 use super::elaborate::Elaborator;
-use super::value::Extent;
+use super::value::{Extent, Reads};
 use super::{Expr as Scalar, Function, Node};
 use crate::error::{Checked, catalogue};
 use crate::rational::Rational;
@@ -20,7 +20,8 @@ pub(super) struct Constant {
 pub(super) fn in_unit(expr: &Expr, unit: &Unit, elaborator: &mut Elaborator<'_>) -> Checked<Vec<Constant>> {
     let value = elaborator.value(expr)?;
     if !value.reads().is_constant() || matches!(value.extent, Extent::Matrix(..)) {
-        return Err(elaborator.errors.report(expr.place, catalogue::not_constant(&print_text(expr))));
+        let message = catalogue::not_constant(&print_text(expr), value.reads() == Reads::PARAMETER);
+        return Err(elaborator.errors.report(expr.place, message));
     }
     let bare = value.dim.known().is_none_or(|dimension| dimension.is_none()) && !has_unit(expr);
     if !bare && !value.dim.fits(&unit.dimension) {

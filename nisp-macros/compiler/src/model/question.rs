@@ -21,7 +21,8 @@ pub(super) fn check(asked: &[Expr], elaborator: &mut Elaborator<'_>, model: &Mod
     questions
 }
 
-/// A component of an expression. Fields and parameters alone keep their names and declared units; everything else is in SI units.
+/// A component of an expression. Fields and parameters alone keep their names and declared units; everything else is in SI units,
+/// written as in the module where it declares one of them.
 fn question(
     expr: &Expr,
     (value, at, entry): (&Value, usize, &Scalar),
@@ -33,6 +34,11 @@ fn question(
         Node::Parameter(of) => (model.parameters[of].name.text.clone(), model.parameters[of].unit.clone()),
         _ => {
             let unit = Unit::si(value.dim.known().cloned().unwrap_or_default());
+            let declared =
+                model.fields.iter().map(|field| &field.unit).chain(model.parameters.iter().map(|of| &of.unit));
+            let written =
+                declared.into_iter().find(|own| own.dimension == unit.dimension && own.factor.factor() == 1.0);
+            let unit = written.filter(|own| !own.dimension.is_none()).cloned().unwrap_or(unit);
             (print_text(expr) + &component(value.extent, at, elaborator), unit)
         }
     };

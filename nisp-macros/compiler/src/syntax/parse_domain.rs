@@ -40,6 +40,9 @@ pub(super) fn location(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Ch
     if portion != Portion::Inside && !stream.take_word("of") {
         return Err(context.errors.report(stream.place(), catalogue::expected_of(word, &stream.found())));
     }
+    if stream.peek_word().is_none() {
+        return Err(context.errors.report(stream.place(), catalogue::region_without_name()));
+    }
     let domain = recover::name(stream, context, "a domain")?;
     let points = if stream.take_word("with") { Some(points(stream, context)?) } else { None };
     Ok(Some(Location { portion, domain, points }))
@@ -67,6 +70,8 @@ fn combined(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Regio
             RegionKind::Plus
         } else if stream.take_word("minus") {
             RegionKind::Minus
+        } else if let Some(operator) = ["+", "-"].into_iter().find(|operator| stream.at(operator)) {
+            return Err(context.errors.report(stream.place(), catalogue::regions_joined_by(operator)));
         } else {
             return Ok(found);
         };
@@ -80,7 +85,9 @@ fn region(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Region>
     let start = stream.place();
     let word = stream.peek_word().unwrap_or_default();
     let kind = match word.as_str() {
-        "box" => RegionKind::Box(listed(stream, context, range)?),
+        "box" => RegionKind::Box(listed(stream, context, |stream, context| {
+            range(stream, context, || catalogue::no_such_region("box"))
+        })?),
         "disc" => RegionKind::Disc(listed(stream, context, parse_expression::parse)?),
         "ellipse" => RegionKind::Ellipse(listed(stream, context, parse_expression::parse)?),
         "solid" => file(stream, context)?,
@@ -88,8 +95,10 @@ fn region(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Region>
         "polygon" => RegionKind::Polygon(listed(stream, context, parse_expression::parse)?),
         "ball" => RegionKind::Ball(listed(stream, context, parse_expression::parse)?),
         "cylinder" => cylinder(stream, context)?,
-        _ if holds_range(stream) => return Err(context.errors.report(start, catalogue::no_region())),
-        _ => RegionKind::Box(vec![range(stream, context)?]),
+        _ if holds_range(stream) || names_shape(stream, &word) => {
+            return Err(context.errors.report(start, catalogue::no_such_region(&word)));
+        }
+        _ => RegionKind::Box(vec![range(stream, context, catalogue::no_region)?]),
     };
     Ok(Region { kind, place: start.to(stream.previous()) })
 }
@@ -108,6 +117,11 @@ fn holds_range(stream: &Stream<'_>) -> bool {
         inside.skip();
     }
     stream.peek_word().is_some() && !inside.at_end()
+}
+
+/// True for a word before parentheses that says what a shape is, but not as shapes are written.
+fn names_shape(stream: &Stream<'_>, word: &str) -> bool {
+    catalogue::names_region(word) && stream.after_next().at_group(Delimiter::Parenthesis)
 }
 
 /// `polygon("FILE")` or `solid("FILE" [unit])`.
@@ -131,7 +145,10 @@ fn file(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<RegionKin
             let one = Expr { kind: ExprKind::Number(one, unit.map(Box::new)), place };
             Ok(RegionKind::File(kind, path.value(), one))
         }
-        None => Err(context.errors.report(place, catalogue::no_region())),
+        None => {
+            let called = if kind == FileKind::Solid { "solid" } else { "polygon" };
+            Err(context.errors.report(place, catalogue::no_such_region(called)))
+        }
     }
 }
 
@@ -170,12 +187,12 @@ fn listed<T>(
     Ok(found)
 }
 
-/// `A .. B`
-fn range(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<(Expr, Expr)> {
+/// `A .. B`, or else what to write.
+fn range(stream: &mut Stream<'_>, context: &mut Context<'_>, otherwise: fn() -> String) -> Checked<(Expr, Expr)> {
     let start = stream.place();
     let low = parse_expression::parse(stream, context)?;
     if stream.take("..").is_none() {
-        return Err(context.errors.report(start.to(stream.previous()), catalogue::no_region()));
+        return Err(context.errors.report(start.to(stream.previous()), otherwise()));
     }
     Ok((low, parse_expression::parse(stream, context)?))
 }

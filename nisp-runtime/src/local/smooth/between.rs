@@ -6,7 +6,6 @@ use rand::seq::index::sample;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
-use crate::local::meshes::axes;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
@@ -33,7 +32,7 @@ const NOISY: usize = 4;
 /// anything between the given ones. Where nothing is measured two lattices tell how far an answer is off, so that the first is coarser.
 pub(super) fn first(bound: &Bound) -> usize {
     let schema = bound.problem.scene().schema;
-    let is_of_all = |head: usize| schema.heads[head].source && axes(schema, head).len() == schema.coordinates.len();
+    let is_of_all = |head: usize| schema.heads[head].source && schema.axes(head).len() == schema.coordinates.len();
     let given = largest(bound).map_or(0, |at| count(bound, at));
     if schema.observed().is_empty() {
         return ENOUGH / 2;
@@ -53,7 +52,8 @@ pub(super) fn filled(bound: &Bound, points: usize) -> Option<Bound> {
     Some(filled)
 }
 
-/// The problem with at most so many measurements of each group, picked at random; nothing where none has more.
+/// The problem with at most so many measurements of each group, picked at random; nothing where none has more. What else is stated
+/// where they were made is asked at those that are left.
 pub(super) fn thinned(bound: &Bound, most: usize) -> Option<Bound> {
     let schema = bound.problem.scene().schema;
     let large: Vec<usize> = measuring(schema).filter(|&at| count(bound, at) > most).collect();
@@ -96,9 +96,13 @@ fn count(bound: &Bound, group: usize) -> usize {
     bound.coordinates[group].len() / bound.problem.scene().schema.coordinates.len()
 }
 
-/// Groups that do nothing but measure.
+/// Groups that measure at their points, and state nothing but equations beside.
 fn measuring(schema: &schema::Scene) -> impl Iterator<Item = usize> {
-    let measures = |at: &usize| schema.groups[*at].terms.iter().all(|term| term.kind == TermKind::Observation);
+    let measures = |at: &usize| {
+        let kinds = || schema.groups[*at].terms.iter().map(|term| &term.kind);
+        kinds().any(|kind| *kind == TermKind::Observation)
+            && kinds().all(|kind| matches!(kind, TermKind::Observation | TermKind::Residual))
+    };
     (0..schema.groups.len()).filter(measures)
 }
 

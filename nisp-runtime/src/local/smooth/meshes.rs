@@ -2,7 +2,7 @@
 
 use crate::local::heads::Heads;
 use crate::local::lattice::{Lattice, NONE, Place};
-use crate::local::meshes::{axes, base};
+use crate::local::meshes::base;
 use crate::local::refuse::HIGHEST_DEGREE;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
@@ -48,7 +48,7 @@ pub(super) fn lattices(bound: &Bound, most: usize) -> (Vec<Lattice>, Vec<usize>)
     let resolved = |mesh: &Lattice| POINTS * functions(mesh) <= points as f64;
     let base = meshes.take_while(resolved).last().unwrap_or_else(|| self::base(bound, 1, 0));
     let lattice = |head: usize| {
-        let mut lattice = base.refined(degrees[head], 1).along(axes(schema, head));
+        let mut lattice = base.refined(degrees[head], 1).along(schema.axes(head));
         let seen =
             schema.groups.iter().zip(&bound.coordinates).filter(|(g, _)| g.jets.iter().any(|jet| jet.head == head));
         let points = seen.flat_map(|(_, points)| points.chunks_exact(inputs));

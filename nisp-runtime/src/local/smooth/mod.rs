@@ -24,8 +24,8 @@ mod unmeasured;
 
 use std::time::Instant;
 
+use between::measurements;
 pub(crate) use between::others;
-use between::{enough, measurements};
 use changes::Changes;
 use judged::{FAR, MISSED};
 
@@ -94,7 +94,7 @@ pub(crate) fn solve(
     let clock = Clock { start: Instant::now(), limits };
     let mut points = from.map_or(Ok(between::first(bound)), saved_points).map_err(LocalError::Fault)?;
     let is_noisy = noise.is_there(bound.problem.scene().schema);
-    let mut solver = Solver::new(bound, points, noise, enough(points, is_noisy))?;
+    let mut solver = Solver::new(bound, points, noise, None)?;
     let mut state = solver.first(noise);
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
@@ -129,7 +129,7 @@ pub(crate) fn solve(
             break;
         };
         // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
-        let Ok(mut finer) = Solver::new(bound, more, noise, enough(more, is_noisy)) else { break };
+        let Ok(mut finer) = Solver::new(bound, more, noise, None) else { break };
         if finer.cells() <= solver.cells() {
             break;
         }
@@ -182,7 +182,7 @@ fn with_more<'a>(
         return None;
     }
     let most = if longer < times { (longer * solver.most as f64) as usize } else { usize::MAX };
-    let mut more = Solver::new(bound, points, noise, most).ok()?;
+    let mut more = Solver::new(bound, points, noise, Some(most)).ok()?;
     let state = State { classes: run.state.known(), since: 0, ..run.state.clone() };
     let found = Run::go(&mut more, state, noise, points, clock, BARS * longer * run.longest, monitor).ok()?;
     Some((more, found))

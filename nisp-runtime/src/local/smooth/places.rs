@@ -1,7 +1,6 @@
 //! How far a source may be from what few places of measurement say of it. How much it varies along a coordinate is itself found from
 //! the places along it: two probes in a rod say next to nothing of what it does between them.
 
-use crate::local::meshes::axes;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::student;
@@ -12,7 +11,7 @@ const APART: f64 = 1e-2;
 /// What deviations of a source are multiplied by: Student's quantiles are so much larger than the normal ones, for as many places as
 /// its data have along the coordinate of its own along which they have fewest.
 pub(super) fn widened(bound: &Bound, head: usize) -> f64 {
-    let along = axes(bound.problem.scene().schema, head);
+    let along = bound.problem.scene().schema.axes(head);
     let fewest = along.iter().map(|&axis| places(bound, axis)).min();
     fewest.map_or(1.0, |places| student::longer(places.max(1) as f64))
 }

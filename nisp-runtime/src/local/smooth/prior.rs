@@ -1,5 +1,6 @@
 //! What is believed of heads before any measurement: they bend little (the energy of a thin plate). Where answers are doubted,
-//! sources are believed to change little instead (that of a membrane).
+//! sources are believed to change little instead (that of a membrane). Lengths and times make no distance: both are counted in cells,
+//! of which there are as many along the longest length as along the longest time.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,12 +25,12 @@ impl Prior {
         let lattice = &heads.lattices[head];
         let mut rows = Vec::new();
         for axis in 0..lattice.dimensions() {
-            let factor = root_of_cell(lattice) / lattice.spacing(axis);
+            let factor = root_of_cell(lattice) / spacing(lattice);
             for (at, next) in lattice.neighbours(axis) {
                 rows.push(row(heads.first[head], &[at, next], &[-factor, factor]));
             }
         }
-        Self { rows, rank: lattice.len().saturating_sub(1), natural: natural(lattice, 1) }
+        Self { rows, rank: lattice.len().saturating_sub(1), natural: natural(lattice) }
     }
 
     /// Second differences along every coordinate and across every pair of them: the integral of all squared second derivatives.
@@ -39,14 +40,14 @@ impl Prior {
         let mut rows = Vec::new();
         for axis in 0..dimensions {
             let next = next(lattice, axis);
-            let factor = root_of_cell(lattice) / lattice.spacing(axis).powi(2);
+            let factor = root_of_cell(lattice) / spacing(lattice).powi(2);
             let line = |at: usize| next[at].and_then(|one| Some([at as u32, one, next[one as usize]?]));
             for numbers in (0..lattice.len()).filter_map(line) {
                 rows.push(row(heads.first[head], &numbers, &[factor, -2.0 * factor, factor]));
             }
             for other in axis + 1..dimensions {
                 let across = self::next(lattice, other);
-                let factor = 2f64.sqrt() * root_of_cell(lattice) / (lattice.spacing(axis) * lattice.spacing(other));
+                let factor = 2f64.sqrt() * root_of_cell(lattice) / spacing(lattice).powi(2);
                 let corners = |at: usize| {
                     let (along, up) = (next[at]?, across[at]?);
                     Some([at as u32, along, up, across[along as usize]?])
@@ -56,7 +57,7 @@ impl Prior {
                 }
             }
         }
-        Self { rows, rank: lattice.len().saturating_sub(dimensions + 1), natural: natural(lattice, 2) }
+        Self { rows, rank: lattice.len().saturating_sub(dimensions + 1), natural: natural(lattice) }
     }
 
     /// The rows at a state, over the head's roughness.
@@ -90,15 +91,19 @@ pub(super) fn unresolved(heads: &Heads, head: usize, roughness: f64) -> f64 {
     (variance / squares).sqrt()
 }
 
-/// Root of a cell's volume.
-fn root_of_cell(lattice: &Lattice) -> f64 {
-    (0..lattice.dimensions()).map(|axis| lattice.spacing(axis)).product::<f64>().sqrt()
+/// A cell along any coordinate, over the longest side.
+fn spacing(lattice: &Lattice) -> f64 {
+    1.0 / lattice.cells.iter().copied().max().unwrap_or(1) as f64
 }
 
-/// Root of the integral of a squared derivative that is one over the longest side to the power of its order.
-fn natural(lattice: &Lattice, order: i32) -> f64 {
-    let sides = || (0..lattice.dimensions()).map(|axis| lattice.spacing(axis) * lattice.cells[axis] as f64);
-    sides().product::<f64>().sqrt() / sides().fold(0.0, f64::max).powi(order)
+/// Root of a cell's volume.
+fn root_of_cell(lattice: &Lattice) -> f64 {
+    spacing(lattice).powi(lattice.dimensions() as i32).sqrt()
+}
+
+/// Root of the integral of the square of a derivative that is one over the longest side to the power of its order.
+fn natural(lattice: &Lattice) -> f64 {
+    lattice.cells.iter().map(|cells| *cells as f64 * spacing(lattice)).product::<f64>().sqrt()
 }
 
 /// A row over these functions of the head whose coefficients begin at `first`.

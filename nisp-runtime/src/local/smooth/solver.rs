@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use super::between::{filled, others, thinned};
+use super::between::{enough, filled, others, thinned};
 use super::freedom::{Freedom, Unmeasured};
 use super::meshes::{lattices, together};
 use super::prior::Prior;
@@ -71,13 +71,21 @@ fn freedom(heads: &Heads, head: usize, prior: &Prior) -> Result<Freedom, LocalEr
 }
 
 impl<'a> Solver<'a> {
-    /// With equations asked at so many points at least, and with so many measurements of a group at most. The scene must not be
-    /// refused.
-    pub(super) fn new(problem: &'a Bound, points: usize, noise: &Noise, most: usize) -> Result<Self, LocalError> {
+    /// With equations asked at so many points at least, and with so many measurements of a group at most; with nothing said of these,
+    /// with as many as choose a lattice. The scene must not be refused.
+    pub(super) fn new(
+        problem: &'a Bound,
+        points: usize,
+        noise: &Noise,
+        most: Option<usize>,
+    ) -> Result<Self, LocalError> {
+        let is_noisy = noise.is_there(problem.problem.scene().schema);
         let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
-        let (lattices, cells) = lattices(&bound, points);
-        let few = thinned(&bound, most);
-        let lacks = few.is_some() && noise.is_there(bound.problem.scene().schema);
+        let enough = enough(points, is_noisy);
+        let few = thinned(&bound, enough);
+        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), points);
+        let few = most.map_or(few, |most| thinned(&bound, most));
+        let lacks = few.is_some() && is_noisy;
         let bound = few.map_or(bound, Cow::Owned);
         let schema = bound.problem.scene().schema;
         let heads = Heads::new(&bound, lattices);
@@ -101,7 +109,7 @@ impl<'a> Solver<'a> {
         Ok(Self {
             others: others(&bound),
             bound,
-            most,
+            most: most.unwrap_or(enough),
             lacks,
             heads,
             groups,

@@ -162,7 +162,8 @@ pub(crate) fn partner_of_column() -> String {
 pub(crate) fn integral_within() -> String {
     help(
         "`integral(...)` stands alone on one side of a condition",
-        "move what is around it inside, or to the other side: `integral(2 * f) == total`",
+        "move what is around it inside, or to the other side: `integral(2 * f) == total`; to read an integral over one coordinate \
+         from an answer, declare a field `F` with `d(F, t) == 2 * f`, and `F == 0` at the start",
     )
 }
 
@@ -311,8 +312,12 @@ pub(crate) fn wrong_number_of_values(expected: usize, found: usize) -> String {
     format!("expected {expected} value(s), one for each component, found {found}")
 }
 
-pub(crate) fn not_constant(text: &str) -> String {
-    help(format!("`{}` is not known when this compiles", shorten(text)), "use numbers and constants")
+pub(crate) fn not_constant(text: &str, reads_parameters: bool) -> String {
+    let message = format!("`{}` is not known when this compiles", shorten(text));
+    match reads_parameters {
+        true => help(message, "a parameter may change from run to run: declare it under `constants` instead"),
+        false => help(message, "use numbers and constants"),
+    }
 }
 
 pub(crate) fn not_finite(text: &str) -> String {

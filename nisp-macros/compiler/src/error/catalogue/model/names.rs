@@ -94,12 +94,71 @@ pub(crate) fn domain_of_other_dimension(name: &str, coordinates: &str) -> String
     )
 }
 
+/// Regions as they are written.
+const REGIONS: [(&str, &str); 10] = [
+    ("interval", "`0 .. 2`, the lower end first"),
+    ("box", "`box(0 .. 2, 0 .. 1)`, a range for each coordinate, lower ends first"),
+    ("disc", "`disc(x, y, radius)`, the radius above zero"),
+    ("ellipse", "`ellipse(x, y, a, b)`, half axes above zero"),
+    ("polygon", "`polygon([0, 0], [1, 0], [0, 1])`, three corners or more, or `polygon(\"FILE.csv\")`"),
+    ("ball", "`ball(x, y, z, radius)`, the radius above zero"),
+    ("cylinder", "`cylinder(x, y, radius, 0 .. 1)`, the radius above zero, the lower end first"),
+    ("solid", "`solid(\"FILE.stl\" [mm])`"),
+    ("union", "`a plus b`, with regions for both"),
+    ("difference", "`a minus b`, with regions for both"),
+];
+
+/// Regions by other names.
+const REGIONS_ELSEWHERE: [(&str, &str); 16] = [
+    ("line", "interval"),
+    ("segment", "interval"),
+    ("range", "interval"),
+    ("rect", "box"),
+    ("rectangle", "box"),
+    ("square", "box"),
+    ("cube", "box"),
+    ("cuboid", "box"),
+    ("circle", "disc"),
+    ("disk", "disc"),
+    ("oval", "ellipse"),
+    ("triangle", "polygon"),
+    ("sphere", "ball"),
+    ("tube", "cylinder"),
+    ("mesh", "solid"),
+    ("stl", "solid"),
+];
+
+/// True for a word that names a region, whether one is written so or not.
+pub(crate) fn names_region(word: &str) -> bool {
+    REGIONS.iter().chain(&REGIONS_ELSEWHERE).any(|(name, _)| *name == word)
+}
+
+/// A region that is not written as those of its name are.
+pub(crate) fn no_such_region(word: &str) -> String {
+    let here = REGIONS_ELSEWHERE.iter().find(|(there, _)| *there == word).map_or(word, |(_, here)| *here);
+    match REGIONS.iter().find(|(name, _)| *name == here) {
+        Some((name, usage)) => {
+            let article = if name.starts_with(['a', 'e', 'i']) { "an" } else { "a" };
+            help(format!("this is not how {article} {name} is written"), format!("write {usage}"))
+        }
+        None => no_region(),
+    }
+}
+
 pub(crate) fn no_region() -> String {
+    let usages: Vec<&str> = REGIONS.iter().map(|(_, usage)| *usage).collect();
+    help("this is no region", format!("write {}", usages.join("; ")))
+}
+
+pub(crate) fn regions_joined_by(operator: &str) -> String {
+    let word = if operator == "+" { "plus" } else { "minus" };
+    help(format!("regions are not joined by `{operator}`"), format!("write `{word}`"))
+}
+
+pub(crate) fn region_without_name() -> String {
     help(
-        "this is no region",
-        "write `0 .. 2`, `box(0 .. 2, 0 .. 1)`, `disc(x, y, radius)`, `ellipse(x, y, a, b)`, `polygon([x, y], ...)`, \
-         `polygon(\"FILE.csv\")`, `ball(x, y, z, radius)`, `cylinder(x, y, radius, 0 .. 1)` or `solid(\"FILE.stl\" \
-         [mm])`: lower ends first, radii above zero, three corners or more",
+        "a group lies in a domain that has a name",
+        "declare it, `domains: rod = 0 .. 1;`, and write `on inside in rod`",
     )
 }
 
