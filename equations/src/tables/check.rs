@@ -38,7 +38,8 @@ pub(super) fn points(schema: &Scene, tables: &Tables<'_>, request: &Request) -> 
 
 /// Every name in `--column` must be one that the scene observes, or a coordinate.
 pub(crate) fn columns(schema: &Scene, request: &Request) -> Result<(), PrepareError> {
-    let observed = schema.groups.iter().flat_map(|group| group.columns).map(|column| column.name);
+    let measured = schema.groups.iter().filter(|group| !group.is_beliefs());
+    let observed = measured.flat_map(|group| group.columns).map(|column| column.name);
     let known: Vec<_> = observed.chain(schema.coordinates.iter().map(|axis| axis.name)).collect();
     match request.columns.iter().find(|(name, _)| !known.contains(&name.as_str())) {
         Some((name, _)) => {

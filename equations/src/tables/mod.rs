@@ -157,7 +157,7 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
     for (name, value) in &request.parameters {
         found.problem.set_parameter(name, *value)?;
     }
-    for (group, rows) in schema.groups.iter().zip(rows) {
+    for (group, rows) in schema.groups.iter().zip(rows).filter(|(group, _)| !group.is_beliefs()) {
         let (points, columns) = match rows {
             Some(Rows { points, columns }) => (points.into(), columns),
             None if wants_data(group) => {
@@ -176,9 +176,9 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
     Ok(found)
 }
 
-/// True for a group whose columns must come from a table.
+/// True for a group whose columns must come from a table. What is believed of parameters comes with these.
 fn wants_data(group: &Group) -> bool {
-    group.columns.iter().any(|column| !is_normal(group, column.name))
+    !group.is_beliefs() && group.columns.iter().any(|column| !is_normal(group, column.name))
 }
 
 /// True for a column that the edge of a declared domain tells.

@@ -42,7 +42,7 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
         solution.loss
     ));
     line(format!("  carrier    {}: {}", solution.carrier, solution.carrier_reason));
-    for (group, points) in solution.groups() {
+    for (group, points) in solution.groups().filter(|(group, _)| !group.is_beliefs()) {
         let points = if points == 1 { "1 point".into() } else { format!("{points} points") };
         line(format!("  {:10} {points}, channels {}", group.name, group.channels.join(" ")));
     }

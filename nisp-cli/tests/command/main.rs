@@ -2,6 +2,7 @@
 
 mod bad_cloud;
 mod bad_input;
+mod beliefs;
 mod bubble;
 mod check;
 mod common;

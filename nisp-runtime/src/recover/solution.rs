@@ -359,7 +359,7 @@ impl Solution {
                     unit: term.unit,
                     rms: outward(rms),
                     size: outward(self.bound.sizes[group][at]),
-                    noise: noise.filter(|_| observation).map(outward),
+                    noise: noise.filter(|_| observation && !schema.is_beliefs()).map(outward),
                     observation,
                 });
             }

@@ -5,6 +5,7 @@
 //! condition, observation and cloud, whatever carries the answer and whatever found it.
 
 mod amplified;
+mod believed;
 mod clouds;
 mod equations;
 mod gathered;
@@ -111,11 +112,12 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
     // What is given wrongly leaves its traces everywhere: the likely cause comes first.
     let mut checks: Vec<Check> = known::check(bound, answer).into_iter().collect();
     for (at, (group, facts)) in schema.groups.iter().zip(&answer.facts).enumerate() {
-        if group.is_beliefs() {
-            continue;
-        }
         let programs = kernels[at].programs;
         let rows = facts.rows(programs, group, &answer.scalars);
+        if group.is_beliefs() {
+            checks.extend(believed::checks(bound, group, &rows));
+            continue;
+        }
         checks.extend(equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer)));
         // Equations hold between their points as well.
         for (_, facts) in answer.between.iter().filter(|(of, _)| *of == at) {
