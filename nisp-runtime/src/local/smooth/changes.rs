@@ -27,6 +27,12 @@ impl Changes {
         self.last.unwrap_or(f64::INFINITY)
     }
 
+    /// The least change by a finer lattice that is known of the answer: steps that did not come to their end may have agreed with it, and
+    /// say nothing where they did not. Infinite where there is none.
+    pub(super) fn least(&self) -> f64 {
+        self.taken().unwrap_or(f64::INFINITY).min(self.last())
+    }
+
     /// The change by the lattice that has the answer; nothing if it is the first.
     pub(super) fn taken(&self) -> Option<f64> {
         self.taken.last().copied()
@@ -57,7 +63,7 @@ mod tests {
         assert!((changes.off() - 0.9).abs() < 1e-12);
         // Steps that did not come to their end say nothing of the answer that stands.
         changes.add(5.0, false);
-        assert!((changes.off() - 0.9).abs() < 1e-12 && changes.taken() == Some(0.3));
+        assert!((changes.off() - 0.9).abs() < 1e-12 && changes.taken() == Some(0.3) && changes.least() == 0.3);
     }
 
     /// Changes that do not fall leave much.

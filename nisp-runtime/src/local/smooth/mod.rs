@@ -154,7 +154,8 @@ pub(crate) fn solve(
     while solver.lacks && run.status == Status::Converged {
         let Some((more, found)) = with_more(bound, (&solver, &run), noise, (points, &clock), monitor) else { break };
         match found.status {
-            Status::Converged => (solver, run) = (more, found),
+            // Error bars matter more than that they are short.
+            Status::Converged if clock.has_time(BARS * found.longest) => (solver, run) = (more, found),
             status => {
                 run.status = if status == Status::Interrupted { status } else { run.status };
                 (run.checkpoint, run.state.step) = (found.checkpoint, found.state.step);
@@ -232,7 +233,7 @@ fn finish(
         warnings.extend(solver.undetermined(&state, is_resolved));
     }
     // What a finer lattice has hardly changed, another one will not. Where nothing is measured such a change tells all.
-    let may_change = solver.is_measured() && status == Status::Budget && changes.last() > SAME;
+    let may_change = solver.is_measured() && status == Status::Budget && changes.least() > SAME;
     let strain = may_change.then(|| solver.strain(&state, noise));
     solver.groups = groups(bound, &solver.heads);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
