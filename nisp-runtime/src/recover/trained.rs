@@ -61,17 +61,18 @@ impl Carried for Trained {
     }
 
     fn learned(&mut self, _: &Bound) -> Vec<(f64, Option<f64>)> {
-        let prior = self.prior.as_ref();
+        let found = self.engine.learned_values(&self.theta);
+        // The curvature takes memory for every row and parameter.
+        let prior = self.prior.as_ref().filter(|_| !found.is_empty());
         let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
         let first = self.engine.layout().learned.start;
-        let values = self.engine.learned_values(&self.theta).into_iter().enumerate();
         let deviation = |i: usize, slope: f64| {
             let curvature = curvature.as_ref()?;
             let mut direction = vec![0.0; self.theta.len()];
             direction[first + i] = slope;
             self.distrust.bars(&posterior(curvature, &direction)).deviations.first().copied()
         };
-        values.map(|(i, (value, slope))| (value, deviation(i, slope))).collect()
+        found.into_iter().enumerate().map(|(i, (value, slope))| (value, deviation(i, slope))).collect()
     }
 
     fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
