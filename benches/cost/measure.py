@@ -88,6 +88,7 @@ def measured(nisp):
 def draw(curves, path):
     import matplotlib
     matplotlib.use("svg")
+    matplotlib.rcParams["svg.fonttype"] = "none"
     import matplotlib.pyplot as plt
     grown = list(dict.fromkeys(curve[0] for curve in curves))
     colours = {carrier: f"C{i}" for i, carrier in enumerate(dict.fromkeys(curve[1] for curve in curves))}
