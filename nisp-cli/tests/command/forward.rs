@@ -38,6 +38,25 @@ fn a_front_is_where_its_closed_form_says_up_to_the_end_of_time() {
     assert!(last > 10, "{last} places at the end of time");
 }
 
+/// The fourth power of pi has sixty digits as a product of decimals.
+#[test]
+fn a_plate_whose_load_has_a_power_of_pi_bends_as_its_closed_form_does() {
+    let place = Place::new();
+    let text = "units: off;
+coordinates: x, y;
+fields: w;
+domains: plate = box(0 .. 1, 0 .. 1);
+on inside in plate { bending: laplacian(laplacian(w)) == 4 * pi^4 * sin(pi * x) * sin(pi * y); }
+on edge boundary of plate { held: w == 0; free: laplacian(w) == 0; }
+";
+    let (code, report) = solved(&place, text);
+    assert_eq!((code, report["status"].as_str()), (Some(0), Some("converged")), "{}", report["verdict"]);
+    let sine = |x: f64| (std::f64::consts::PI * x).sin();
+    for row in place.rows("out/state.csv") {
+        assert!((row[2] - sine(row[0]) * sine(row[1])).abs() < 1e-6, "{row:?}");
+    }
+}
+
 #[test]
 fn without_a_beginning_a_temperature_is_open() {
     let place = Place::new();

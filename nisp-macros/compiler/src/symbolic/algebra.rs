@@ -219,17 +219,18 @@ fn add_power(product: &mut Factors, base: Id, exponent: Rational) -> Result<(), 
     Ok(())
 }
 
+/// Multiplies with a power of a number: exactly, or rounded where it has no exact value or too many digits, as `pi^4` has.
 fn collect_number(product: &mut Factors, value: Rational, exponent: Rational) -> Result<(), Fault> {
     if value.is_zero() && exponent.is_negative() {
         return Err(Fault::Undefined);
     }
-    if exponent.is_integer() {
-        let power = exact::power(value, exponent.to_integer().to_i128().unwrap_or(i128::MAX))?;
-        product.coefficient = exact::mul(product.coefficient, power)?;
-    } else {
-        product.real *= exact::to_f64(value).powf(exact::to_f64(exponent));
+    let whole = exponent.is_integer().then(|| exponent.to_integer().to_i128()).flatten();
+    let power = whole.and_then(|whole| exact::power(value, whole).ok());
+    match power.and_then(|power| exact::mul(product.coefficient, power).ok()) {
+        Some(coefficient) => product.coefficient = coefficient,
+        None => product.real *= exact::to_f64(value).powf(exact::to_f64(exponent)),
     }
-    Ok(())
+    if product.real.is_infinite() { Err(Fault::Overflow) } else { Ok(()) }
 }
 
 impl From<exact::Overflow> for Fault {
