@@ -17,7 +17,8 @@ fn start(place: &Place, line: &str) -> Child {
     let mut command = place.command(line);
     command.env("TMPDIR", place.path("tmp"));
     let child = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
-    while !place.path("a/out/.nisp.lock").exists() {
+    // It writes its number there as soon as the folder is its own.
+    while fs::read_to_string(place.path("a/out/.nisp.lock")).unwrap_or_default().is_empty() {
         sleep(Duration::from_millis(10));
     }
     child
