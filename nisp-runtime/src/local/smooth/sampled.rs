@@ -13,7 +13,7 @@ use crate::weighed::Tally;
 /// Random combinations at most and at least: the more rows there are, the less each says of how many unknowns they settle.
 const MOST_PROBES: usize = 16;
 const FEWEST_PROBES: usize = 2;
-/// Signs of all combinations together, beyond the fewest.
+/// Signs of all combinations together at most, where these are more than the fewest.
 const SIGNS: usize = 65_536;
 
 /// Rows, summed up one batch after the other.
@@ -45,7 +45,7 @@ impl Sampled {
         Self { probes: (0..count).map(|_| probe()).collect(), added: 0, squares: 0.0 }
     }
 
-    /// Adds rows, which are numbers of blocks' rows, about a step of the coefficients and of the learned scalars.
+    /// Adds rows, each given by its block and its number there, as they are after a step of the coefficients and the learned scalars.
     pub(super) fn add(&mut self, rows: &[(&Block, usize)], (step, shared): (&[f64], &[f64])) {
         self.squares =
             rows.iter().fold(self.squares, |sum, (block, row)| sum + block.after(*row, step, shared).powi(2));
