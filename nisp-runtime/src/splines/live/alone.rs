@@ -3,8 +3,10 @@
 
 /// How far five values are from a cubic where one of them is a stray, at least, over how far a quarter of all are at most.
 const FAR: f64 = 20.0;
-/// How far they may be without the strays.
+/// How far they may be without the strays, and as a share of how far they are with them: where data are exact, values are off by how the
+/// record bends, which may be much more in one part of it than in another.
 const NEAR: f64 = 10.0;
+const BENT: f64 = 0.05;
 /// Values that are compared with a cubic.
 const FIVE: usize = 5;
 /// Strays among neighbours. More of them are a change.
@@ -23,14 +25,15 @@ pub(super) fn strays(values: &[(f64, f64)]) -> Vec<usize> {
             (distance > FAR * usual && !is_settled[kept[first]]).then_some((first, distance))
         };
         let far = distances(values, &kept).enumerate().filter_map(is_far);
-        let Some((first, _)) = far.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
+        let Some((first, farthest)) = far.max_by(|a, b| a.1.total_cmp(&b.1)) else { break };
         // All that are compared with one of the five.
         let near = first.saturating_sub(FIVE - 1)..(first + 2 * FIVE - 1).min(kept.len());
-        match without_strays(values, &kept[near.clone()], NEAR * usual) {
-            Some(without) => {
+        match without_strays(values, &kept[near.clone()], (NEAR * usual).max(farthest * BENT)) {
+            Some(without) if !has_pair(&kept[near.clone()], &without) => {
                 kept.splice(near, without);
             }
-            None => is_settled[kept[first]] = true,
+            // Two that follow each other may be a pulse: the equations have to say.
+            _ => is_settled[kept[first]] = true,
         }
     }
     (0..values.len()).filter(|at| kept.binary_search(at).is_err()).collect()
@@ -51,7 +54,13 @@ fn without_strays(values: &[(f64, f64)], near: &[usize], most: f64) -> Option<Ve
     (1..=MOST).find_map(|count| best_without(values, near, (count, 0), most)).map(|(_, rest)| rest)
 }
 
-/// The rest without so many neighbours, from a place on, that do not follow each other: the one nearest to a cubic, and the sum of squares of
+/// Whether two that follow each other are lacking in a rest.
+fn has_pair(all: &[usize], rest: &[usize]) -> bool {
+    let lacks = |number: &usize| !rest.contains(number);
+    all.windows(2).any(|pair| pair[1] == pair[0] + 1 && pair.iter().all(lacks))
+}
+
+/// The rest without so many neighbours, from a place on: the one nearest to a cubic, and the sum of squares of
 /// its distances; nothing if none is near.
 fn best_without(
     values: &[(f64, f64)],
@@ -65,10 +74,9 @@ fn best_without(
         return is_near.then(|| (square(), near.to_vec()));
     }
     let without = |place: usize| {
-        let (stray, mut rest) = (near[place], near.to_vec());
+        let mut rest = near.to_vec();
         rest.remove(place);
-        let next = place + usize::from(rest.get(place) == Some(&(stray + 1)));
-        best_without(values, &rest, (count - 1, next), most)
+        best_without(values, &rest, (count - 1, place), most)
     };
     (from..near.len().saturating_sub(BEHIND)).filter_map(without).min_by(|a, b| a.0.total_cmp(&b.0))
 }

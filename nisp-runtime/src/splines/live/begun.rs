@@ -3,11 +3,10 @@
 use std::collections::VecDeque;
 
 use super::event::Event;
-use super::evidence::Stretch;
+use super::first::First;
 use super::grid::Grid;
 use super::lag::{settled_lag, sought, width};
 use super::met::Nearby;
-use super::opening::Opening;
 use super::record::{Inward, Layout, MeasuredRow};
 use super::under_way::{Live, SLACK};
 use super::window::Window;
@@ -41,9 +40,7 @@ impl Begun {
     ) -> Result<Self, LiveError> {
         layout.mark_strays(&mut rows);
         let told = if open > 0.0 { rows.len() - UNTOLD } else { rows.len() };
-        let bound = layout.bound(problem, &rows[..told])?;
-        let (stretch, opening) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
-        let stretch = stretch?;
+        let First { bound, stretch, opening } = First::solve(problem, layout, &mut rows[..told])?;
         let schema = problem.scene().schema;
         let system = bound.system;
         let inward = Inward {
@@ -96,6 +93,7 @@ impl Begun {
             bends: [0, reach / 2].map(Nearby::ahead),
             recent: VecDeque::new(),
             rows: 0,
+            unsound: 0,
             due: 2 * rows.len(),
             asked: None,
         };

@@ -10,6 +10,7 @@ mod alone;
 mod begun;
 mod event;
 mod evidence;
+mod first;
 mod grid;
 mod lag;
 mod met;
@@ -52,7 +53,8 @@ pub struct Smoothed {
     pub at: f64,
     /// How much farther the record had come, in the same unit: the lag, or less at the end of a record.
     pub lag: f64,
-    /// Values and standard deviations of all heads in their declared units, in the order of the scene.
+    /// Values and standard deviations of all heads in their declared units, in the order of the scene. Deviations are NaN where data are
+    /// exact but for rounding.
     pub heads: Vec<(f64, f64)>,
     /// Root mean square of what observations are off, over the noise that differences of neighbouring rows show: about one
     /// where equations and data agree. A running mean over a hundred values or so.

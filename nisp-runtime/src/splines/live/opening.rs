@@ -13,6 +13,8 @@ use crate::solve::driver::{Flow, Limits, Status};
 pub(super) struct Opening {
     kept: KeptSplines,
     until: f64,
+    /// By group and term: how far rows are off, and the noise.
+    misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
 }
 
 impl Opening {
@@ -22,7 +24,7 @@ impl Opening {
         let noise = noise::estimate(bound);
         let found = super::super::solve(bound, &noise, &[], Limits::default(), None, &mut monitor).ok()?;
         let is_told = found.status == Status::Converged && found.kept.deviations(0, &[]).is_some();
-        is_told.then_some(Self { kept: found.kept, until: f64::INFINITY })
+        is_told.then_some(Self { kept: found.kept, until: f64::INFINITY, misfits: found.misfits })
     }
 
     /// As the answer up to a place.
@@ -39,6 +41,11 @@ impl Opening {
     pub(super) fn read(&self, head: usize, at: f64) -> (f64, f64) {
         let deviation = self.kept.deviations(head, &[at]).map_or(f64::NAN, |found| found[0]);
         (self.kept.evaluate(head, &[at])[0], deviation)
+    }
+
+    /// By group and term: how far rows are off, and the noise.
+    pub(super) fn misfits(&self) -> &[Vec<(Vec<f64>, Option<f64>)>] {
+        &self.misfits
     }
 
     /// The splines, and their coefficients.

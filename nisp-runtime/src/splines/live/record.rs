@@ -149,6 +149,14 @@ impl Layout {
         bound
     }
 
+    /// Every group of observations, with the numbers of the rows that its table has.
+    pub(super) fn rows_of_groups<Frame>(&self, rows: &[MeasuredRow<Frame>]) -> Vec<(usize, Vec<usize>)> {
+        let counted: Vec<MeasuredRow<Frame>> = rows.iter().map(|row| self.counted(row)).collect();
+        let has = |row: usize, group: usize| self.events(&counted[row]).any(|event| event.group == group);
+        let own = |group| (0..rows.len()).filter(|&row| has(row, group)).collect();
+        self.measured.iter().map(|&(group, _)| (group, own(group))).collect()
+    }
+
     /// Places and columns of a group, of the rows in which something of it was measured and counts.
     fn table<Frame>(&self, group: usize, rows: &[MeasuredRow<Frame>]) -> (Vec<f64>, Vec<Vec<f64>>) {
         let rows: Vec<MeasuredRow<Frame>> = rows.iter().map(|row| self.counted(row)).collect();

@@ -1,8 +1,8 @@
 //! Which rows of a window's tail are strays: far from what all other rows say, while these agree without them.
 //!
 //! What an observation is off from its prediction by all others follows from what it is off in the fit: with `C` the covariance of
-//! what all are off, over their noise, leaving one out is a step of elimination with its column of `C`. The farthest is left out first,
-//! then the farthest of the others.
+//! what all are off, over their noise, leaving one out is a step of elimination with its column of `C`. The fewest rows are sought
+//! without which all others agree.
 
 /// How far a row that agrees is from its prediction by all other rows, at most, in standard deviations.
 const AGREE: f64 = 4.0;
@@ -12,10 +12,17 @@ const FAR: f64 = 6.0;
 const MOST: usize = 3;
 /// Rows behind a stray that agree without it, at least: a change begins with a row that stands alone.
 const BEHIND: usize = 2;
+/// Strays that may follow each other to the same side, and how far they are, at least. More of them are a change, and so are two that a
+/// source which is too smooth misses.
+const PAIR: usize = 2;
+const FAR_TOGETHER: f64 = 12.0;
+/// Rows that are tried for the next one to be left out.
+const TRIED: usize = 3;
 /// Below this variance an observation alone says what it is compared with.
 const UNTOLD: f64 = 1e-9;
 
 /// An observation that may be a stray.
+#[derive(Clone)]
 pub(super) struct Suspect {
     /// The place of its row, and what it observes there.
     pub(super) at: f64,
@@ -54,23 +61,33 @@ pub(super) struct Strays {
 
 impl Strays {
     /// Of observations of a tail. Their roots end at the same unknown.
-    pub(super) fn among(mut suspects: Vec<Suspect>) -> Self {
+    pub(super) fn among(suspects: Vec<Suspect>) -> Self {
         let mut places: Vec<f64> = suspects.iter().map(|suspect| suspect.at).collect();
         places.sort_by(f64::total_cmp);
         places.dedup();
-        let left_out = left_out(&mut suspects).unwrap_or_default();
+        let left_out = left_out(&suspects);
         let agrees = |place: usize| left_out.iter().all(|stray| stray.at != places[place]);
-        let is_alone = |place: usize| {
-            let beside = |other: &&Suspect| {
-                place > 0 && other.at == places[place - 1] || Some(&other.at) == places.get(place + 1)
-            };
-            let own = || left_out.iter().filter(|stray| stray.at == places[place]);
-            !left_out.iter().filter(beside).any(|other| own().any(|own| own.moves_with(other)))
+        // Whether what is off at two places is off to the same side.
+        let moves_with = |place: usize, other: usize| {
+            let (own, other) = (places[place], places[other]);
+            let at = |at: f64| left_out.iter().filter(move |stray| stray.at == at);
+            at(own).any(|own| at(other).any(|other| own.moves_with(other)))
+        };
+        // Rows in a row that move together.
+        let together = |place: usize| {
+            let before = (1..=place).rev().take_while(|&other| moves_with(other, other - 1)).count();
+            let behind = (place + 1..places.len()).take_while(|&other| moves_with(other, other - 1)).count();
+            before + 1 + behind
         };
         let is_found = |&place: &usize| {
-            let is_far = left_out.iter().any(|stray| stray.at == places[place] && stray.distance() > FAR);
+            let far = match together(place) {
+                1 => FAR,
+                2..=PAIR => FAR_TOGETHER,
+                _ => f64::INFINITY,
+            };
+            let is_far = left_out.iter().any(|stray| stray.at == places[place] && stray.distance() > far);
             let behind = (place + 1..places.len()).filter(|&other| agrees(other)).count();
-            is_far && behind >= BEHIND && is_alone(place)
+            is_far && behind >= BEHIND
         };
         let (found, aside): (Vec<usize>, _) = (0..places.len()).filter(|&place| !agrees(place)).partition(is_found);
         let at = |numbers: Vec<usize>| numbers.into_iter().map(|place| places[place]).collect();
@@ -78,31 +95,68 @@ impl Strays {
     }
 }
 
-/// Takes out the observations without which all others agree; nothing where these are too many.
-fn left_out(suspects: &mut Vec<Suspect>) -> Option<Vec<Suspect>> {
-    let mut left_out: Vec<Suspect> = Vec::new();
-    let mut rows = 0;
-    while let Some(at) = farthest(suspects) {
-        if suspects[at].distance() <= AGREE {
-            break;
-        }
-        let stray = suspects.swap_remove(at);
-        rows += usize::from(left_out.iter().all(|other| other.at != stray.at));
-        if rows > MOST {
-            return None;
-        }
-        leave_out(&stray, suspects);
-        left_out.push(stray);
-    }
-    Some(left_out)
+/// The observations of the rows without which all others agree, as few rows as it takes, each as it is beside all rows that agree;
+/// none where these are too many.
+fn left_out(suspects: &[Suspect]) -> Vec<Suspect> {
+    let Some(Explained { rows, .. }) = explained(suspects.to_vec(), MOST) else { return Vec::new() };
+    let beside_others = |&own: &f64| {
+        let mut rest = suspects.to_vec();
+        rows.iter().filter(|&&row| row != own).for_each(|&row| _ = leave_out_row(row, &mut rest));
+        rest.into_iter().filter(move |suspect| suspect.at == own).collect::<Vec<_>>()
+    };
+    rows.iter().flat_map(beside_others).collect()
 }
 
-fn farthest(suspects: &[Suspect]) -> Option<usize> {
-    (0..suspects.len()).max_by(|&a, &b| suspects[a].distance().total_cmp(&suspects[b].distance()))
+/// Rows that are left out, and by how much the sum of squares of all distances is smaller without them.
+struct Explained {
+    rows: Vec<f64>,
+    gain: f64,
+}
+
+/// The fewest rows, so many at most, without which all others agree; of as many, those that explain most. The farthest is not always
+/// among them: two strays side by side draw the state along, and the first row behind them seems to be far. The next ones are tried too.
+fn explained(suspects: Vec<Suspect>, most: usize) -> Option<Explained> {
+    let farthest = farthest(&suspects);
+    if farthest.first().is_none_or(|(distance, _)| *distance <= AGREE) {
+        return Some(Explained { rows: Vec::new(), gain: 0.0 });
+    }
+    let fewer = most.checked_sub(1)?;
+    let without = |&(_, row): &(f64, f64)| {
+        let mut rest = suspects.clone();
+        let own = leave_out_row(row, &mut rest);
+        let Explained { mut rows, gain } = explained(rest, fewer)?;
+        rows.push(row);
+        Some(Explained { rows, gain: gain + own })
+    };
+    let better = |a: &Explained, b: &Explained| b.rows.len().cmp(&a.rows.len()).then(a.gain.total_cmp(&b.gain));
+    farthest[..farthest.len().min(TRIED)].iter().filter_map(without).max_by(better)
+}
+
+/// How far the rows are off, each by its farthest observation, and their places: the farthest first.
+fn farthest(suspects: &[Suspect]) -> Vec<(f64, f64)> {
+    let mut rows: Vec<(f64, f64)> = suspects.iter().map(|suspect| (suspect.distance(), suspect.at)).collect();
+    rows.sort_by(|a, b| a.1.total_cmp(&b.1).then(b.0.total_cmp(&a.0)));
+    rows.dedup_by_key(|row| row.1);
+    rows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    rows
+}
+
+/// Predicts the others without a row. Returns by how much the sum of squares of all distances is smaller.
+fn leave_out_row(row: f64, suspects: &mut Vec<Suspect>) -> f64 {
+    let mut gain = 0.0;
+    while let Some(own) = suspects.iter().position(|suspect| suspect.at == row) {
+        let own = suspects.swap_remove(own);
+        gain += own.distance().powi(2);
+        leave_out(&own, suspects);
+    }
+    gain
 }
 
 /// Predicts the others without one.
 fn leave_out(stray: &Suspect, others: &mut [Suspect]) {
+    if stray.variance() <= UNTOLD {
+        return;
+    }
     let deviation = stray.variance().sqrt();
     for other in others {
         let covariance = -dot(&stray.root, &other.root) / deviation;
@@ -152,7 +206,7 @@ mod tests {
     }
 
     #[test]
-    fn a_row_alone_is_a_stray_and_rows_that_move_together_are_not() {
+    fn a_row_or_two_are_strays_and_more_that_move_together_are_not() {
         let of = |values: &[f64]| {
             let Strays { found, aside } = Strays::among(alike(values));
             (found, aside)
@@ -161,7 +215,8 @@ mod tests {
         assert_eq!(of(&[0.1, 30.0, -0.2, 0.3, 0.0, -0.1]), (vec![1.0], vec![]));
         assert_eq!(of(&[0.1, 30.0, -50.0, -0.2, 0.3, 0.0, -0.1]), (vec![1.0, 2.0], vec![]));
         assert_eq!(of(&[0.1, 0.0, -0.2, 0.3, 30.0, -0.1]), (vec![], vec![4.0]), "one row is behind it");
-        assert_eq!(of(&[0.1, 30.0, 29.0, 0.3, 0.0, -0.1]), (vec![], vec![1.0, 2.0]), "a pulse");
+        assert_eq!(of(&[0.1, 30.0, 50.0, 0.3, 0.0, -0.1]), (vec![1.0, 2.0], vec![]), "two that meet");
+        assert_eq!(of(&[0.1, 30.0, 29.0, 31.0, 0.3, 0.0, -0.1]), (vec![], vec![1.0, 2.0, 3.0]), "a pulse");
         assert_eq!(of(&[0.1, 0.2, -0.3, 0.1, 30.0, 29.0, 31.0, 30.5]), (vec![], vec![]), "a step");
     }
 }

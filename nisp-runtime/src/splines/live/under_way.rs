@@ -23,6 +23,8 @@ const SMALL: f64 = 0.5;
 /// Rows of a later stretch that is asked for noise and smoothness, at most, and rows between such stretches, at most.
 const STRETCH: usize = 1000;
 const BETWEEN: usize = 4000;
+/// Unsound answers, one after the other, behind which the window is lost.
+const MANY_UNSOUND: usize = 50;
 /// Share of a cell by which a place may miss the lag.
 pub(super) const SLACK: f64 = 1e-6;
 
@@ -50,6 +52,8 @@ pub(super) struct Live {
     /// The last rows, for the next stretch.
     pub(super) recent: VecDeque<MeasuredRow<Engine>>,
     pub(super) rows: usize,
+    /// Answers since the last sound one.
+    pub(super) unsound: usize,
     /// Number of the row at which a stretch is asked next, or its answer taken over.
     pub(super) due: usize,
     pub(super) asked: Option<JoinHandle<Result<Weights, LiveError>>>,
@@ -142,13 +146,18 @@ impl Live {
         Ok(Reach::Whole)
     }
 
-    /// A step, down to the first row that waits.
+    /// A step, down to the first row that waits. Rows that are left out leave nothing behind: what they did to the state is undone.
     fn solve(&mut self) -> Result<(), Fault> {
+        let before = self.window.state();
         self.window.readmit();
         self.step()?;
         let Strays { found, aside } = self.window.leave_out_strays();
         self.mark(&found);
-        if found.is_empty() && aside.is_empty() { Ok(()) } else { self.step() }
+        if found.is_empty() && aside.is_empty() {
+            return Ok(());
+        }
+        self.window.return_to(&before);
+        self.step()
     }
 
     /// Marks rows of the tail as strays.
@@ -182,10 +191,12 @@ impl Live {
         }
     }
 
-    /// True where equations and data no longer agree.
+    /// True where equations and data no longer agree, or have not for many rows.
     pub(super) fn is_lost(&self) -> bool {
         let nearby = self.nearby[..1].iter().map(|nearby| nearby.square.sqrt());
-        nearby.fold(0.0, f64::max) > Smoothed::NEARBY || self.square.sqrt() > Smoothed::MISFIT
+        nearby.fold(0.0, f64::max) > Smoothed::NEARBY
+            || self.square.sqrt() > Smoothed::MISFIT
+            || self.unsound >= MANY_UNSOUND
     }
 
     /// Whether the row at a place in the declared unit is among those that were taken.
@@ -234,17 +245,18 @@ impl Live {
         // The answer to the first rows has a prior of its own.
         if opening.is_none() {
             for bends in &mut self.bends {
-                bends.count_up(&self.pending, f64::INFINITY, &mut |at, _, mean| count_bend(window.bend(at), mean));
+                bends.count_up(&self.pending, decided, &mut |at, _, mean| count_bend(window.bend(at), mean));
             }
         }
         let (at, events) = self.pending.pop_front()?;
         let counted = self.nearby.iter_mut().chain(&mut self.bends);
         counted.for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
         count_all((window, opening), &events, &mut self.square);
+        let has_deviations = window.has_deviations();
         let read = |(head, outward): (usize, &Scale<Engine, Declared>)| {
             let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
             let outward = |x| outward.of(Number::engine(x)).as_declared();
-            (outward(value), outward(deviation))
+            (outward(value), if has_deviations { outward(deviation) } else { f64::NAN })
         };
         let heads = self.outward.iter().enumerate().map(read).collect();
         let outward = |at| self.inward.at.inverse().of(Number::engine(at)).as_declared();
@@ -252,7 +264,9 @@ impl Live {
         let (nearby, bend) = (most(&self.nearby), most(&self.bends));
         let (lag, misfit, leaning) = (outward(self.last - at), self.square.sqrt(), self.window.weights().leaning);
         let is_stray = events.iter().any(|event| event.is_stray);
-        Some(Smoothed { at: outward(at), lag, heads, misfit, nearby, bend, leaning, is_stray })
+        let answer = Smoothed { at: outward(at), lag, heads, misfit, nearby, bend, leaning, is_stray };
+        self.unsound = if answer.is_sound() { 0 } else { self.unsound + 1 };
+        Some(answer)
     }
 
     /// Answers all rows that wait.

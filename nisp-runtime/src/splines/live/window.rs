@@ -120,6 +120,11 @@ impl Window {
         &self.weights
     }
 
+    /// Whether deviations say anything: data are off by some noise.
+    pub(super) fn has_deviations(&self) -> bool {
+        self.weights.noise.is_there(self.bound.problem.scene().schema)
+    }
+
     fn heads_count(&self) -> usize {
         self.heads.bases.len()
     }
@@ -211,6 +216,16 @@ impl Window {
             self.theta[at] += step.clamp(-farthest, farthest);
         }
         Ok(change)
+    }
+
+    /// What is known of the heads.
+    pub(super) fn state(&self) -> Vec<f64> {
+        self.theta.clone()
+    }
+
+    /// Takes a state for what is known of the heads.
+    pub(super) fn return_to(&mut self, state: &[f64]) {
+        self.theta.copy_from_slice(state);
     }
 
     /// Leaves out the rows of the tail that are strays by the last step, or may be. The next step knows nothing of them.
