@@ -39,9 +39,25 @@ impl Begun {
         (lag, open): (Option<f64>, f64),
     ) -> Result<Self, LiveError> {
         layout.mark_strays(&mut rows);
-        let told = if open > 0.0 { rows.len() - UNTOLD } else { rows.len() };
-        let First { bound, stretch, opening } = First::solve(problem, layout, &mut rows[..told])?;
-        let schema = problem.scene().schema;
+        let told = told(&rows, open);
+        let first = First::solve(problem, layout, &mut rows[..told])?;
+        let begun = Self::of(first, layout, &rows, (lag, open))?;
+        // The first solution follows a stray where it takes the source for rougher there. The window does not.
+        if !begun.live.as_ref().is_some_and(|live| live.mark_strays(&mut rows[..told])) {
+            return Ok(begun);
+        }
+        Self::of(First::of_marked(problem, layout, &rows[..told])?, layout, &rows, (lag, open))
+    }
+
+    /// Goes on from the first rows, solved.
+    fn of(
+        First { bound, stretch, opening }: First,
+        layout: &Layout,
+        rows: &[MeasuredRow<Declared>],
+        (lag, open): (Option<f64>, f64),
+    ) -> Result<Self, LiveError> {
+        let told = told(rows, open);
+        let schema = bound.problem.scene().schema;
         let system = bound.system;
         let inward = Inward {
             at: system.inward(&schema.coordinates[0].unit),
@@ -106,4 +122,9 @@ impl Begun {
         answers.extend(live.finish());
         Ok(Self { answers, live: None, behind })
     }
+}
+
+/// How many of the first rows tell something.
+fn told(rows: &[MeasuredRow<Declared>], open: f64) -> usize {
+    if open > 0.0 { rows.len() - UNTOLD } else { rows.len() }
 }

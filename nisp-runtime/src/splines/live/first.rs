@@ -53,7 +53,12 @@ impl First {
         Self::of_marked(problem, layout, rows)
     }
 
-    fn of_marked(problem: &Problem, layout: &Layout, rows: &[MeasuredRow<Declared>]) -> Result<Self, LiveError> {
+    /// Solves rows but for the strays that are marked.
+    pub(super) fn of_marked(
+        problem: &Problem,
+        layout: &Layout,
+        rows: &[MeasuredRow<Declared>],
+    ) -> Result<Self, LiveError> {
         let bound = layout.bound(problem, rows)?;
         let (stretch, opening) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
         Ok(Self { stretch: stretch?, opening, bound })

@@ -170,6 +170,20 @@ impl Live {
         }
     }
 
+    /// Marks those of the first rows that the window found to be strays; false if there are none.
+    pub(super) fn mark_strays(&self, rows: &mut [MeasuredRow<Declared>]) -> bool {
+        let own = self.recent.iter().filter(|row| row.is_stray);
+        let places: Vec<f64> = own.map(|row| row.outward(&self.inward).at).collect();
+        let mut found = false;
+        for row in rows.iter_mut().filter(|row| !row.is_stray) {
+            let slack = SLACK * self.window.grid().width;
+            let slack = self.inward.at.back(Number::engine(slack)).as_declared();
+            row.is_stray = places.iter().any(|place| (place - row.at).abs() <= slack);
+            found |= row.is_stray;
+        }
+        found
+    }
+
     /// The same with the rows that are there.
     fn step(&mut self) -> Result<(), Fault> {
         let grid = self.window.grid();
