@@ -32,6 +32,19 @@ nisp::pde! {
 }
 
 nisp::pde! {
+    /// A level that flows out as its root, under an unknown inflow.
+    mod outflow {
+        units: off;
+        coordinates: t;
+        fields: y;
+        sources: u;
+        on tank { balance: d(y, t) + 0.5 * sqrt(y) == u; }
+        on samples { observe y; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
     /// The first one over time: its drive may set in with the record.
     mod timed {
         coordinates: t [s];

@@ -2,7 +2,7 @@
 
 use nisp::{LagSettings, LiveError, Smoothed, scene};
 
-use crate::{drive, driven, motion, noise, record, smoothed, smoother};
+use crate::{drive, driven, motion, noise, outflow, record, smoothed, smoother};
 
 /// Values of one row in fifty are far off, 30 to 90 deviations to either side, in the first rows, in later ones, and beside each other.
 #[test]
@@ -27,6 +27,62 @@ fn strays_are_left_out_and_told() {
             assert_eq!(told, strays, "{lag:?}");
         }
     }
+}
+
+/// One value in twenty is far off, wherever chance puts them: side by side, several in a few rows, among the first rows. Exact records have
+/// the same, and then no deviations.
+#[test]
+fn many_strays_are_left_out_and_told() {
+    for sigma in [0.0, 0.01] {
+        let (mut rows, mut strays, mut chance) = (record(2000, 0.05, sigma), Vec::new(), noise(21));
+        for (at, row) in rows.iter_mut().enumerate() {
+            let (draw, side) = (chance(), chance());
+            if draw > 1.645 {
+                row.1 += (0.3 + 0.1 * (at % 7) as f64) * side.signum();
+                strays.push(at);
+            }
+        }
+        let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+        let told = |row: &usize| found[*row].is_stray;
+        let missed = strays.iter().filter(|row| !told(row)).count();
+        let wrong = (0..rows.len()).filter(|row| told(row) && !strays.contains(row)).count();
+        let unsound = found.iter().filter(|found| !found.is_sound()).count();
+        assert!(
+            strays.len() > 80 && missed <= 2 && wrong == 0,
+            "{missed} missed and {wrong} wrong of {}",
+            strays.len()
+        );
+        assert!(unsound <= 20, "{unsound} rows are unsound with noise of {sigma}");
+        assert!(sigma > 0.0 || found.iter().all(|found| found.heads[1].1.is_nan()));
+        let off = |found: &&Smoothed| {
+            let most = if sigma > 0.0 { 5.0 * found.heads[1].1 } else { 0.01 };
+            found.is_sound() && (found.heads[1].0 - drive(found.at, 0.0)).abs() > most
+        };
+        let off = found.iter().filter(off).count();
+        assert!(off <= 4, "{off} rows are off with noise of {sigma}");
+    }
+}
+
+/// A level that flows out as its root, `y = 0.3 + 0.1 sin(t / 2)`. No root is that of a value below zero, and the equation cannot be evaluated
+/// about one such value. The record goes on behind it.
+#[test]
+fn a_row_that_cannot_be_evaluated_does_not_end_a_record() {
+    let mut noise = noise(5);
+    let level = |t: f64| 0.3 + 0.1 * (0.5 * t).sin();
+    let mut rows: Vec<(f64, f64)> =
+        (0..1500).map(|i| 0.05 * f64::from(i)).map(|t| (t, level(t) + 0.003 * noise())).collect();
+    rows[700].1 = -3.0;
+    let found = smoothed(&mut smoother(scene::<outflow::recover::Scene>(), LagSettings::default()), &rows);
+    let places: Vec<f64> = found.iter().map(|found| found.at).collect();
+    assert!(places.len() == rows.len() && places.is_sorted(), "every row has an answer");
+    assert!(found[700].is_stray || !found[700].is_sound());
+    let is_wrong = |found: &&Smoothed| {
+        let inflow = 0.05 * (0.5 * found.at).cos() + 0.5 * level(found.at).sqrt();
+        found.is_sound() && (found.heads[1].0 - inflow).abs() > 4.0 * found.heads[1].1
+    };
+    assert_eq!(found.iter().filter(is_wrong).count(), 0);
+    let sound = found.iter().filter(|found| found.is_sound()).count();
+    assert!(sound > 1350, "{sound} of 1500 rows are sound");
 }
 
 /// The oscillator's answer to a drive of one that begins at zero.

@@ -116,15 +116,15 @@ Rows of a record:
   The first 200 rows say how large the noise is, how smooth the sources are, and which lag is worth waiting for; then
   they are all answered, and every later row when the record is a lag farther. Where the record ends the last rows are
   answered at shorter lags. After a gap longer than the lag it begins anew with the next 200 rows. Where answers no longer
-  fit the rows (a source sets in after quiet ones) the last 400 are solved as the first ones were. A row that cannot be
-  taken (time that goes back, a word for a number) gets a line that says so, and the next one is waited for; so does a
-  time far ahead that the next row's time is not. A value that stands alone, far off, is left out. First rows that tell
-  nothing (a sensor at rest, empty cells) wait for others: 1600 at most.
+  fit the rows (a source sets in after quiet ones, 50 rows are inconsistent) the last 400 are solved as the first ones
+  were. A row that cannot be taken (time that goes back, a word for a number) gets a line that says so, and the next one
+  is waited for; so does a time far ahead that the next row's time is not. A value that stands alone, far off, is left
+  out. First rows that tell nothing (a sensor at rest, empty cells) wait for others: 1600 at most.
 
 Answers to rows, one JSON object a line:
   t           where the answer holds: the row's own place (under the coordinate's own name)
   lag         how much farther the record had come
-  sources     by name: value and sd, its standard deviation
+  sources     by name: value and sd, its standard deviation (null where rows are inconsistent, or exact but for rounding)
   state       the same of what is described, measured or not
   misfit      what observations are off, over the noise that neighbouring rows show; about 1 where the equation is right
   nearby      the same of a dozen values about the row

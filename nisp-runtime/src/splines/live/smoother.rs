@@ -123,18 +123,22 @@ impl FixedLagSmoother {
                     found.extend(self.recover());
                     return Ok(found);
                 }
-                Err(error) => {
+                Err(_) => {
                     let is_taken = live.has(row.at);
-                    found.extend(self.begin_again().ok_or(error)?);
-                    if is_taken {
-                        return Ok(found);
+                    // What cannot be evaluated here may be so farther on.
+                    match self.begin_again() {
+                        Some(again) if is_taken => found.extend(again),
+                        Some(again) => {
+                            found.extend(again);
+                            found.extend(self.push_anew(row));
+                        }
+                        None => found.extend(self.wait_again((!is_taken).then_some(row))),
                     }
-                    found.extend(self.push_anew(row)?);
                     return Ok(found);
                 }
                 Ok(Reach::Gap) => {
-                    found.extend(live.finish());
-                    self.live = None;
+                    found.extend(self.wait_again(Some(row)));
+                    return Ok(found);
                 }
             }
         }
@@ -225,15 +229,24 @@ impl FixedLagSmoother {
     }
 
     /// Takes a row that a window could not reach, after that has begun again.
-    fn push_anew(&mut self, row: MeasuredRow<Declared>) -> Result<Vec<Smoothed>, LiveError> {
+    fn push_anew(&mut self, row: MeasuredRow<Declared>) -> Vec<Smoothed> {
         let mut found = Vec::new();
         let reach =
             self.live.as_mut().map(|live| live.push(&self.layout, row.inward(&live.inward), &|_, _| None, &mut found));
-        if !matches!(reach.transpose()?, Some(Reach::Whole)) {
-            found.extend(self.live.take().iter_mut().flat_map(Live::finish));
-            self.waiting.push(row);
+        match reach {
+            Some(Ok(Reach::Whole)) => {}
+            Some(Err(_)) if self.live.as_ref().is_some_and(|live| live.has(row.at)) => {
+                found.extend(self.wait_again(None));
+            }
+            _ => found.extend(self.wait_again(Some(row))),
         }
-        Ok(found)
+        found
+    }
+
+    /// Answers the rows that wait by what is known, and waits for as many as at the beginning: a row that was not taken is the first.
+    fn wait_again(&mut self, row: Option<MeasuredRow<Declared>>) -> Vec<Smoothed> {
+        self.waiting.extend(row);
+        self.live.take().iter_mut().flat_map(Live::finish).collect()
     }
 
     /// Begins again where the window is lost and has had its time: the answers of the rows that wait.

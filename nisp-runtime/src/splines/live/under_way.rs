@@ -1,5 +1,7 @@
 //! Rows under way: what waits for its answer, what was asked last, and how well rows are met.
 
+mod spoiled;
+
 use std::collections::VecDeque;
 use std::thread::{self, JoinHandle};
 
@@ -8,7 +10,6 @@ use super::evidence::{Stretch, Weights};
 use super::met::{Nearby, count_all, count_bend, count_near};
 use super::opening::Opening;
 use super::record::{Inward, Layout, MeasuredRow};
-use super::strays::Strays;
 use super::window::{Known, Window};
 use super::{LiveError, Smoothed};
 use crate::solve::fault::Fault;
@@ -146,49 +147,16 @@ impl Live {
         Ok(Reach::Whole)
     }
 
-    /// A step, down to the first row that waits. Rows that are left out leave nothing behind: what they did to the state is undone.
-    fn solve(&mut self) -> Result<(), Fault> {
-        let before = self.window.state();
-        self.window.readmit();
-        self.step()?;
-        let Strays { found, aside } = self.window.leave_out_strays();
-        self.mark(&found);
-        if found.is_empty() && aside.is_empty() {
-            return Ok(());
-        }
-        self.window.return_to(&before);
-        self.step()
-    }
-
-    /// Marks rows of the tail as strays.
-    fn mark(&mut self, strays: &[f64]) {
-        for row in self.recent.iter_mut().filter(|row| strays.contains(&row.at)) {
-            row.is_stray = true;
-        }
-        for (_, events) in self.pending.iter_mut().filter(|(at, _)| strays.contains(at)) {
-            events.iter_mut().for_each(|event| event.is_stray = true);
-        }
-    }
-
-    /// Marks those of the first rows that the window found to be strays; false if there are none.
-    pub(super) fn mark_strays(&self, rows: &mut [MeasuredRow<Declared>]) -> bool {
-        let own = self.recent.iter().filter(|row| row.is_stray);
-        let places: Vec<f64> = own.map(|row| row.outward(&self.inward).at).collect();
-        let mut found = false;
-        for row in rows.iter_mut().filter(|row| !row.is_stray) {
-            let slack = SLACK * self.window.grid().width;
-            let slack = self.inward.at.back(Number::engine(slack)).as_declared();
-            row.is_stray = places.iter().any(|place| (place - row.at).abs() <= slack);
-            found |= row.is_stray;
-        }
-        found
-    }
-
-    /// The same with the rows that are there.
-    fn step(&mut self) -> Result<(), Fault> {
+    /// The first cell of which something is asked: that of the first row that waits, or of the tail.
+    fn wanted(&self) -> usize {
         let grid = self.window.grid();
         let wanted = self.pending.front().map_or(grid.tail_start(), |(at, _)| grid.cell(*at));
-        let from = wanted.min(grid.tail_start()).max(grid.begun());
+        wanted.min(grid.tail_start()).max(grid.begun())
+    }
+
+    /// A step with the rows that are there, down to the first row that waits.
+    fn step(&mut self) -> Result<(), Fault> {
+        let from = self.wanted();
         for _ in 0..MORE_STEPS {
             if self.window.solve(from)? < SMALL {
                 break;
