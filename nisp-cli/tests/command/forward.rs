@@ -57,6 +57,26 @@ on edge boundary of plate { held: w == 0; free: laplacian(w) == 0; }
     }
 }
 
+/// How large the field is must be asked everywhere: in a strip along a wall it is nothing, and any deviation is large beside that.
+#[test]
+fn a_layer_at_an_outlet_is_determined() {
+    let place = Place::new();
+    let text = "units: off;
+coordinates: x, y;
+fields: u;
+domains: channel = box(0 .. 1, 0 .. 1);
+let w = sin(pi * y) * (exp((x - 1) / 0.1) - exp(-1 / 0.1));
+on inside in channel { balance: d(u, x) - 0.1 * laplacian(u) == 0.1 * pi^2 * w; }
+on edge boundary of channel { held: u == w; }
+";
+    let (code, report) = solved(&place, text);
+    assert_eq!((code, report["status"].as_str()), (Some(0), Some("converged")), "{}", report["verdict"]);
+    for row in place.rows("out/state.csv") {
+        let exact = (std::f64::consts::PI * row[1]).sin() * (((row[0] - 1.0) / 0.1).exp() - (-1.0_f64 / 0.1).exp());
+        assert!((row[2] - exact).abs() < 1e-4, "{row:?}");
+    }
+}
+
 #[test]
 fn without_a_beginning_a_temperature_is_open() {
     let place = Place::new();

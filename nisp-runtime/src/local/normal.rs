@@ -47,22 +47,27 @@ pub(super) struct Sums {
 impl Normal {
     /// For `len` coefficients and so many learned scalars; `groups` are the coefficients that occur together.
     pub(super) fn new(len: usize, learned: usize, groups: &[Vec<u32>]) -> Option<Self> {
-        let mut columns: Vec<Vec<usize>> = (0..len).map(|at| vec![at]).collect();
-        for group in groups {
-            for (at, &column) in group.iter().enumerate() {
-                columns[column as usize].extend(group[at..].iter().map(|&row| row as usize));
-                let own = &mut columns[column as usize];
-                // Repeats are many: drop them before they fill the memory.
-                if own.len() > 4096 {
-                    own.sort_unstable();
-                    own.dedup();
+        let mut of: Vec<Vec<u32>> = vec![Vec::new(); len];
+        for (number, group) in groups.iter().enumerate() {
+            group.iter().for_each(|&column| of[column as usize].push(number as u32));
+        }
+        // By row, the last column that it was seen in.
+        let mut last = vec![usize::MAX; len];
+        let mut column = |(column, of): (usize, &Vec<u32>)| {
+            let mut rows = vec![column];
+            last[column] = column;
+            for group in of.iter().map(|&number| &groups[number as usize]) {
+                for row in group.iter().map(|&row| row as usize).filter(|&row| row > column) {
+                    if last[row] != column {
+                        last[row] = column;
+                        rows.push(row);
+                    }
                 }
             }
-        }
-        for column in &mut columns {
-            column.sort_unstable();
-            column.dedup();
-        }
+            rows.sort_unstable();
+            rows
+        };
+        let columns: Vec<Vec<usize>> = of.iter().enumerate().map(&mut column).collect();
         let pattern = Pattern::new(&columns)?;
         Some(Self {
             values: vec![0.0; pattern.rows().len()],

@@ -5,6 +5,9 @@ use std::collections::HashMap;
 use super::block::Block;
 use crate::simd::{Isa, Kernel, Simd, dispatch};
 
+/// Rows whose products are summed up at once: a sum is read and written once for all of them.
+const ROWS: usize = 8;
+
 /// A block's rows by the coefficients that are kept, in ascending order.
 pub(super) struct Sorted {
     pub(super) dofs: Vec<u32>,
@@ -105,20 +108,44 @@ impl Kernel<f64> for Products<'_> {
     #[inline(always)]
     fn run<V: Simd<Elem = f64>>(self) {
         let Self { block, at, line } = self;
-        for row in block.slopes.chunks_exact(block.dofs.len()) {
-            let (own, row) = (row[at], &row[at..]);
-            if own == 0.0 {
-                continue;
-            }
-            let factor = V::splat(own);
-            let (mut sums, mut slopes) = (line.chunks_exact_mut(V::LANES), row.chunks_exact(V::LANES));
-            for (sum, slope) in (&mut sums).zip(&mut slopes) {
-                // SAFETY: the chunks have LANES elements.
-                unsafe { V::load(slope.as_ptr()).mul_add(factor, V::load(sum.as_ptr())).store(sum.as_mut_ptr()) };
-            }
-            let rest = sums.into_remainder().iter_mut().zip(slopes.remainder());
-            rest.for_each(|(sum, slope)| *sum += own * slope);
+        let width = block.dofs.len();
+        let mut together = block.slopes.chunks_exact(ROWS * width);
+        for rows in &mut together {
+            add::<V, ROWS>(rows, at, line);
         }
+        for row in together.remainder().chunks_exact(width) {
+            add::<V, 1>(row, at, line);
+        }
+    }
+}
+
+/// Adds `row[at] * row[at..]` of so many rows to a line, one row after the other. No closures: they would not have the vectors'
+/// instructions.
+#[inline(always)]
+fn add<V: Simd<Elem = f64>, const COUNT: usize>(rows: &[f64], at: usize, line: &mut [f64]) {
+    let width = rows.len() / COUNT;
+    let rows: [&[f64]; COUNT] = std::array::from_fn(|row| &rows[row * width + at..][..line.len()]);
+    let own = rows.map(|row| row[0]);
+    if own.iter().all(|own| *own == 0.0) {
+        return;
+    }
+    let mut factors = [V::splat(0.0); COUNT];
+    for row in 0..COUNT {
+        factors[row] = V::splat(own[row]);
+    }
+    let whole = line.len() - line.len() % V::LANES;
+    for from in (0..whole).step_by(V::LANES) {
+        // SAFETY: the line and the rows have LANES elements from there on.
+        unsafe {
+            let mut sum = V::load(line.as_ptr().add(from));
+            for row in 0..COUNT {
+                sum = V::load(rows[row].as_ptr().add(from)).mul_add(factors[row], sum);
+            }
+            sum.store(line.as_mut_ptr().add(from));
+        }
+    }
+    for (at, sum) in line.iter_mut().enumerate().skip(whole) {
+        rows.iter().zip(own).for_each(|(row, own)| *sum += own * row[at]);
     }
 }
 
@@ -164,5 +191,25 @@ mod tests {
         let mut values = [1.0; 4];
         sorted.scatter(0, &line, &[3, 5, 6, 7], &mut values);
         assert_eq!(values, [21.0, 10.0, 1.0, -1.0]);
+    }
+
+    /// More rows than are summed up at once, and more coefficients than a vector has lanes: small whole numbers, whose sums are exact.
+    #[test]
+    fn products_of_many_rows_are_their_sums() {
+        let (rows, width) = (2 * ROWS + 3, 21);
+        let slope = |row: usize, at: usize| ((7 * row + 5 * at) % 11) as f64 - 5.0;
+        let block = Block {
+            misfits: vec![0.0; rows],
+            by_learned: Vec::new(),
+            dofs: (0..width as u32).collect(),
+            slopes: (0..rows * width).map(|number| slope(number / width, number % width)).collect(),
+            excess: 0.0,
+        };
+        let (sorted, mut line) = (Sorted::of(&block), Vec::new());
+        for at in 0..width {
+            sorted.products(Isa::detect(), at, &mut line);
+            let sum = |other: usize| (0..rows).map(|row| slope(row, at) * slope(row, other)).sum::<f64>();
+            assert_eq!(line, (at..width).map(sum).collect::<Vec<f64>>());
+        }
     }
 }

@@ -3,6 +3,10 @@
 //! A little stiffness is given to every coefficient, just above what rounding gives to it. What equations and conditions determine does
 //! not mind how little; deviations of what they leave open go with its root.
 
+use rand::SeedableRng;
+use rand::rngs::StdRng;
+use rand::seq::index::sample;
+
 use super::solver::Solver;
 use super::state::State;
 use crate::local::draws::{Deviations, Draws};
@@ -69,13 +73,15 @@ impl Solver<'_> {
         schema.heads.iter().enumerate().filter_map(open).collect()
     }
 
-    /// Some points of the largest group, flat.
+    /// Some points of the largest group, flat. Every so many of points that fill a domain evenly may all lie in one corner of it: they
+    /// are picked at random.
     fn some_points(&self) -> Vec<f64> {
         let inputs = self.schema().coordinates.len();
         let largest = self.bound.coordinates.iter().max_by_key(|points| points.len());
         let points = largest.map_or(&[][..], |points| points.as_slice());
-        let step = (points.len() / inputs).div_ceil(MOST).max(1);
-        points.chunks_exact(inputs).step_by(step).flatten().copied().collect()
+        let count = points.len() / inputs;
+        let chosen = sample(&mut StdRng::seed_from_u64(0), count, count.min(MOST));
+        chosen.into_iter().flat_map(|at| &points[at * inputs..][..inputs]).copied().collect()
     }
 
     /// Size of a head at points; its natural one where it is zero.
