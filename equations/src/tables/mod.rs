@@ -4,6 +4,7 @@
 mod check;
 mod clouds;
 mod read;
+mod units;
 mod unmeasured;
 mod wanted;
 
@@ -173,6 +174,7 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
         found.problem.set_group(group.name, points, columns)?;
     }
     clouds::bind(&mut found, tables, request)?;
+    found.warnings.extend(units::doubts(&found.problem));
     Ok(found)
 }
 

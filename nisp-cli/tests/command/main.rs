@@ -25,4 +25,5 @@ mod rust;
 mod stream;
 mod streams;
 mod text;
+mod units;
 mod verdict;

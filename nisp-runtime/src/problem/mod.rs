@@ -10,6 +10,9 @@ mod evaluate;
 mod frame;
 mod place;
 mod powers;
+mod probe;
+mod rest;
+mod rests;
 mod scale;
 mod system;
 mod units;
@@ -18,6 +21,7 @@ pub(crate) use bound::{Bound, EngineTolerance};
 pub use error::BindError;
 pub(crate) use frame::Frame;
 pub(crate) use place::place;
+pub use rest::Rest;
 pub use system::UnitSystem;
 
 use crate::kernel::SceneRef;

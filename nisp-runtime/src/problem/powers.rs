@@ -5,7 +5,8 @@
 //! better and better where data leave both open. So the size goes with powers of the learned scalars, those that it has
 //! where learning starts; together they are its degree in what is learned, exactly, where scalars scale together.
 
-use super::scale::{Data, scales};
+use super::probe::Data;
+use super::scale::scales;
 use crate::engine::{Learned, Powers};
 use crate::kernel::SceneRef;
 use crate::network::Inputs;

@@ -4,24 +4,11 @@
 //! size that makes their term as large as the rest of it; sources that only occur together, each that size. Rows are then
 //! divided by the sum of their terms' sizes.
 
+use super::probe::{Data, Probe};
 use crate::engine::Scaling;
-use crate::kernel::{GroupKernel, SceneRef};
+use crate::kernel::SceneRef;
 use crate::network::Inputs;
-use crate::residual::Points;
 use crate::schema::{self, Origin, TermKind};
-use crate::simd::Isa;
-
-/// What is bound, by group, in the engine's units.
-#[derive(Clone, Copy)]
-pub(super) struct Data<'a> {
-    /// Point by point.
-    pub(super) coordinates: &'a [Vec<f64>],
-    /// Of the points' partners; empty unless the group is paired.
-    pub(super) partners: &'a [Vec<f64>],
-    pub(super) columns: &'a [Vec<Vec<f64>>],
-    /// By group and term; empty unless the term is a Chamfer distance.
-    pub(super) clouds: &'a [Vec<Vec<f64>>],
-}
 
 /// What [`scales`] finds.
 pub(super) struct Scales {
@@ -29,12 +16,6 @@ pub(super) struct Scales {
     /// By group and term.
     pub(super) sizes: Vec<Vec<f64>>,
 }
-
-/// Points that natural sizes are judged at, at most, of every group.
-const SAMPLE: usize = 256;
-
-/// Padding of the points, as everywhere in the engine.
-const LANES: usize = 16;
 
 /// Finds natural sizes; fills in the scalars that hold them.
 pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>, inputs: Inputs) -> Scales {
@@ -104,83 +85,7 @@ fn extents(schema: &schema::Scene, coordinates: &[Vec<f64>]) -> (Vec<f64>, Vec<f
     (ranges.iter().map(|(low, high)| (low + high) / 2.0).collect(), (0..inputs).map(half).collect())
 }
 
-/// A group's programs on a sample of its points, with jets to choose.
-struct Probe {
-    kernel: GroupKernel<f64>,
-    schema: &'static schema::Group,
-    count: usize,
-    stride: usize,
-    coordinates: Vec<f64>,
-    columns: Vec<f64>,
-}
-
 impl Probe {
-    fn new(kernel: GroupKernel<f64>, schema: &'static schema::Group, data: Data<'_>, at: usize, inputs: usize) -> Self {
-        let (coordinates, partners) = (&data.coordinates[at], &data.partners[at]);
-        let points = coordinates.len() / inputs;
-        let step = points.div_ceil(SAMPLE).max(1);
-        let sample: Vec<usize> = (0..points).step_by(step).collect();
-        let stride = sample.len().next_multiple_of(LANES);
-        let spread = |value: &dyn Fn(usize) -> f64| {
-            (0..stride).map(|p| value(sample[p.min(sample.len() - 1)])).collect::<Vec<_>>()
-        };
-        Self {
-            kernel,
-            schema,
-            count: sample.len(),
-            stride,
-            coordinates: [coordinates, partners]
-                .into_iter()
-                .filter(|site| !site.is_empty())
-                .flat_map(|site| (0..inputs).flat_map(move |i| spread(&|p| site[p * inputs + i])))
-                .collect(),
-            columns: data.columns[at].iter().flat_map(|column| spread(&|p| column[p])).collect(),
-        }
-    }
-
-    fn points<'a>(&'a self, jets: &'a [f64], scalars: &'a [f64], seeds: &'a [f64]) -> Points<'a, f64> {
-        Points {
-            count: self.count,
-            stride: self.stride,
-            jets,
-            coordinates: &self.coordinates,
-            columns: &self.columns,
-            scalars,
-            seeds,
-        }
-    }
-
-    /// Jets, `[jet][point]`, all points alike.
-    fn jets(&self, value: impl Fn(&schema::Jet) -> f64) -> Vec<f64> {
-        self.schema.jets.iter().flat_map(|jet| std::iter::repeat_n(value(jet), self.stride)).collect()
-    }
-
-    /// Derivatives of a row by every jet, `[jet][point]`.
-    fn sensitivities(&self, row: usize, jets: &[f64], scalars: &[f64]) -> Vec<f64> {
-        let mut seeds = vec![0.0; self.schema.rows * self.stride];
-        seeds[row * self.stride..][..self.stride].fill(1.0);
-        let mut bars = vec![0.0; (self.schema.jets.len() + scalars.len()) * self.stride];
-        self.kernel.programs.adjoint(Isa::detect(), self.points(jets, scalars, &seeds), &mut bars);
-        bars
-    }
-
-    fn rows(&self, jets: &[f64], scalars: &[f64], magnitude: bool) -> Vec<f64> {
-        let mut rows = vec![0.0; self.schema.rows * self.stride];
-        let points = self.points(jets, scalars, &[]);
-        if magnitude {
-            self.kernel.programs.magnitude(points, &mut rows);
-        } else {
-            self.kernel.programs.residual(Isa::detect(), points, &mut rows);
-        }
-        rows
-    }
-
-    fn rms(&self, values: &[f64]) -> f64 {
-        let finite = values[..self.count].iter().filter(|x| x.is_finite());
-        let (sum, count) = finite.fold((0.0, 0usize), |(sum, count), x| (sum + x * x, count + 1));
-        (sum / count.max(1) as f64).sqrt()
-    }
-
     /// Offset and scale of heads that a row observes directly: it depends on the head's value and nothing else.
     fn observe(&self, scene: &schema::Scene, scalars: &[f64], clouds: &[Vec<f64>], heads: &mut [Option<(f64, f64)>]) {
         let zero = self.jets(|_| 0.0);

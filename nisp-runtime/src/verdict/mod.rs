@@ -17,6 +17,7 @@ mod misfits;
 mod observations;
 mod outliers;
 mod outside;
+mod parts;
 mod patterns;
 pub(crate) mod settled;
 mod slow;

@@ -2,7 +2,7 @@
 
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
-use super::{Check, held, outliers, patterns, root_mean_square, taken};
+use super::{Check, held, outliers, parts, patterns, root_mean_square, taken};
 use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
@@ -102,9 +102,11 @@ fn misfit(left: &Misfits, finer: &str) -> Option<Check> {
         0.0 => 0.0,
         rms => rms / scale,
     };
-    // Instruments may be off by a share of what they show.
-    let shares = (value > limit && !left.is_robust && !left.is_exact()).then(|| share(left)).flatten();
-    let value = shares.map_or(value, |share| value.min(share));
+    // Instruments may be off by a share of what they show, or worse in a part of the record.
+    let is_doubted = value > limit && !left.is_robust && !left.is_exact();
+    let by_parts = || parts::noise(left).map(|noise| rms / noise);
+    let others = [is_doubted.then(|| share(left)), is_doubted.then(by_parts)].into_iter().flatten().flatten();
+    let value = others.fold(value, f64::min);
     let said = format!(
         "`{}` is not resolved: it is missed by {} (rms), while the data's noise is {}: {}",
         term.name,

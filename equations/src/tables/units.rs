@@ -1,0 +1,101 @@
+//! Measurements whose unit may be another one than their header says: far off what the equations compare them with, and near it
+//! in that unit. A free source would take over what is off.
+
+use std::collections::BTreeSet;
+
+use nisp::units::Number;
+use nisp::{Problem, Rest};
+use nisp_units::conversion;
+
+/// Scales that begin elsewhere, as headers name them and in words.
+const SHIFTED: [(&str, &str); 2] = [("degC", "Celsius"), ("degF", "Fahrenheit")];
+/// How much nearer measurements are to where they rest in the right unit, at most as a share.
+const NEARER: f64 = 0.35;
+/// What is on such a scale is this share of the other at most: an oven of 600 K stands in air of 293 K, not of 293 degrees.
+const LOWER: f64 = 0.35;
+/// Factors between units.
+const FACTORS: [f64; 8] = [1e3, 1e-3, 60.0, 1.0 / 60.0, 1e2, 1e-2, 1e6, 1e-6];
+/// Factors are looked for among measurements that are so many times larger or smaller than where they rest at least, and vary by
+/// less than this factor; in the right unit they are this share of it off at most.
+const FAR: f64 = 20.0;
+const NARROW: f64 = 2.0;
+const NEAR: f64 = 0.1;
+
+/// A range of values.
+type Range = [f64; 2];
+
+/// Questions about the units of measurements, one for each column.
+pub(super) fn doubts(problem: &Problem) -> Vec<String> {
+    // What is not sensibly bound is said when it is solved.
+    let rests = problem.rests().unwrap_or_default();
+    let mut asked = BTreeSet::new();
+    rests.iter().filter_map(|rest| question(rest).filter(|_| asked.insert(rest.column.name))).collect()
+}
+
+fn question(rest: &Rest) -> Option<String> {
+    let (name, unit) = (rest.column.name, rest.column.unit.text);
+    let other = shifted(rest).or_else(|| scaled(rest))?;
+    let range = |[low, high]: Range| {
+        let [low, high] = [low, high].map(short);
+        let ends = if low == high { format!("{low}") } else { format!("{low} to {high}") };
+        format!("{ends} {unit}").trim_end().to_string()
+    };
+    let measured = format!("`{name}` is measured at {}", range(rest.measured));
+    Some(match rest.by {
+        Some((group, term)) => {
+            format!("{measured}, and `{group}.{term}` would hold it at {} where nothing acts: {other}", range(rest.at))
+        }
+        None => format!("{measured}, and its bounds are {}: {other}", range(rest.at)),
+    })
+}
+
+/// The question whether one of both is on a scale with another zero.
+fn shifted(rest: &Rest) -> Option<String> {
+    let apart = gap(rest.measured, rest.at);
+    let nearer = |(header, words): &(&'static str, &'static str)| {
+        let conversion = conversion(header, rest.column.unit.text)?;
+        let moved = |range: Range| range.map(|x| conversion.of(Number::file(x)).as_declared());
+        let is_low = |one: Range, other: Range| one[0] <= LOWER * other[1];
+        let is_near = |one: Range, other: Range| is_low(one, other) && gap(moved(one), other) <= NEARER * apart;
+        let is_measured = is_near(rest.measured, rest.at);
+        (is_measured || is_near(rest.at, rest.measured)).then_some((*header, *words, is_measured))
+    };
+    let found: Vec<_> = SHIFTED.iter().filter(|_| apart > 0.0).filter_map(nearer).collect();
+    let &(header, _, is_measured) = found.first()?;
+    let words: Vec<&str> = found.iter().map(|(_, words, _)| *words).collect();
+    let (name, words) = (rest.column.name, words.join(" or "));
+    Some(if is_measured {
+        format!("is `{name}` in degrees {words}? say so in its header, as in `{name} [{header}]`")
+    } else {
+        format!("is what it is compared with in degrees {words}?")
+    })
+}
+
+/// The question whether one of both is in a unit of another size.
+fn scaled(rest: &Rest) -> Option<String> {
+    let [low, high] = magnitudes(rest.measured)?;
+    let [from, to] = magnitudes(rest.at)?;
+    let is_far = low > FAR * to || from > FAR * high;
+    let is_alike = rest.measured[0].signum() == rest.at[0].signum();
+    if !is_far || !is_alike || high > NARROW * low || to > NARROW * from {
+        return None;
+    }
+    let suits = |factor: &f64| gap([factor * low, factor * high], [from, to]) <= NEAR * to;
+    let factor = FACTORS.into_iter().find(suits)?;
+    Some(format!("is one of them in another unit, {} times too large or small?", short(factor.max(factor.recip()))))
+}
+
+/// The magnitudes of a range without zero.
+fn magnitudes([low, high]: Range) -> Option<Range> {
+    (low * high > 0.0).then(|| [low.abs().min(high.abs()), low.abs().max(high.abs())])
+}
+
+/// How far two ranges are apart.
+fn gap(one: Range, other: Range) -> f64 {
+    (one[0] - other[1]).max(other[0] - one[1]).max(0.0)
+}
+
+/// Three digits.
+fn short(value: f64) -> f64 {
+    format!("{value:.2e}").parse().unwrap_or(value)
+}
