@@ -31,6 +31,24 @@ fn level(t: f64) -> f64 {
     OPEN.iter().map(|(from, to, flow)| flow * (since(*from) - since(*to))).sum()
 }
 
+/// As many unknowns as exact values would let the inflow go to and fro all along the record, since values at the rows do not
+/// see it.
+#[test]
+fn exact_values_tell_a_valve_that_opens_and_closes() {
+    let times: Vec<f64> = (0..600).map(|row| f64::from(row) / 59.0).collect();
+    let mut problem = Problem::new(scene::<vessel::filling::Scene>());
+    problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+    problem.set_group("samples", times.clone().into(), vec![times.iter().map(|&t| level(t)).collect()]).unwrap();
+    let solution = solve(&problem, Carrier::Splines);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let estimates = solution.evaluate(&times);
+    let found = of(&estimates, "f");
+    let is_near_a_step = |t: f64| OPEN.iter().any(|(from, to, _)| (t - from).abs() < 0.2 || (t - to).abs() < 0.2);
+    for (&t, found) in times.iter().zip(&found.values).filter(|(t, _)| !is_near_a_step(**t)) {
+        assert!((found - inflow(t)).abs() < 1e-3, "t = {t}: {found} for {}", inflow(t));
+    }
+}
+
 #[test]
 fn a_valve_that_opens_and_closes_is_covered() {
     let times: Vec<f64> = (0..600).map(|row| f64::from(row) / 60.0).collect();

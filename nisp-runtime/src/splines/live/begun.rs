@@ -2,6 +2,7 @@
 
 use std::collections::VecDeque;
 
+use super::super::cells::EXACT;
 use super::event::Event;
 use super::first::First;
 use super::grid::Grid;
@@ -77,6 +78,8 @@ impl Begun {
             }
             _ => given.unwrap_or(settled),
         };
+        // Where rows are exact, cells are as many as in an answer to all of them.
+        let width = if stretch.weights.noise.is_exact() { width / EXACT } else { width };
         let grid = Grid::new(start, width, lag);
         let mut conditions: Vec<Event> = Vec::new();
         for (group, declared) in schema.groups.iter().enumerate() {
