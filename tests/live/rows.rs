@@ -111,6 +111,18 @@ fn a_smeared_step_is_not_called_sound() {
     assert!(found[..500].iter().all(Smoothed::is_sound));
 }
 
+/// A source can follow a value that no longer changes.
+#[test]
+fn a_sensor_that_fails_is_not_called_sound() {
+    let mut rows = record(900, 0.05, 0.01);
+    let last = rows[600].1;
+    rows[600..].iter_mut().for_each(|(_, y)| *y = last);
+    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    assert_eq!(found.iter().position(|found| found.is_held), Some(600));
+    assert!(found[600..].iter().all(|found| found.is_held && !found.is_sound()));
+    assert!(found[..590].iter().filter(|found| !found.is_sound()).count() < 6);
+}
+
 /// A pulse of the drive, and values that are off together, are no strays.
 #[test]
 fn what_moves_several_rows_is_no_stray() {

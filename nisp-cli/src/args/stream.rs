@@ -130,10 +130,12 @@ Answers to rows, one JSON object a line:
   nearby      the same of a dozen values about the row
   bend        how far sources bend about the row, over what their smoothness makes likely: far beside a step
   stray       true where a value of the row stands alone and was left out; the answer is what the other rows say
+  held        true where a measured value has stood still while noise says that it moves: a sensor at the end of its range, or
+              one that failed
   leaning     how far a learned parameter moves where sources may be larger, as a share of itself
   status      converged, inconsistent (misfit above 1.6 or nearby above 2: equation or parameters do not fit; bend above 3:
-              a source is rougher than it was; leaning above .1: little is known of what is learned), or error (`error`
-              says why)
+              a source is rougher than it was; leaning above .1: little is known of what is learned; held), or error
+              (`error` says why)
   latency_ms  work of the row that brought the answer
 
 Answers to frames, one JSON object a line:

@@ -195,6 +195,9 @@ impl Answers {
         if found.is_stray {
             line["stray"] = json!(true);
         }
+        if found.is_held {
+            line["held"] = json!(true);
+        }
         if found.leaning > 0.0 {
             line["leaning"] = json!(found.leaning);
         }

@@ -12,6 +12,7 @@ mod event;
 mod evidence;
 mod first;
 mod grid;
+mod held;
 mod lag;
 mod met;
 mod opening;
@@ -69,6 +70,8 @@ pub struct Smoothed {
     pub leaning: f64,
     /// Whether the row is a stray: what was observed there is far from what all other rows say, and does not count.
     pub is_stray: bool,
+    /// Whether a sensor stood still there, at the end of its range or because it failed: what it shows is no measurement.
+    pub is_held: bool,
 }
 
 impl Smoothed {
@@ -83,12 +86,14 @@ impl Smoothed {
     /// How far a learned scalar may move.
     pub const LEANING: f64 = leaning::FARTHEST;
 
-    /// True where equations and data agree, sources are as smooth as they were taken to be, and learned scalars do not rest on how large sources are taken to be.
+    /// True where equations and data agree, sources are as smooth as they were taken to be, learned scalars do not rest on how large sources
+    /// are taken to be, and no sensor stood still.
     pub fn is_sound(&self) -> bool {
         self.misfit <= Self::MISFIT
             && self.nearby <= Self::NEARBY
             && self.bend <= Self::BEND
             && self.leaning <= Self::LEANING
+            && !self.is_held
     }
 }
 

@@ -95,6 +95,12 @@ impl Layout {
         Ok(Self { measured, continuous, columns })
     }
 
+    /// The group of a column, and its number there.
+    pub(super) fn place_of(&self, column: usize) -> Option<(usize, usize)> {
+        let (group, first) = self.measured.iter().rfind(|(_, first)| *first <= column)?;
+        Some((*group, column - first))
+    }
+
     /// The events of a row: one for every group of which something was measured.
     pub(super) fn events<'a, Frame>(&'a self, row: &'a MeasuredRow<Frame>) -> impl Iterator<Item = Event> + 'a {
         let ends = self.measured.iter().skip(1).map(|(_, first)| *first).chain([self.columns.len()]);

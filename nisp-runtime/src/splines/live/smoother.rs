@@ -2,6 +2,7 @@
 
 use super::again::{OPEN, Patience, ROWS};
 use super::begun::Begun;
+use super::held::Held;
 use super::record::{Layout, MeasuredRow};
 use super::under_way::{Live, Reach};
 use super::{LagSettings, LiveError, RowColumn, Smoothed};
@@ -33,6 +34,7 @@ pub struct FixedLagSmoother {
     due: usize,
     live: Option<Live>,
     patience: Patience,
+    held: Held,
 }
 
 impl FixedLagSmoother {
@@ -59,6 +61,7 @@ impl FixedLagSmoother {
             due: settings.first_rows.max(FEWEST),
             live: None,
             patience: Patience::default(),
+            held: Held::default(),
         })
     }
 
@@ -114,6 +117,22 @@ impl FixedLagSmoother {
 
     /// Takes a row whose place is a right one.
     fn take(&mut self, row: MeasuredRow<Declared>) -> Result<Vec<Smoothed>, LiveError> {
+        let (live, layout) = (self.live.as_ref(), &self.layout);
+        let noise = |column| live.and_then(|live| live.noise(layout, column)).unwrap_or(f64::NAN);
+        let observed = (0..layout.columns.len()).filter(|&column| layout.columns[column].may_lack);
+        self.held.take(row.at, observed.map(|column| [row.values[column], noise(column)]));
+        let found = self.answered(row)?;
+        Ok(self.said(found))
+    }
+
+    /// Says of answers whether a sensor stood still there.
+    fn said(&mut self, mut found: Vec<Smoothed>) -> Vec<Smoothed> {
+        found.iter_mut().for_each(|answer| answer.is_held |= self.held.is_at(answer.at));
+        found
+    }
+
+    /// The answers that a row brings.
+    fn answered(&mut self, row: MeasuredRow<Declared>) -> Result<Vec<Smoothed>, LiveError> {
         self.last = Some(row.at);
         let mut found = Vec::new();
         if let Some(live) = &mut self.live {
@@ -170,7 +189,7 @@ impl FixedLagSmoother {
             found.extend(self.begin(0.0)?);
         }
         found.extend(self.live.as_mut().map_or_else(Vec::new, Live::finish));
-        Ok(found)
+        Ok(self.said(found))
     }
 
     fn check(&self, at: f64, values: &[f64]) -> Result<(), LiveError> {

@@ -186,6 +186,19 @@ impl Live {
         self.recent.back().is_some_and(|row| row.at >= self.place(at))
     }
 
+    /// The noise of a column in its declared unit, by what the last stretch says.
+    pub(super) fn noise(&self, layout: &Layout, column: usize) -> Option<f64> {
+        let (group, own) = layout.place_of(column)?;
+        let weights = self.window.weights();
+        let terms = self.window.bound.problem.scene().schema.groups[group].terms;
+        let found = weights
+            .noise
+            .observations
+            .iter()
+            .find(|found| found.group == group && terms[found.term].columns.contains(&own) && !found.is_exact())?;
+        Some(self.inward.values[column].inverse().of(Number::engine(found.deviation)).as_declared())
+    }
+
     /// A place in the declared unit, in the engine's.
     pub(super) fn place(&self, at: f64) -> f64 {
         self.inward.at.of(Number::declared(at)).as_engine()
@@ -246,7 +259,7 @@ impl Live {
         let (nearby, bend) = (most(&self.nearby), most(&self.bends));
         let (lag, misfit, leaning) = (outward(self.last - at), self.square.sqrt(), self.window.weights().leaning);
         let is_stray = events.iter().any(|event| event.is_stray);
-        let answer = Smoothed { at: outward(at), lag, heads, misfit, nearby, bend, leaning, is_stray };
+        let answer = Smoothed { at: outward(at), lag, heads, misfit, nearby, bend, leaning, is_stray, is_held: false };
         self.unsound = if answer.is_sound() { 0 } else { self.unsound + 1 };
         Some(answer)
     }
