@@ -21,18 +21,16 @@ impl Solver<'_> {
     /// likely one; that one where there is no such iterate.
     pub(super) fn expected(&mut self, state: State) -> Result<State, Fault> {
         let Some(found) = self.step(&state, Phase::Solve)? else { return Ok(state) };
-        let (mut all, mut mean) = (1.0, 1.0);
+        let mut sizes = vec![(1.0, found.evidence)];
         for (sign, most) in [(-1, SMALLER), (1, LARGER)] {
             for factor in (1..=most).map(|power| RATIO.powi(sign * power)) {
                 let other = self.step(&self.scaled(&state, factor), Phase::Solve)?;
-                let share = other.map_or(0.0, |other| (other.evidence - found.evidence).exp());
-                if share.is_nan() || share < FAINT {
-                    break;
-                }
-                (all, mean) = (all + share, mean + share * factor);
+                let likely = other.filter(|other| other.evidence - found.evidence >= FAINT.ln());
+                let Some(other) = likely else { break };
+                sizes.push((factor, other.evidence));
             }
         }
-        let mut other = self.scaled(&state, mean / all);
+        let mut other = self.scaled(&state, mean(&sizes));
         for _ in 0..STEPS {
             let Some(found) = self.step(&other, Phase::Solve)? else { return Ok(state) };
             if found.change < SETTLED && other.tolerance <= TOLERANCE {
@@ -52,5 +50,26 @@ impl Solver<'_> {
             scaled.classes[class].size *= factor;
         }
         scaled
+    }
+}
+
+/// The mean of sizes with these logarithms of their evidence, in its shares.
+fn mean(sizes: &[(f64, f64)]) -> f64 {
+    let most = sizes.iter().fold(f64::NEG_INFINITY, |most, (_, evidence)| most.max(*evidence));
+    let share = |evidence: f64| (evidence - most).exp();
+    let all: f64 = sizes.iter().map(|(_, evidence)| share(*evidence)).sum();
+    sizes.iter().map(|(size, evidence)| size * share(*evidence)).sum::<f64>() / all
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_mean_of_sizes_is_in_the_shares_of_their_evidence() {
+        let found = mean(&[(1.0, 3.0), (2.0, 3.0 + 3.0_f64.ln())]);
+        assert!((found - 7.0 / 4.0).abs() < 1e-15, "{found}");
+        // Of exact values a size may be likelier by more than a number can be.
+        assert_eq!(mean(&[(1.0, -5e3), (2.0, 5e3)]), 2.0);
     }
 }
