@@ -22,8 +22,8 @@ pub(crate) fn entry() -> Entry {
 }
 
 nisp::pde! {
-    /// A cube held at its top face. The contact pressure `f` presses along `m`: the terrain's normal where it is known,
-    /// elsewhere the direction of the force that was measured, which frictionless terrain has on average. Pressure `q` is a field of its own, so that nothing locks as `nu`
+    /// A cube held at its top face. The contact pressure `f` presses along the terrain's normal, as terrain without friction does:
+    /// where it touches, that is the normal of the deformed face. Pressure `q` is a field of its own, so that nothing locks as `nu`
     /// approaches one half: `q / lambda` stays finite.
     pub mod sponge {
         coordinates:
@@ -61,8 +61,6 @@ nisp::pde! {
         let eps = sym(grad(u));
         let sigma = 2 * mu * eps - q * I;
         let sigma_of_u = 2 * mu * eps + tr(eps) / compliance * I;
-        // A pressure along one direction has no torque about it.
-        let axis = force / sqrt(dot(force, force));
 
         on volume {
             balance: div(sigma) + rho * g == 0;
@@ -75,15 +73,18 @@ nisp::pde! {
             columns:
                 /// outward normal at rest
                 n: vector [1],
-                /// direction in which the terrain presses
+                /// the terrain's normal, out of it
                 m: vector [1],
                 /// distance of the terrain at rest, along `m`
                 clearance [m];
-            traction: sigma * n == f * m;
-            traction_of_u: sigma_of_u * n == f * m;
+            // The normal of the deformed face, into the sponge.
+            let across = cross(d([x, y, z] + u, x), d([x, y, z] + u, y));
+            let inwards = across / sqrt(dot(across, across));
+            traction: sigma * n == f * inwards;
+            traction_of_u: sigma_of_u * n == f * inwards;
             contact: 0 <= f _|_ clearance + dot(m, u) >= 0;
-            force_balance: integral(f * m) == force;
-            torque_balance: integral(cross(axis, cross([x, y, z], f * m))) == cross(axis, torque);
+            force_balance: integral(f * inwards) == force;
+            torque_balance: integral(cross([x, y, z], f * inwards)) == torque;
         }
         /// nothing touches them
         on sides {

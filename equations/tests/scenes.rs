@@ -217,10 +217,17 @@ fn shear_stress_is_twice_mu_times_the_tensor_strain() {
     }
 }
 
-/// The truth's pressures add up to its wrench, and press only where the gap is closed.
+/// The truth's pressures add up to its wrench along the normals of the deformed face, and press only where the gap is closed. On a
+/// ridge the normals differ: a single direction would miss its force by 5 %.
 #[test]
 fn the_sponges_truth_balances_its_wrench() {
-    let table = data("sponge/plane_1_bottom.csv");
+    balances("plane_1", [0.108564, 0.081423, 3.10815], [-0.000480836, 0.000641021, 2.45204e-9], 1.1e-4);
+    // Pressures are averaged over two millimetres, beyond the patch's edge, where a ridge falls off.
+    balances("ridge_1", [-0.0141601, 0.0106775, 1.8554], [-1.10752e-5, -0.000926869, 0.00110139], 2e-3);
+}
+
+fn balances(sample: &str, true_force: [f64; 3], true_torque: [f64; 3], closed: f64) {
+    let table = data(&format!("sponge/{sample}_bottom.csv"));
     let column = |name: &str| table.column(name).expect("a column").to_vec();
     let place = ["x", "y", "z"].map(column);
     let u = ["ux", "uy", "uz"].map(column);
@@ -228,7 +235,6 @@ fn the_sponges_truth_balances_its_wrench() {
     let normal = ["nx", "ny", "nz"].map(column);
     let known = scene::<sponge::known_terrain::Scene>();
     let bottom = group(&known, "bottom");
-    let (true_force, true_torque) = ([0.108564, 0.081423, 3.10815], [-0.000480836, 0.000641021, 2.45204e-9]);
     let value = |name: &str| match name {
         "force_x" => true_force[0],
         "force_y" => true_force[1],
@@ -237,22 +243,40 @@ fn the_sponges_truth_balances_its_wrench() {
     };
     let named = known.schema.scalars.iter().filter(|s| !s.name.is_empty());
     let given: Vec<(&str, f64)> = named.map(|s| (s.name, value(s.name))).collect();
+    // A millimetre grid: slopes are differences of neighbours.
+    let cell = |at: usize| [0, 1].map(|axis: usize| (1e3 * place[axis][at]).round() as i32);
+    let numbers: std::collections::HashMap<[i32; 2], usize> = (0..pressure.len()).map(|at| (cell(at), at)).collect();
+    let slope = |head: usize, axis: usize, at: usize| {
+        let beside = |further: i32| {
+            let mut own = cell(at);
+            own[axis] += further;
+            *numbers.get(&own).unwrap_or(&at)
+        };
+        let (before, after) = (beside(-1), beside(1));
+        (u[head][after] - u[head][before]) / (place[axis][after] - place[axis][before])
+    };
     let (mut force, mut torque) = ([0.0; 3], [0.0; 3]);
     for at in 0..pressure.len() {
         let coordinates: [f64; 3] = std::array::from_fn(|i| place[i][at]);
         let m: [f64; 3] = std::array::from_fn(|i| normal[i][at]);
         let lift: f64 = (0..3).map(|i| m[i] * u[i][at]).sum();
         let columns = [0.0, 0.0, -1.0, m[0], m[1], m[2], gap[at] - lift];
-        let state = |head: &str, orders: &[usize]| match (head, orders.iter().sum::<usize>()) {
-            ("u_x", 0) => u[0][at],
-            ("u_y", 0) => u[1][at],
-            ("u_z", 0) => u[2][at],
-            ("f", _) => before_softplus(pressure[at]),
+        let of_head = |head: usize, orders: &[usize]| match orders {
+            [0, 0, 0] => u[head][at],
+            [1, 0, 0] => slope(head, 0, at),
+            [0, 1, 0] => slope(head, 1, at),
+            _ => 0.0,
+        };
+        let state = |head: &str, orders: &[usize]| match head {
+            "u_x" => of_head(0, orders),
+            "u_y" => of_head(1, orders),
+            "u_z" => of_head(2, orders),
+            "f" => before_softplus(pressure[at]),
             _ => 0.0,
         };
         let found =
             rows(known, "bottom", &given, &Point { coordinates: &coordinates, columns: &columns, state: &state });
-        // A face of 46 mm on a millimetre grid with its edges: corners count a quarter.
+        // A face of 46 mm with its edges: corners count a quarter.
         let edges = coordinates[..2].iter().filter(|x| x.abs() > 0.0229).count();
         let area = 1e-6 / f64::from(1 << edges);
         for i in 0..3 {
@@ -261,16 +285,10 @@ fn the_sponges_truth_balances_its_wrench() {
         }
         // With sides of one pascal and one metre, f + g - sqrt(f^2 + g^2) is close to the smaller side.
         let contact = of_term(bottom, "contact", &found)[0];
-        assert!(contact.abs() <= 1.1e-4, "{contact} at {coordinates:?}: gap {}", gap[at]);
-    }
-    // The part of the torque across the force, turned by a right angle.
-    let size = true_force.iter().map(|x| x * x).sum::<f64>().sqrt();
-    let turned = |i: usize, j: usize| (true_force[i] * true_torque[j] - true_force[j] * true_torque[i]) / size;
-    let across = [turned(1, 2), turned(2, 0), turned(0, 1)];
-    for i in 0..3 {
-        assert!((force[i] - true_force[i]).abs() <= 5e-3 * 3.1, "{force:?}");
+        assert!(contact.abs() <= closed, "{contact} at {coordinates:?}: gap {}", gap[at]);
     }
     for i in 0..3 {
-        assert!((torque[i] - across[i]).abs() <= 1e-2 * 3.1 * 0.023, "{torque:?}");
+        assert!((force[i] - true_force[i]).abs() <= 1e-2 * true_force[2], "{sample}: {force:?}");
+        assert!((torque[i] - true_torque[i]).abs() <= 1e-2 * true_force[2] * 0.023, "{sample}: {torque:?}");
     }
 }

@@ -1,14 +1,14 @@
 //! Binds the sponge's scenes to a cloud of its sides and the wrench that it carries.
 
 use nisp::local::{Local, Patches};
-use nisp::units::Scale;
+use nisp::units::{Number, Scale};
 use nisp_data::domain::{Domain, Points, Sampling};
 use serde::Deserialize;
 
 use super::given::{Given, Positive, Sampled};
 use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
-use crate::contact::{Contact, ContactRival, Face, Load, Rule, Surface};
+use crate::contact::{Contact, ContactRival, Face, Load, Rule, Surface, length};
 use crate::entry::{Entry, Size};
 use crate::frames::{Frames, bind_cloud};
 use crate::prepared::Prepared;
@@ -71,10 +71,11 @@ const POINTS: (usize, usize, usize) = (1500, 2400, 4800);
 /// The same for local functions: some three points along every cell.
 const LOCAL_POINTS: (usize, usize, usize) = (13_824, 6144, 12_696);
 /// Local functions: cells of nearly six millimetres on the paper's sponge.
-const LOCAL: Local =
-    Local { cells: 8, coarser: 3, degree: 2, tests: 2, finer: 2, source_dimensions: 2, patches: Some(PATCHES) };
-/// A patch carries some hundreds of pascals.
-const PATCHES: Patches = Patches { level: 500.0, edges: 0.15, area: 0.75, end: 0.7 };
+const LOCAL: Local = Local { cells: 8, coarser: 3, degree: 2, tests: 2, finer: 2, source_dimensions: 2, patches: None };
+/// The prior of patches; their level is that of a force that is spread over the touched face, see [`COVERED`].
+const PATCHES: Patches = Patches { level: f64::NAN, edges: 0.15, area: 0.75, end: 0.7 };
+/// Share of the face over which the force is spread at its least pressure: terrain seldom touches more.
+const COVERED: f64 = 0.75;
 /// Nodes along an edge where the answer is wanted: a millimetre apart on the paper's sponge.
 const NODES: usize = 47;
 /// Nodes along an edge of the surface in pictures.
@@ -123,7 +124,12 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let presses = direction(wrench[0]);
 
     let cube = Domain::cuboid(&low, &high)?;
-    let local = (!request.network).then_some(LOCAL);
+    let least = Number::si(length(wrench[0]) / (COVERED * side * side));
+    let patches = schema.heads.iter().find(|head| head.source).map(|head| {
+        let level = head.unit.factor.back(least).as_declared();
+        Patches { level, ..PATCHES }
+    });
+    let local = (!request.network).then_some(Local { patches, ..LOCAL });
     let (counts, sampling) = if local.is_some() { (LOCAL_POINTS, Sampling::Grid) } else { (POINTS, Sampling::Sobol) };
     for group in schema.groups {
         let count = if group.name == "surface" { counts.2 } else { counts.1 };
@@ -133,7 +139,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
             "top" => cube.boundary(count).select(|_, normal| normal[2] > 0.5),
             _ => cube.boundary(count).select(|_, normal| normal[2].abs() < 0.5),
         };
-        let columns = group.columns.iter().map(|column| normals(&points, column.name, presses)).collect();
+        let columns = group.columns.iter().map(|column| normals(&points, column.name)).collect();
         let weights = points.weights.unwrap_or_default();
         problem.set_group(
             group.name,
@@ -151,7 +157,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         unit: Scale::new(1e-3),
         pressure: Some("f"),
         rule: RULE,
-        load: Load::Fixed(presses),
+        load: Load::Normal(presses),
         face: Face::new(3, on_the_bottom(FINE, side))?,
         surface: surface(side),
         near: frames.near(),
@@ -218,12 +224,12 @@ fn weight(force: [f64; 3], side: f64) -> [[f64; 3]; 2] {
 
 /// The direction in which frictionless terrain presses, as far as a force tells: its own, or upwards if there is none.
 fn direction(force: [f64; 3]) -> [f64; 3] {
-    let size = force.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let size = length(force);
     if size > 0.0 && force[2] > 0.0 { force.map(|x| x / size) } else { [0.0, 0.0, 1.0] }
 }
 
-/// A column of the sponge's groups: the outward normal `n`, or the direction `m` in which the terrain presses.
-fn normals(points: &Points, column: &str, presses: [f64; 3]) -> Vec<f64> {
+/// A component of the outward normal, by its name.
+fn normals(points: &Points, column: &str) -> Vec<f64> {
     let axis = if column.ends_with("_x") {
         0
     } else if column.ends_with("_y") {
@@ -231,9 +237,6 @@ fn normals(points: &Points, column: &str, presses: [f64; 3]) -> Vec<f64> {
     } else {
         2
     };
-    if column.starts_with('m') {
-        return vec![presses[axis]; points.len()];
-    }
     points.normals.iter().flatten().skip(axis).step_by(3).copied().collect()
 }
 

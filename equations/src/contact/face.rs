@@ -10,6 +10,9 @@ pub enum Load {
     Fixed([f64; 3]),
     /// Against the outward normal of the deformed surface, per deformed area.
     Follower,
+    /// Along the normal of the deformed surface, per area at rest: of its two sides the one that this unit vector points to. Along the
+    /// vector itself where nothing is known of how the surface is deformed.
+    Normal([f64; 3]),
 }
 
 /// Triangles between points at rest, counterclockwise seen from outside. Lengths are in metres.
@@ -70,6 +73,14 @@ impl Face {
                 areas.map(|area| direction.map(|x| area * x)).collect()
             }
             Load::Follower => self.area_vectors(moved).into_iter().map(|vector| vector.map(|x| -x)).collect(),
+            Load::Normal(side) => {
+                let areas = self.areas(&self.at_rest()).into_iter();
+                let along = |(area, vector): (f64, [f64; 3])| match dot(vector, side) {
+                    0.0 => [0.0; 3],
+                    side => vector.map(|x| x * area * side.signum() / length(vector)),
+                };
+                areas.zip(self.area_vectors(moved)).map(along).collect()
+            }
         }
     }
 }
@@ -90,6 +101,10 @@ pub(super) fn weighted_sum(weights: &[f64], vectors: &[[f64; 3]]) -> [f64; 3] {
 
 pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| a[axis] - b[axis])
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| a[axis] * b[axis]).sum()
 }
 
 fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
@@ -135,5 +150,12 @@ mod tests {
         // The normal is (-cos, 0, sin) of pi x. The integrals over x of cos^2 and of sin are 1/2 and 2 / pi.
         let [x, y, z] = weighted_sum(&pressure, &forces);
         assert!((x + 0.5).abs() < 1e-3 && y.abs() < 1e-12 && (z + 2.0 / PI).abs() < 1e-3, "{x} {y} {z}");
+        // The area is kept, so that a pressure per area at rest pushes alike; twice as large a cylinder changes nothing then.
+        let below = Load::Normal([0.0, 0.0, -1.0]);
+        let doubled: Vec<[f64; 3]> = moved.iter().map(|place| place.map(|x| 2.0 * x)).collect();
+        for places in [&moved, &doubled] {
+            let [own_x, own_y, own_z] = weighted_sum(&pressure, &face.forces(below, places));
+            assert!((own_x - x).abs() < 1e-3 && own_y.abs() < 1e-12 && (own_z - z).abs() < 1e-3, "{own_x} {own_z}");
+        }
     }
 }

@@ -86,12 +86,13 @@ impl Contact {
     pub fn score(&self, values: &Values<'_>, truth: Option<&Truth>) -> Option<ContactScore> {
         let points = &self.face.points;
         let pressures = values(self.pressure?, points)?;
-        let moved = match self.moved(points, &self.displacement.map(|name| values(name, points))) {
-            Some(moved) => moved,
-            None if self.load == Load::Follower => return None,
-            None => self.face.at_rest(),
+        let moved = self.moved(points, &self.displacement.map(|name| values(name, points)));
+        let (moved, load) = match (moved, self.load) {
+            (Some(moved), load) => (moved, load),
+            (None, Load::Follower) => return None,
+            (None, Load::Fixed(direction) | Load::Normal(direction)) => (self.face.at_rest(), Load::Fixed(direction)),
         };
-        let forces = self.face.forces(self.load, &moved);
+        let forces = self.face.forces(load, &moved);
         let force = weighted_sum(&pressures, &forces);
         let size = length(force);
         let along = |own: &[f64; 3]| (0..3).map(|axis| own[axis] * force[axis]).sum::<f64>() / size;

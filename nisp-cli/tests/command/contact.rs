@@ -103,7 +103,7 @@ fn copy(place: &Place, names: &[&str]) {
 /// What a short run answers, up to its last digit.
 fn source(place: &Place, line: &str) -> String {
     let ran =
-        place.run(&format!("solve {line} --carrier network --iterations 3 --width 4 --threads 1 --json --out out"));
+        place.run(&format!("solve {line} --carrier network --iterations 2 --width 4 --threads 1 --json --out out"));
     assert!(matches!(ran.code, Some(0 | 3)), "{line}: {}", ran.stderr);
     fs::read_to_string(place.path("out/source.csv")).unwrap()
         + &fs::read_to_string(place.path("out/state.csv")).unwrap()
@@ -155,6 +155,20 @@ fn a_wrist_that_carries_the_weight_says_the_same() {
     let size = contact.iter().fold(0.0_f64, |most, f| most.max(f.abs()));
     assert!(contact.iter().zip(&wrist).all(|(a, b)| (a - b).abs() < 1e-3 * size));
     assert_ne!(contact, wrist);
+}
+
+/// Terrain presses along its normals, which differ on a ridge.
+#[test]
+fn a_ridge_is_found_where_it_is() {
+    let place = Place::new();
+    let file = |ending: &str| data(&format!("sponge/ridge_1{ending}")).display().to_string();
+    let (sample, truth) = (file(".toml"), file("_bottom.csv"));
+    let ran = place.run(&format!("solve sponge --sample {sample} --cloud 1 --truth {truth} --budget 300 --json"));
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    let found = object(&ran.stdout);
+    let of = |name: &str| found["errors"][name].as_f64().unwrap();
+    assert!(of("iou") > 0.6 && of("patch_chamfer_mm2") < 12.0, "{}", found["errors"]);
+    assert!(of("force_error_N") < 0.02 * of("force_N"), "{}", found["errors"]);
 }
 
 #[test]
