@@ -13,8 +13,11 @@ const SHIFTED: [(&str, &str); 2] = [("degC", "Celsius"), ("degF", "Fahrenheit")]
 const NEARER: f64 = 0.35;
 /// What is on such a scale is this share of the other at most: an oven of 600 K stands in air of 293 K, not of 293 degrees.
 const LOWER: f64 = 0.35;
-/// Factors between units.
-const FACTORS: [f64; 8] = [1e3, 1e-3, 60.0, 1.0 / 60.0, 1e2, 1e-2, 1e6, 1e-6];
+/// Factors between units, and those between units that have a time in them.
+const FACTORS: [f64; 6] = [1e3, 1e-3, 1e2, 1e-2, 1e6, 1e-6];
+const FACTORS_OF_TIME: [f64; 4] = [60.0, 1.0 / 60.0, 3600.0, 1.0 / 3600.0];
+/// The second among the base units.
+const SECOND: usize = 2;
 /// Factors are looked for among measurements that are so many times larger or smaller than where they rest at least, and vary by
 /// less than this factor; in the right unit they are this share of it off at most.
 const FAR: f64 = 20.0;
@@ -81,7 +84,8 @@ fn scaled(rest: &Rest) -> Option<String> {
         return None;
     }
     let suits = |factor: &f64| gap([factor * low, factor * high], [from, to]) <= NEAR * to;
-    let factor = FACTORS.into_iter().find(suits)?;
+    let has_time = rest.column.unit.exponents[SECOND] != 0.0;
+    let factor = FACTORS.into_iter().chain(FACTORS_OF_TIME.into_iter().filter(|_| has_time)).find(suits)?;
     Some(format!("is one of them in another unit, {} times too large or small?", short(factor.max(factor.recip()))))
 }
 

@@ -41,6 +41,13 @@ fn degrees_under_kelvins_are_suspected() {
     assert!(said.contains(ASKED) && said.contains("Fahrenheit"), "{said}");
     let said = checked(ROOM, "T [K]", |t| 1e3 * kelvins(t));
     assert!(said.contains("is one of them in another unit, 1000 times too large or small?"), "{said}");
+    // A minute for a second is asked of a flow, and not of a temperature.
+    let said = checked(ROOM, "T [K]", |t| 60.0 * kelvins(t));
+    assert!(!said.contains("another unit"), "{said}");
+    let flow = ROOM.replace("T [K]", "T [m^3/s]").replace("out [K] = 278", "out [m^3/s] = 278");
+    let flow = flow.replace("C [kJ/K]", "C [kJ s/m^3]").replace("h [W/K]", "h [W s/m^3]");
+    let said = checked(&flow, "T [m^3/s]", |t| 60.0 * kelvins(t));
+    assert!(said.contains("is one of them in another unit, 60 times too large or small?"), "{said}");
     // What it is compared with: a parameter, a fourth power's root, a bound.
     let said = checked(&ROOM.replace("278", "5"), "T [K]", kelvins);
     assert!(said.contains("is what it is compared with in degrees Celsius"), "{said}");
