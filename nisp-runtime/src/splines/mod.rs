@@ -17,6 +17,7 @@ mod expected;
 mod group;
 mod heads;
 mod iterate;
+mod jumps;
 mod kept;
 mod leaning;
 pub mod live;
