@@ -9,6 +9,7 @@ mod equations;
 mod few;
 #[expect(deprecated, reason = "a lint says that nothing pins a field, which is what is asked here")]
 mod free;
+mod gaps;
 mod leaning;
 mod measured;
 mod oscillator;
