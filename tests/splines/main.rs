@@ -3,6 +3,7 @@
 use nisp::solve::driver::Flow;
 use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 
+mod blurred;
 mod bounded;
 mod driven;
 mod equations;

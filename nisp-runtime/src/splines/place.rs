@@ -36,6 +36,8 @@ pub(super) struct Place {
     varied: usize,
     rounds: u64,
     before: f64,
+    /// Whether equations have been as uncertain as their columns, too, or need not be any more.
+    pub(super) is_blurred: bool,
     /// Whether one roughness describes all of the record: a part of it has said so.
     pub(super) is_even: bool,
 }
@@ -58,6 +60,7 @@ impl Place {
             state,
             tried: Vec::new(),
             is_again: false,
+            is_blurred: false,
             varied: 0,
             rounds: 0,
             before: f64::MIN,
@@ -118,13 +121,14 @@ impl Place {
     /// the evidence rules out is not tried with other orders.
     pub(super) fn next(&mut self, evidence: f64) {
         let kind = self.kinds.remove(0);
-        let is_same = |tried: &Tried| tried.kind == kind;
+        let blurred = self.state.blurred;
+        let is_same = |tried: &Tried| tried.kind == kind && tried.state.blurred == blurred;
         if !self.tried.iter().any(|tried| is_same(tried) && tried.evidence >= evidence) {
             self.tried.retain(|tried| !is_same(tried));
             self.tried.push(Tried { kind, evidence, state: self.state.clone() });
         }
         let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
-        let tried = || self.tried.iter();
+        let tried = || self.tried.iter().filter(|tried| tried.state.blurred == blurred);
         let best = most(&mut tried());
         // Of a course that has not been tried nothing is known.
         self.kinds.retain(|&kind| {
@@ -132,6 +136,23 @@ impl Place {
             let own = most(&mut tried().filter(is_alike));
             own.is_nan() || own >= best - NEAR
         });
+    }
+
+    /// Starts again with equations that know no better than their columns.
+    pub(super) fn blur(&mut self, state: State, kinds: Vec<usize>) {
+        self.again(state, kinds);
+        self.is_blurred = true;
+    }
+
+    /// Leaves ends of one sort: those whose equations know no better than their columns, unless the evidence rules these out. A drive
+    /// that is as fast as noise is rare, and where the evidence does not tell, noise is what it looks like.
+    pub(super) fn choose_blurred(&mut self) {
+        let best = |blurred: bool| {
+            let own = self.tried.iter().filter(|tried| tried.state.blurred == blurred);
+            own.map(|tried| tried.evidence).fold(f64::MIN, f64::max)
+        };
+        let is_kept = best(true) > f64::MIN && best(true) >= best(false) - NEAR;
+        self.tried.retain(|tried| tried.state.blurred == is_kept);
     }
 
     /// The kind with the largest evidence.
@@ -157,6 +178,7 @@ impl Place {
             .with_counter("since", self.since)
             .with_counter("iterations", self.state.step)
             .with_counter("again", u64::from(self.is_again))
+            .with_counter("blurred tried", u64::from(self.is_blurred))
             .with_counter("even", u64::from(self.is_even))
             .with_counter("varied", self.varied as u64)
             .with_counter("rounds", self.rounds)
@@ -195,6 +217,7 @@ impl Place {
             return Err(Fault::state("uneven"));
         }
         self.since = saved.counter("since")?;
+        self.is_blurred = saved.counter("blurred tried")? == 1;
         self.is_even = saved.counter("even")? == 1;
         self.varied = saved.counter("varied")? as usize;
         [self.before] = saved.scalars("before")?;
