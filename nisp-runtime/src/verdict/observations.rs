@@ -190,9 +190,7 @@ fn there(bound: &Bound, group: usize, column: usize) -> (Vec<f64>, Vec<f64>) {
 /// Values of a measured column that stand alone.
 fn lonely(left: &Misfits, column: usize, noise: ObservationNoise) -> Check {
     let (places, values) = there(left.bound, left.group, column);
-    // What is noisy for its size or its part of the record does not stand alone there.
-    let level = parts::noise(left).unwrap_or(0.0).max(noise.deviation);
-    let deviation = level.max(ROUNDING * noise.spread);
+    let deviation = noise.deviation.max(ROUNDING * noise.spread);
     let (found, weight) = outliers::weight(&places, &values, deviation);
     let (stand, them) = if found.len() == 1 { ("value stands", "it") } else { ("values stand", "them") };
     let said = format!(
