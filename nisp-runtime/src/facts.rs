@@ -104,6 +104,28 @@ impl Facts {
         found
     }
 
+    /// By row, how far noise of its columns puts it off (root mean square).
+    pub(crate) fn blurs(
+        &self,
+        programs: &dyn Programs<f64>,
+        group: &schema::Group,
+        scalars: &[f64],
+        noise: &[f64],
+    ) -> Vec<f64> {
+        let own = self.rows(programs, group, scalars);
+        let mut squares = vec![0.0; group.rows];
+        for (column, noise) in noise.iter().enumerate().filter(|(_, noise)| **noise > 0.0) {
+            let mut moved = self.columns.clone();
+            moved[column * self.stride..][..self.stride].iter_mut().for_each(|value| *value += noise);
+            let moved = self.rows_with(programs, group, (&self.jets, &moved), scalars);
+            for (square, (own, moved)) in squares.iter_mut().zip(own.iter().zip(moved)) {
+                let off = root_mean_square(own.iter().zip(moved).map(|(own, moved)| moved - own));
+                *square += if off.is_finite() { off * off } else { 0.0 };
+            }
+        }
+        squares.into_iter().map(f64::sqrt).collect()
+    }
+
     /// Derivatives of a row by the jets, `[jet][point]`.
     pub(crate) fn slopes(
         &self,

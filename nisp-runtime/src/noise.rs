@@ -1,8 +1,13 @@
 //! How noisy the data are, before anything is fitted to them.
 
+mod differences;
 mod fits;
+mod given;
 
 use rayon::prelude::*;
+
+pub(crate) use self::differences::{EIGHT, by_differences, differences, of_differences};
+pub(crate) use self::given::of_given;
 
 use self::fits::{FEW_CLEAN, HALF, by_fits, quantile};
 use crate::facts::spread;
@@ -186,15 +191,6 @@ pub fn deviation(values: &[f64]) -> f64 {
 
 /// The median magnitude of a standard normal number.
 const MEDIAN: f64 = 0.674_489_75;
-
-/// From eighth differences, of which a signal that is sampled well has none: their median magnitude, so that a layer or an
-/// outlier does not count. Noise of deviation s gives differences of deviation `sqrt(12870) s`.
-pub(crate) fn by_differences(values: &[f64]) -> Option<f64> {
-    const EIGHTH: [f64; 9] = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0];
-    let difference = |window: &[f64]| window.iter().zip(EIGHTH).map(|(y, c)| c * y).sum::<f64>().abs();
-    let differences: Vec<f64> = values.windows(EIGHTH.len()).map(difference).collect();
-    Some(median(differences)? / (MEDIAN * 12870.0_f64.sqrt()))
-}
 
 /// The same where outliers are expected: with one value of ten off, most eighth differences are. Low differences have fewer
 /// values in them and more of the signal; the order that leaves least is taken.

@@ -3,12 +3,14 @@
 use nisp::solve::driver::Flow;
 use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 
+mod blurred;
 mod bounded;
 mod driven;
 mod equations;
 mod few;
 #[expect(deprecated, reason = "a lint says that nothing pins a field, which is what is asked here")]
 mod free;
+mod gaps;
 mod leaning;
 mod measured;
 mod oscillator;
@@ -22,6 +24,31 @@ pub(crate) fn normals(seed: u64) -> impl FnMut() -> f64 {
         (state >> 11) as f64 / (1u64 << 53) as f64
     };
     move || (0..12).map(|_| uniform()).sum::<f64>() - 6.0
+}
+
+/// States of `d y / d t = slope(t, y)` at times that rise, from the first on: classical steps of Runge and Kutta, twenty from one time to
+/// the next.
+pub(crate) fn simulated<const N: usize>(
+    times: &[f64],
+    start: [f64; N],
+    slope: impl Fn(f64, [f64; N]) -> [f64; N],
+) -> Vec<[f64; N]> {
+    let moved = |y: [f64; N], k: [f64; N], by: f64| std::array::from_fn(|i| y[i] + by * k[i]);
+    let mut states = vec![start];
+    for pair in times.windows(2) {
+        let step = (pair[1] - pair[0]) / 20.0;
+        let mut y = states[states.len() - 1];
+        for at in 0..20 {
+            let t = pair[0] + step * f64::from(at);
+            let a = slope(t, y);
+            let b = slope(t + 0.5 * step, moved(y, a, 0.5 * step));
+            let c = slope(t + 0.5 * step, moved(y, b, 0.5 * step));
+            let d = slope(t + step, moved(y, c, step));
+            y = std::array::from_fn(|i| y[i] + step / 6.0 * (a[i] + 2.0 * b[i] + 2.0 * c[i] + d[i]));
+        }
+        states.push(y);
+    }
+    states
 }
 
 /// Steps end the run, not time.

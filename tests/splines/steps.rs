@@ -3,7 +3,7 @@
 use nisp::solve::driver::Status;
 use nisp::{Carrier, Problem, scene};
 
-use crate::{normals, of, solve};
+use crate::{normals, of, simulated, solve};
 
 nisp::pde! {
     /// A vessel that drains, filled through a valve.
@@ -15,6 +15,20 @@ nisp::pde! {
         on motion { level: d(h, t) == f - h / drain; }
         on samples { observe h; }
         scene filling { }
+    }
+}
+
+nisp::pde! {
+    /// A cart on a spring, pushed by what a load cell measures.
+    mod cart {
+        units: off;
+        coordinates: t;
+        fields: x;
+        sources: f;
+        parameters: m > 0 = 1;
+        on motion { balance: m * d(x, t, 2) + 2 * d(x, t) + 6 * x == f; }
+        on samples { observe x; observe f; }
+        scene pushed { learn m; }
     }
 }
 
@@ -73,4 +87,32 @@ fn a_valve_that_opens_and_closes_is_covered() {
         (0..times.len()).filter(|&row| (8.0..9.5).contains(&times[row])).map(|row| bars[row]).collect();
     let typical = quiet.iter().sum::<f64>() / quiet.len() as f64;
     assert!(typical < 0.02, "{typical}");
+}
+
+/// Where between two rows the force steps is what the cart says.
+#[test]
+fn a_measured_force_may_step_between_two_rows() {
+    const ROWS: usize = 300;
+    const MASS: f64 = 1.7;
+    let times: Vec<f64> = (0..ROWS).map(|row| row as f64 / 15.0).collect();
+    // Steps seven twentieths of the way from a row to the next.
+    let force = |t: f64| if (15.0 * t - 8.35).rem_euclid(82.0) < 41.0 - 1e-9 { 4.0 } else { -1.0 };
+    let states = simulated(&times, [0.0; 2], |t, [x, v]| [v, (force(t + 1e-9) - 2.0 * v - 6.0 * x) / MASS]);
+    for seed in 1..4 {
+        let mut normal = normals(seed);
+        let x = states.iter().map(|state| state[0] + 0.005 * normal()).collect();
+        let f = times.iter().map(|&t| force(t) + 0.08 * normal()).collect();
+        let mut problem = Problem::new(scene::<cart::pushed::Scene>());
+        problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+        problem.set_group("samples", times.clone().into(), vec![x, f]).unwrap();
+        let mut solution = solve(&problem, Carrier::Splines);
+        assert_eq!(solution.status, Status::Converged, "{seed}: {:?}", solution.verdict);
+        let learned = solution.learned()[0].clone();
+        assert!((learned.value / MASS - 1.0).abs() < 0.02, "{learned:?}");
+        let estimates = solution.evaluate_with_errors(&times);
+        let found = of(&estimates, "f");
+        let bars = found.deviations.as_ref().expect("a sound answer has error bars");
+        let rows = (0..ROWS).filter(|&row| (found.values[row] - force(times[row])).abs() > 2.0 * bars[row]);
+        assert!(rows.count() < ROWS / 10);
+    }
 }

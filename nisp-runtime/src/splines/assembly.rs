@@ -24,6 +24,7 @@ impl Solver<'_> {
         match declared.kind {
             TermKind::Observation => state.classes[self.classes[group][term]].size,
             _ if declared.within.is_some() => self.sizes[group][row],
+            _ if state.blurred => (state.tolerance * self.sizes[group][row]).hypot(self.blurs[group][row]),
             _ => state.tolerance * self.sizes[group][row],
         }
     }

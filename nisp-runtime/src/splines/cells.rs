@@ -2,6 +2,7 @@
 
 use super::basis::{Basis, HIGHEST_DEGREE};
 use super::drives;
+use super::jumps::jumps;
 use super::prior;
 use super::resolved;
 use crate::noise::Noise;
@@ -13,6 +14,8 @@ const FEWEST: f64 = 200.0;
 /// Cells from a measurement to the next where they are exact. With one, as many unknowns as measurements would be left no choice:
 /// a jump between two of them would be met by a source that goes to and fro all along the record.
 pub(super) const EXACT: f64 = 2.0;
+/// Cells from a measurement to the next where what is measured jumps in between.
+const JUMP: f64 = 4.0;
 /// Measurements closer to each other than this share of their mean distance have one breakpoint.
 const CLOSE: f64 = 0.25;
 /// Degree of the equations' residuals: cubic splines are good to the fourth power of a cell.
@@ -25,7 +28,8 @@ pub(super) const MANY: usize = 8;
 /// Breakpoints of the cells: one at every place of a measurement, and more where those are far apart; fewer where a record is
 /// long and says no more.
 pub(super) fn breakpoints(bound: &Bound, noise: &Noise) -> Vec<f64> {
-    let all = all_breakpoints(bound, stretches(bound), if noise.is_exact() { EXACT } else { 1.0 });
+    let least = if noise.is_exact() { EXACT } else { 1.0 };
+    let all = all_breakpoints(bound, stretches(bound), least, &jumps(bound, noise));
     // On wider cells equations that hold at their own points would be more than the unknowns.
     let is_told = all.len() <= LONG && asked(bound).is_some();
     if is_told || noise.observations.is_empty() {
@@ -45,7 +49,7 @@ pub(super) fn stretches(bound: &Bound) -> bool {
 
 /// Breakpoints at all measurements, with so many cells in between at `least`, and more at the start where it `stretches`; as many as equations can tell where those hold at
 /// their own points.
-fn all_breakpoints(bound: &Bound, stretches: bool, least: f64) -> Vec<f64> {
+fn all_breakpoints(bound: &Bound, stretches: bool, least: f64, jumps: &[[f64; 2]]) -> Vec<f64> {
     if let Some(points) = asked(bound) {
         return told_by(bound, &points);
     }
@@ -63,6 +67,8 @@ fn all_breakpoints(bound: &Bound, stretches: bool, least: f64) -> Vec<f64> {
         let share = |at: f64| (at - low) / (high - low);
         // The layer at the start is as wide as the rest along the stretched time.
         let pace = if stretches { (0.5 * prior::pace(share(0.5 * (gap[0] + gap[1])))).max(1.0) } else { 1.0 };
+        let is_jump = jumps.iter().any(|jump| jump[0] < gap[1] && gap[0] < jump[1]);
+        let least = if is_jump { JUMP.max(least) } else { least };
         let pieces = (FEWEST * pace * (share(gap[1]) - share(gap[0]))).ceil().max(least);
         let piece = |k: u32| gap[0] + (gap[1] - gap[0]) * f64::from(k) / pieces;
         breakpoints.extend((1..pieces as u32).map(piece));

@@ -64,7 +64,7 @@ impl Run<'_> {
         {
             solver.set_smoothness(KINDS[tried.kind], &tried.state);
             let Some(next) = solver.uneven(&tried.state)? else {
-                place.leave_course();
+                place.leave_varied();
                 continue;
             };
             place.vary(&tried, next);

@@ -14,6 +14,8 @@ pub(super) struct State {
     pub(super) uneven: Vec<f64>,
     /// What the logarithm of the evidence loses for that: one roughness all along is likelier before any measurement.
     pub(super) doubt: f64,
+    /// Whether equations may be missed by as much as the noise of their columns puts them off.
+    pub(super) blurred: bool,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
@@ -38,6 +40,7 @@ impl State {
             .with(&format!("{prefix}uneven"), &self.uneven)
             .with(&format!("{prefix}doubt"), &[self.doubt])
             .with(&format!("{prefix}tolerance"), &[self.tolerance])
+            .with_counter(&format!("{prefix}blurred"), u64::from(self.blurred))
             .with_counter(&format!("{prefix}convex"), u64::from(self.convex))
             .with_counter(&format!("{prefix}step"), self.step)
     }
@@ -50,6 +53,7 @@ impl State {
         self.uneven = saved.vector(&format!("{prefix}uneven"))?.to_vec();
         [self.doubt] = saved.scalars(&format!("{prefix}doubt"))?;
         [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
+        self.blurred = saved.counter(&format!("{prefix}blurred"))? == 1;
         self.convex = saved.counter(&format!("{prefix}convex"))? == 1;
         self.step = saved.counter(&format!("{prefix}step"))?;
         Ok(())

@@ -9,6 +9,7 @@
 mod assembly;
 mod bars;
 mod basis;
+mod blurred;
 mod bounded;
 mod cells;
 mod course;
@@ -17,6 +18,7 @@ mod expected;
 mod group;
 mod heads;
 mod iterate;
+mod jumps;
 mod kept;
 mod leaning;
 pub mod live;
@@ -140,13 +142,22 @@ pub(crate) fn solve(
             let mut trial = Place::first(solver.first(noise), kinds(solver.has_sources(), false, noise.is_exact()));
             // A run that ends here begins anew.
             let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
-            if run.go(&mut solver, &mut trial, &save)? == Status::Converged
+            let mut ended = run.go(&mut solver, &mut trial, &save)?;
+            if ended == Status::Converged
+                && let Some(blurred) = solver.blurred(noise, &trial)
+            {
+                trial.blur(blurred, kinds(solver.has_sources(), false, noise.is_exact()));
+                ended = run.go(&mut solver, &mut trial, &save)?;
+                trial.choose_blurred();
+            }
+            if ended == Status::Converged
                 && (!solver.has_sources() || run.vary(&mut solver, &mut trial, &save)? == Flow::Continue)
                 && let Some(Tried { kind, state, .. }) = trial.best().cloned()
             {
                 place.kinds = vec![kind];
                 place.state.classes = state.classes;
                 place.state.step = trial.state.step;
+                (place.state.blurred, place.is_blurred) = (state.blurred, trial.is_blurred);
                 // What one roughness describes in a part, it describes in all.
                 place.is_even = state.uneven.is_empty();
             }
@@ -161,6 +172,16 @@ pub(crate) fn solve(
         // Where the second start does not end, the first has.
         let ended = run.go(&mut solver, &mut place, &Place::save)?;
         status = if ended == Status::Interrupted { ended } else { status };
+    }
+    if status == Status::Converged
+        && let Some(blurred) = solver.blurred(noise, &place)
+    {
+        place.blur(blurred, kinds(solver.has_sources(), cells::stretches(bound), noise.is_exact()));
+        let ended = run.go(&mut solver, &mut place, &Place::save)?;
+        status = if ended == Status::Interrupted { ended } else { status };
+    }
+    if status == Status::Converged {
+        place.choose_blurred();
     }
     if status == Status::Converged
         && solver.has_sources()

@@ -2,14 +2,17 @@
 
 use super::METHOD;
 use super::iterate::{Phase, State};
-use super::prior::{Course, KINDS};
+use super::prior::{Course, KINDS, Smoothness};
 use crate::solve::fault::Fault;
 use crate::solve::state;
 
 /// Logarithm of the evidence by which a kind of smoothness may fall behind and still count.
 const NEAR: f64 = 8.0;
-/// Courses, in the order in which sources may be uneven along them.
-const COURSES: [Course; 2] = [Course::Steady, Course::Fading];
+/// Which kinds of smoothness sources may be uneven with, one after the other: the likeliest along a course, or the one of an order.
+/// Before its roughness may vary a source that steps looks as smooth as what lies between the steps, and its steps are no more than
+/// changes that the first order asks nothing for.
+const VARIED: [(Course, Option<usize>); 3] =
+    [(Course::Steady, None), (Course::Steady, Some(1)), (Course::Fading, None)];
 /// How often the roughness of sources along a record is found anew, and the gain of the logarithm of the evidence for which it is.
 const MOST_ROUNDS: u64 = 12;
 const GAIN: f64 = 0.5;
@@ -28,11 +31,13 @@ pub(super) struct Place {
     pub(super) tried: Vec<Tried>,
     /// Whether the steps have started again, or must not any more.
     pub(super) is_again: bool,
-    /// Number of the course along which the sources' roughness is found anew, how often it was, and the evidence before the last
-    /// time.
-    course: usize,
+    /// Number in [`VARIED`] of the kind with which the sources' roughness is found anew, how often it was, and the evidence before
+    /// the last time.
+    varied: usize,
     rounds: u64,
     before: f64,
+    /// Whether equations have been as uncertain as their columns, too, or need not be any more.
+    pub(super) is_blurred: bool,
     /// Whether one roughness describes all of the record: a part of it has said so.
     pub(super) is_even: bool,
 }
@@ -55,7 +60,8 @@ impl Place {
             state,
             tried: Vec::new(),
             is_again: false,
-            course: 0,
+            is_blurred: false,
+            varied: 0,
             rounds: 0,
             before: f64::MIN,
             is_even: false,
@@ -67,31 +73,40 @@ impl Place {
         (self.kinds, self.phase, self.since, self.state, self.is_again) = (kinds, Phase::Regress, 0, state, true);
     }
 
-    /// The end whose sources' roughness along the record is to be found anew; nothing where that was done for all courses.
+    /// The end whose sources' roughness along the record is to be found anew; nothing where that was done with all kinds.
     pub(super) fn next_uneven(&mut self) -> Option<Tried> {
-        while let Some(&course) = COURSES.get(self.course).filter(|_| !self.is_even) {
-            let own = self.tried.iter().filter(|tried| KINDS[tried.kind].course == course);
+        while let Some(&(course, order)) = VARIED.get(self.varied).filter(|_| !self.is_even) {
+            let is_meant = |kind: Smoothness| kind.course == course && order.is_none_or(|order| kind.order == order);
+            let own = self.tried.iter().filter(|tried| is_meant(KINDS[tried.kind]));
             let own = own.max_by(|a, b| a.evidence.total_cmp(&b.evidence)).cloned();
             let best = self.best().map_or(f64::MAX, |best| best.evidence);
-            let is_likely = |tried: &Tried| course == Course::Steady || tried.evidence >= best - NEAR;
-            let has_gained = |tried: &Tried| tried.evidence > self.before + GAIN && self.rounds < MOST_ROUNDS;
-            if let Some(tried) = own.filter(|tried| is_likely(tried) && (self.rounds == 0 || has_gained(tried))) {
+            // A source that no kind found uneven has no steps, and a kind that was varied is not varied again.
+            let is_any_uneven = self.tried.iter().any(|tried| !tried.state.uneven.is_empty());
+            let is_likely = |tried: &Tried| match (course, order) {
+                (_, Some(_)) => is_any_uneven && tried.state.uneven.is_empty(),
+                (Course::Steady, None) => true,
+                (Course::Fading, None) => tried.evidence >= best - NEAR,
+            };
+            let may_begin = |tried: &Tried| self.rounds == 0 && is_likely(tried);
+            let has_gained =
+                |tried: &Tried| (1..MOST_ROUNDS).contains(&self.rounds) && tried.evidence > self.before + GAIN;
+            if let Some(tried) = own.filter(|tried| may_begin(tried) || has_gained(tried)) {
                 return Some(tried);
             }
-            self.leave_course();
+            self.leave_varied();
         }
         None
     }
 
-    /// Turns to the next course.
-    pub(super) fn leave_course(&mut self) {
-        (self.course, self.rounds) = (self.course + 1, 0);
+    /// Turns to the next kind.
+    pub(super) fn leave_varied(&mut self) {
+        (self.varied, self.rounds) = (self.varied + 1, 0);
     }
 
-    /// Leaves a round without an end, and its course.
+    /// Leaves a round without an end, and its kind.
     pub(super) fn drop_round(&mut self) {
         self.kinds.clear();
-        self.leave_course();
+        self.leave_varied();
     }
 
     /// Goes on from an end with sources that are as rough along the record as this state says.
@@ -106,20 +121,38 @@ impl Place {
     /// the evidence rules out is not tried with other orders.
     pub(super) fn next(&mut self, evidence: f64) {
         let kind = self.kinds.remove(0);
-        let is_less = |tried: &Tried| tried.kind == kind && tried.evidence >= evidence;
-        if !self.tried.iter().any(is_less) {
-            self.tried.retain(|tried| tried.kind != kind);
+        let blurred = self.state.blurred;
+        let is_same = |tried: &Tried| tried.kind == kind && tried.state.blurred == blurred;
+        if !self.tried.iter().any(|tried| is_same(tried) && tried.evidence >= evidence) {
+            self.tried.retain(|tried| !is_same(tried));
             self.tried.push(Tried { kind, evidence, state: self.state.clone() });
         }
         let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
-        let best = most(&mut self.tried.iter());
-        let tried = &self.tried;
+        let tried = || self.tried.iter().filter(|tried| tried.state.blurred == blurred);
+        let best = most(&mut tried());
         // Of a course that has not been tried nothing is known.
         self.kinds.retain(|&kind| {
             let is_alike = |tried: &&Tried| KINDS[tried.kind].course == KINDS[kind].course;
-            let own = most(&mut tried.iter().filter(is_alike));
+            let own = most(&mut tried().filter(is_alike));
             own.is_nan() || own >= best - NEAR
         });
+    }
+
+    /// Starts again with equations that know no better than their columns.
+    pub(super) fn blur(&mut self, state: State, kinds: Vec<usize>) {
+        self.again(state, kinds);
+        self.is_blurred = true;
+    }
+
+    /// Leaves ends of one sort: those whose equations know no better than their columns, unless the evidence rules these out. A drive
+    /// that is as fast as noise is rare, and where the evidence does not tell, noise is what it looks like.
+    pub(super) fn choose_blurred(&mut self) {
+        let best = |blurred: bool| {
+            let own = self.tried.iter().filter(|tried| tried.state.blurred == blurred);
+            own.map(|tried| tried.evidence).fold(f64::MIN, f64::max)
+        };
+        let is_kept = best(true) > f64::MIN && best(true) >= best(false) - NEAR;
+        self.tried.retain(|tried| tried.state.blurred == is_kept);
     }
 
     /// The kind with the largest evidence.
@@ -145,8 +178,9 @@ impl Place {
             .with_counter("since", self.since)
             .with_counter("iterations", self.state.step)
             .with_counter("again", u64::from(self.is_again))
+            .with_counter("blurred tried", u64::from(self.is_blurred))
             .with_counter("even", u64::from(self.is_even))
-            .with_counter("course", self.course as u64)
+            .with_counter("varied", self.varied as u64)
             .with_counter("rounds", self.rounds)
             .with("before", &[self.before])
             .with_counter("tried", self.tried.len() as u64);
@@ -183,8 +217,9 @@ impl Place {
             return Err(Fault::state("uneven"));
         }
         self.since = saved.counter("since")?;
+        self.is_blurred = saved.counter("blurred tried")? == 1;
         self.is_even = saved.counter("even")? == 1;
-        self.course = saved.counter("course")? as usize;
+        self.varied = saved.counter("varied")? as usize;
         [self.before] = saved.scalars("before")?;
         self.rounds = saved.counter("rounds")?;
         self.is_again = saved.counter("again")? == 1;

@@ -8,6 +8,7 @@ use super::prior::{Course, Prior, Smoothness};
 use super::triangle::Triangle;
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
+use crate::noise::of_given;
 use crate::problem::Bound;
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
@@ -36,6 +37,10 @@ pub(super) struct Solver<'a> {
     pub(super) left_out: Option<usize>,
     /// Sizes of equations, by group and row.
     pub(super) sizes: Vec<Vec<f64>>,
+    /// By group and column, the noise of what equations know.
+    pub(super) noise_of_columns: Vec<Vec<f64>>,
+    /// By group and row, how far that puts equations off.
+    pub(super) blurs: Vec<Vec<f64>>,
     pub(super) scalars: Vec<f64>,
     /// Length of the domain.
     pub(super) length: f64,
@@ -67,6 +72,7 @@ impl<'a> Solver<'a> {
         let regressed = |head: usize| if observed.contains(&head) { REGRESS } else { LEVEL };
         let priors = heads.bases.iter().enumerate().map(|(head, basis)| Prior::new(basis, regressed(head))).collect();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
+        let blurs = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len());
         let scalars = bound.scalars.clone();
         let length = breakpoints[breakpoints.len() - 1] - breakpoints[0];
@@ -80,6 +86,8 @@ impl<'a> Solver<'a> {
             priors,
             left_out: None,
             sizes,
+            noise_of_columns: (0..bound.columns.len()).map(|group| of_given(bound, group)).collect(),
+            blurs,
             scalars,
             length,
             triangle,
@@ -166,6 +174,10 @@ impl<'a> Solver<'a> {
         self.set_learned(&state.learned);
         for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
             let facts = group.facts(&self.heads, &state.theta);
+            if state.blurred {
+                let noise = &self.noise_of_columns[at];
+                self.blurs[at] = facts.blurs(group.kernel.programs, group.schema, &self.scalars, noise);
+            }
             let found = facts.sizes(group.kernel.programs, group.schema, &self.scalars, &self.bound.sizes[at]);
             for term in group.schema.terms {
                 let rows = term.first..term.first + term.rows;

@@ -33,8 +33,17 @@ impl Solver<'_> {
         classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
-        let mut state =
-            State { theta, learned, classes, uneven: Vec::new(), doubt: 0.0, tolerance: LOOSE, convex, step: 0 };
+        let mut state = State {
+            theta,
+            learned,
+            classes,
+            uneven: Vec::new(),
+            doubt: 0.0,
+            blurred: false,
+            tolerance: LOOSE,
+            convex,
+            step: 0,
+        };
         self.level(&mut state);
         state
     }

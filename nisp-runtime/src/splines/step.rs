@@ -5,7 +5,6 @@ use super::rows::Counted;
 use super::solver::Solver;
 use super::told::Along;
 use super::triangle::covariance::Covariance;
-use crate::schema::TermKind;
 use crate::solve::fault::Fault;
 use crate::tolerance;
 use crate::weighed::{Tally, renew};
@@ -54,7 +53,7 @@ impl Solver<'_> {
         self.triangle.add_all(rows.walk());
         let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
         let covariance = self.triangle.covariance();
-        let is_equation = self.equations();
+        let is_equation = self.equations(state);
         let mut tallies = vec![Tally::default(); state.classes.len() + 1];
         let (mut loss, mut strayed, mut asked) = (0.0, 0.0, 0.0);
         let mut walk = rows.walk();
@@ -110,13 +109,6 @@ impl Solver<'_> {
         let told = self.roughness.iter().zip(&self.amplitude);
         let told = told.map(|(&rough, amplitude)| amplitude.map_or(0.0, |class| left(rough) + left(class))).collect();
         Ok(Some(Found { next, loss, change, ahead, evidence, covariance, noisy, told }))
-    }
-
-    /// By class, whether its rows are those of an equation; one more for what is known beforehand.
-    fn equations(&self) -> Vec<bool> {
-        let terms = self.groups.iter().flat_map(|group| group.schema.terms);
-        let priors = self.roughness.len() + self.amplitude.iter().flatten().count();
-        terms.map(|term| term.kind == TermKind::Residual).chain(vec![false; priors + 1]).collect()
     }
 
     /// Sum of the logarithms of what rows are divided by, those of priors aside.
@@ -192,7 +184,7 @@ impl Solver<'_> {
         };
         let unknowns = (functions + self.bound.learned.len()) as f64;
         let is_rough = |class: usize| self.roughness.contains(&class);
-        let is_equation = self.equations();
+        let is_equation = self.equations(state);
         tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
         let used: f64 =
             tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();

@@ -6,6 +6,7 @@
 
 use super::{Check, root_mean_square};
 use crate::facts::{Answer, Facts};
+use crate::noise::of_given;
 use crate::problem::Bound;
 use crate::residual::Programs;
 use crate::schema::{self, Jet, Term, TermKind};
@@ -61,6 +62,7 @@ fn is_value(jet: &Jet) -> bool {
 /// A group under judgement.
 struct Judged<'a> {
     bound: &'a Bound,
+    group: usize,
     schema: &'static schema::Group,
     facts: &'a Facts,
     programs: &'a dyn Programs<f64>,
@@ -88,7 +90,7 @@ pub(super) fn checks(
         (true, None) => STRICT,
     };
     let (scalars, finer) = (&answer.scalars, answer.finer);
-    let judged = Judged { bound, schema, facts, programs, sizes, scalars, finer, balance };
+    let judged = Judged { bound, group, schema, facts, programs, sizes, scalars, finer, balance };
     let mut checks = Vec::new();
     for (term, natural) in schema.terms.iter().zip(&bound.sizes[group]) {
         match term.kind {
@@ -107,6 +109,8 @@ impl Judged<'_> {
         let unit = term.unit.behind();
         let condition = self.facts.points <= FEW_POINTS;
         let mut worst: Option<Check> = None;
+        let noise = of_given(self.bound, self.group);
+        let blurs = self.facts.blurs(self.programs, self.schema, self.scalars, &noise);
         let beyond = (term.first..term.first + term.rows).filter(|_| condition).find_map(|row| self.beyond(term, row));
         for (row, values) in rows.iter().enumerate().skip(term.first).take(term.rows) {
             let rms = root_mean_square(values.iter().copied());
@@ -124,7 +128,9 @@ impl Judged<'_> {
                     }
                 }
             };
-            let value = if rms == 0.0 { 0.0 } else { rms / scale };
+            // What the noise of its columns makes of an equation is not left by the answer.
+            let beside = if rms <= blurs[row] { 0.0 } else { (rms * rms - blurs[row] * blurs[row]).sqrt() };
+            let value = if beside == 0.0 { 0.0 } else { beside / scale };
             let message = format!(
                 "`{name}.{}` is off by {:.2e}{unit}, where {said} is {:.2e}{unit}: the answer does not solve it; check the \
                  parameters and data that contradict it, or the carrier is too coarse ({})",

@@ -6,6 +6,7 @@
 
 mod amplified;
 mod believed;
+mod blurred;
 mod clouds;
 mod equations;
 mod gathered;
@@ -120,6 +121,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
             continue;
         }
         checks.extend(equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer)));
+        checks.extend(blurred::checks(bound, at, (facts, &rows), programs, &answer.scalars));
         // Equations hold between their points as well.
         for (_, facts) in answer.between.iter().filter(|(of, _)| *of == at) {
             let rows = facts.rows(programs, group, &answer.scalars);

@@ -15,10 +15,15 @@ const FEWEST: usize = 4;
 /// of all power that is too much. The level of noise is that of the fast modes; a fit that follows its data leaves the slow ones
 /// below it.
 pub(super) fn excess(misfits: &[f64]) -> (f64, f64) {
+    above(misfits, 0.0)
+}
+
+/// The same where noise has a variance of `least` at least, as slow as it may be.
+pub(super) fn above(misfits: &[f64], least: f64) -> (f64, f64) {
     let powers = powers(misfits);
     let fast = &powers[(FAST * powers.len() as f64) as usize..];
     let total: f64 = powers.iter().sum();
-    let level = fast.iter().sum::<f64>() / fast.len().max(1) as f64;
+    let level = (fast.iter().sum::<f64>() / fast.len().max(1) as f64).max(least);
     if level == 0.0 || total == 0.0 {
         return (0.0, 0.0);
     }
