@@ -1,6 +1,7 @@
 //! Sources of the size that the evidence expects. The most likely size of a source that is hardly told from none is nothing, or
 //! nearly so; the mean over all sizes that are likely is not.
 
+use super::course::Run;
 use super::iterate::{Phase, State};
 use super::solver::Solver;
 use super::step::TOLERANCE;
@@ -18,12 +19,15 @@ const SETTLED: f64 = 1e-3;
 
 impl Solver<'_> {
     /// The iterate at which sources have the mean of all sizes, in the shares of the evidence, with waves as long as in the most
-    /// likely one; that one where there is no such iterate.
-    pub(super) fn expected(&mut self, state: State) -> Result<State, Fault> {
+    /// likely one; that one where there is no such iterate, or no time to find it.
+    pub(super) fn expected(&mut self, state: State, run: &Run<'_>) -> Result<State, Fault> {
         let Some(found) = self.step(&state, Phase::Solve)? else { return Ok(state) };
         let mut sizes = vec![(1.0, found.evidence)];
         for (sign, most) in [(-1, SMALLER), (1, LARGER)] {
             for factor in (1..=most).map(|power| RATIO.powi(sign * power)) {
+                if !run.has_time_for(1) {
+                    return Ok(state);
+                }
                 let other = self.step(&self.scaled(&state, factor), Phase::Solve)?;
                 let likely = other.filter(|other| other.evidence - found.evidence >= FAINT.ln());
                 let Some(other) = likely else { break };
@@ -31,7 +35,7 @@ impl Solver<'_> {
             }
         }
         let mut other = self.scaled(&state, mean(&sizes));
-        for _ in 0..STEPS {
+        for _ in (0..STEPS).take_while(|_| run.has_time_for(1)) {
             let Some(found) = self.step(&other, Phase::Solve)? else { return Ok(state) };
             if found.change < SETTLED && other.tolerance <= TOLERANCE {
                 return Ok(other);

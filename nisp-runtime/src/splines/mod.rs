@@ -199,7 +199,7 @@ pub(crate) fn solve(
             && let Some(best) = place.best()
         {
             solver.set_smoothness(KINDS[best.kind], &best.state);
-            place.state = State { step: place.state.step, ..solver.expected(place.state.clone())? };
+            place.state = State { step: place.state.step, ..solver.expected(place.state.clone(), &run)? };
         }
         // A kind of smoothness was tried to its end.
         ahead = None;
