@@ -11,12 +11,12 @@ use crate::noise::deviation;
 use crate::schema::{Term, TermKind};
 use crate::solve::vector::root_mean_square;
 
-/// Size of a field or of an equation's terms over the natural one up to which it is zero.
-pub(super) const ZERO: f64 = 1e-4;
 /// Points that are looked at, at most.
 const MOST: usize = 500;
-/// Least share of a field's level or natural size that it is taken to vary by: rounding hides what is less.
-const LEAST: f64 = 1e-5;
+/// Least share of a field's natural size that it is taken to vary by: beside stiffer conditions rounding would hold all else.
+const LEAST: f64 = 1e-3;
+/// Variation of a field over its natural size up to which it is at rest.
+const REST: f64 = 1e-5;
 
 impl Solver<'_> {
     /// Takes the level of fields out of the sizes of conditions on their values: these hold as firmly in kelvins as in degrees Celsius.
@@ -49,16 +49,10 @@ impl Solver<'_> {
         chosen.into_iter().flat_map(|at| &points[at * inputs..][..inputs]).copied().collect()
     }
 
-    /// Size of a head at points; its natural one where it is zero.
-    pub(super) fn size_of(&self, state: &State, head: usize, points: &[f64]) -> f64 {
-        let (size, natural) = (root_mean_square(self.heads.values(head, points, &state.theta)), self.heads.scale[head]);
-        if size > ZERO * natural { size } else { natural }
-    }
-
-    /// How much a head varies over points; its natural size where it is the same everywhere.
+    /// How much a head varies over points, no less than [`LEAST`]; its natural size where it is the same everywhere.
     pub(super) fn variation(&self, state: &State, head: usize, points: &[f64]) -> f64 {
         let (values, natural) = (self.heads.values(head, points, &state.theta), self.heads.scale[head]);
         let varies = deviation(&values);
-        if varies > LEAST * natural { varies } else { natural }
+        if varies > REST * natural { varies.max(LEAST * natural) } else { natural }
     }
 }

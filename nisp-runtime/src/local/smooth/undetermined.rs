@@ -3,7 +3,6 @@
 //! A little stiffness is given to every coefficient, just above what rounding gives to it. What equations and conditions determine does
 //! not mind how little; deviations of what they leave open go with its root.
 
-use super::levels::ZERO;
 use super::solver::Solver;
 use super::state::State;
 use crate::local::draws::{Deviations, Draws};
@@ -17,6 +16,8 @@ use crate::units::Number;
 const LIFTS: [f64; 2] = [1e-13, 1e-12];
 /// How much a field's deviations may fall from the one to the other. Where it is open they fall by the root of ten.
 const FALL: f64 = 2.2;
+/// Size of an equation's terms over the natural one up to which it is zero.
+const ZERO: f64 = 1e-4;
 /// Deviation of a field over how much it varies from which on it is open too, where equations are off by [`LOOSE`].
 const OPEN: f64 = 0.5;
 
@@ -57,10 +58,10 @@ impl Solver<'_> {
         schema.heads.iter().enumerate().filter_map(open).collect()
     }
 
-    /// Gives terms of what is at rest a size: their natural one, which is smaller where all fields are.
+    /// Gives terms of what is at rest a size: their natural one, which is smaller where all fields vary little.
     fn set_sizes_at_rest(&mut self, state: &State) {
         let points = self.some_points();
-        let share = |head: usize| self.size_of(state, head, &points) / self.heads.scale[head];
+        let share = |head: usize| self.variation(state, head, &points) / self.heads.scale[head];
         let share = (0..self.schema().heads.len()).map(share).fold(0.0, f64::max).min(1.0);
         let terms = self.schema().groups.iter().zip(&self.bound.sizes);
         for (own, (term, natural)) in self.sizes.iter_mut().zip(terms.map(|(group, natural)| (group.terms, natural))) {
