@@ -12,6 +12,7 @@ mod eval;
 mod few_places;
 mod folders;
 mod forward;
+mod forward_exact;
 mod gaps;
 mod geometry;
 mod interrupt;

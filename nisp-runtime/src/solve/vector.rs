@@ -33,11 +33,11 @@ pub(crate) fn largest(x: &[f64]) -> usize {
     x.iter().enumerate().fold((0, 0.0), |best, (at, x)| if x.abs() > best.1 { (at, x.abs()) } else { best }).0
 }
 
-/// How far two answers differ anywhere, over the range of the first: at least a thousandth of its level, or a ten-thousandth of what
-/// is `natural`, so that rounding is no difference.
+/// How far two answers differ anywhere, over the range of the first: at least a hundred-thousandth of its level, or of what is
+/// `natural`, so that rounding is no difference.
 pub(crate) fn farthest(x: &[f64], other: &[f64], natural: f64) -> f64 {
     let (low, high) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (x.min(l), x.max(h)));
-    let range = (high - low).max(1e-3 * high.abs().max(low.abs())).max(1e-4 * natural);
+    let range = (high - low).max(1e-5 * high.abs().max(low.abs()).max(natural));
     let farthest = x.iter().zip(other).map(|(a, b)| (a - b).abs());
     farthest.fold(0.0, |most: f64, off| if off <= most { most } else { off }) / range
 }

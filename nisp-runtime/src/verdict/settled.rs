@@ -13,7 +13,7 @@ const STRAINED: f64 = 1.0;
 /// How much the last finer cells may have changed an answer to exact measurements.
 const REFINED: f64 = 0.05;
 /// How far the cells may hold an answer back for which nothing was measured, as a share of its range.
-const HELD_BACK: f64 = 2e-3;
+pub(crate) const HELD_BACK: f64 = 2e-3;
 
 /// The checks of an answer whose steps did not come to their end; none of one whose did.
 pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {

@@ -9,8 +9,9 @@ use rayon::prelude::*;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
-/// Points that are enough.
+/// Points that are enough, and with which a problem over two coordinates begins for which nothing is measured.
 const ENOUGH: usize = 2000;
+const FEW: usize = 1000;
 /// Other places that an answer is judged at, at least and at most.
 const FEWEST_OTHERS: usize = 1000;
 const MOST_OTHERS: usize = 4000;
@@ -29,13 +30,14 @@ const EXACT: usize = 2;
 const NOISY: usize = 4;
 
 /// How many points an equation is asked at before it is known whether these are enough. A source of all coordinates may be
-/// anything between the given ones. Where nothing is measured two lattices tell how far an answer is off, so that the first is coarser.
+/// anything between the given ones. Where nothing is measured two lattices tell how far an answer is off, so that the first is coarser:
+/// over more than two coordinates it has three cells along each with [`ENOUGH`].
 pub(super) fn first(bound: &Bound) -> usize {
     let schema = bound.problem.scene().schema;
     let is_of_all = |head: usize| schema.heads[head].source && schema.axes(head).len() == schema.coordinates.len();
     let given = largest(bound).map_or(0, |at| count(bound, at));
     if schema.observed().is_empty() {
-        return ENOUGH / 2;
+        return if schema.coordinates.len() > 2 { ENOUGH } else { FEW };
     }
     if (0..schema.heads.len()).any(is_of_all) { given } else { given.max(ENOUGH) }
 }

@@ -7,12 +7,18 @@ use crate::local::refuse::HIGHEST_DEGREE;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
-/// Degrees of splines above the order of their highest derivative, at least, and over two coordinates: what is left of an equation
+/// Degrees of splines above the order of their highest derivative, at least, and over few coordinates: what is left of an equation
 /// falls with the fourth power of a cell, or with the sixth. Over more coordinates too many functions would meet on a cell.
 const SMOOTH: usize = 3;
 const SMOOTHER: usize = 5;
-/// Points of an equation to an unknown of a field, at least: as many more as let no pattern of coefficients escape.
+/// Coordinates at most for splines of the higher degree, with measurements and without. Noise hides what it gains.
+const FEW: usize = 2;
+const FEW_UNMEASURED: usize = 3;
+/// Points of an equation to an unknown of a field, at least: as many more as let no pattern of coefficients escape. Where nothing is
+/// measured, over two coordinates, that is not enough: what is left between twice as many points as unknowns is hundreds of times what
+/// is left at them, and adds up along the equations.
 const POINTS: f64 = 2.0;
+const DENSE: f64 = 4.0;
 /// Functions of whose highest derivative hardly any point sees anything, as a share of what the others show, are left out.
 const UNSEEN: f64 = 1e-9;
 /// Cells along a coordinate at most.
@@ -27,7 +33,8 @@ fn order(schema: &schema::Scene, head: usize) -> usize {
 /// Degree of a head's splines, or nothing if it would be too high.
 pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
     let order = order(schema, head);
-    let smoother = order + if schema.coordinates.len() == 2 { SMOOTHER } else { SMOOTH };
+    let few = if schema.observed().is_empty() { FEW_UNMEASURED } else { FEW };
+    let smoother = order + if schema.coordinates.len() <= few { SMOOTHER } else { SMOOTH };
     (order + SMOOTH <= HIGHEST_DEGREE).then(|| smoother.min(HIGHEST_DEGREE))
 }
 
@@ -42,10 +49,12 @@ pub(super) fn lattices(bound: &Bound, most: usize) -> (Vec<Lattice>, Vec<usize>)
         |group: &schema::Group| group.order > 0 && group.terms.iter().any(|term| term.kind == TermKind::Residual);
     let groups = schema.groups.iter().zip(&bound.coordinates).filter(|(group, _)| is_equation(group));
     let points = groups.map(|(_, points)| points.len() / inputs).max().unwrap_or(0);
-    let points = if schema.observed().is_empty() { points.min(most) } else { points };
+    let is_measured = !schema.observed().is_empty();
+    let points = if is_measured { points } else { points.min(most) };
+    let to_unknown = if is_measured || inputs > 2 { POINTS } else { DENSE };
     let functions = |lattice: &Lattice| lattice.cells.iter().map(|n| (n + highest) as f64).product::<f64>();
     let meshes = (1..=MOST_CELLS).map(|cells| base(bound, cells, 0));
-    let resolved = |mesh: &Lattice| POINTS * functions(mesh) <= points as f64;
+    let resolved = |mesh: &Lattice| to_unknown * functions(mesh) <= points as f64;
     let base = meshes.take_while(resolved).last().unwrap_or_else(|| self::base(bound, 1, 0));
     let lattice = |head: usize| {
         let mut lattice = base.refined(degrees[head], 1).along(schema.axes(head));

@@ -345,8 +345,12 @@ impl Solver<'_> {
 
 /// Whether a term takes part in a phase: those with derivatives wait until data and conditions on values are regressed.
 fn takes_part(group: &schema::Group, term: &schema::Term, phase: Phase) -> bool {
-    let is_of_values = |&jet: &usize| group.jets[jet].degree.iter().all(|&degree| degree == 0);
-    phase.has_equations() || term.jets.iter().all(is_of_values)
+    phase.has_equations() || is_of_values(group, term)
+}
+
+/// Whether a term reads no derivatives.
+pub(super) fn is_of_values(group: &schema::Group, term: &schema::Term) -> bool {
+    term.jets.iter().all(|&jet| group.jets[jet].degree.iter().all(|&degree| degree == 0))
 }
 
 /// Whether any row of a group counts at any of its points.

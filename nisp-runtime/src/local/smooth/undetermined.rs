@@ -3,10 +3,6 @@
 //! A little stiffness is given to every coefficient, just above what rounding gives to it. What equations and conditions determine does
 //! not mind how little; deviations of what they leave open go with its root.
 
-use rand::SeedableRng;
-use rand::rngs::StdRng;
-use rand::seq::index::sample;
-
 use super::solver::Solver;
 use super::state::State;
 use crate::local::draws::{Deviations, Draws};
@@ -20,12 +16,10 @@ use crate::units::Number;
 const LIFTS: [f64; 2] = [1e-13, 1e-12];
 /// How much a field's deviations may fall from the one to the other. Where it is open they fall by the root of ten.
 const FALL: f64 = 2.2;
-/// Deviation of a field over its size from which on it is open too, where equations are off by [`LOOSE`].
-const OPEN: f64 = 0.5;
-/// Size of a field or of an equation's terms over the natural one up to which it is zero.
+/// Size of an equation's terms over the natural one up to which it is zero.
 const ZERO: f64 = 1e-4;
-/// Points that are looked at, at most.
-const MOST: usize = 500;
+/// Deviation of a field over how much it varies from which on it is open too, where equations are off by [`LOOSE`].
+const OPEN: f64 = 0.5;
 
 impl Solver<'_> {
     /// The fields of an answer that may be otherwise, and where most of all. Cells that are too coarse for it leave more open than the
@@ -33,15 +27,7 @@ impl Solver<'_> {
     pub(super) fn undetermined(&mut self, state: &State, is_resolved: bool) -> Vec<Warning> {
         // Beside strict equations rounding would be stiffer than that.
         let loose = State { tolerance: LOOSE, ..state.clone() };
-        // Terms of what is at rest have no size but their natural one, which is smaller where all fields are.
-        let share = self.share_of_natural(state);
-        let terms = self.schema().groups.iter().zip(&self.bound.sizes);
-        for (own, (term, natural)) in self.sizes.iter_mut().zip(terms.map(|(group, natural)| (group.terms, natural))) {
-            for (term, natural) in term.iter().zip(natural) {
-                let rows = own[term.first..term.first + term.rows].iter_mut();
-                rows.filter(|size| **size < ZERO * natural).for_each(|size| *size = share * natural);
-            }
-        }
+        self.set_sizes_at_rest(state);
         self.set_sigmas(&loose);
         let Some([deviations, stiffer]) = self.lifted(&loose) else { return Vec::new() };
         let (schema, inputs) = (self.schema(), self.schema().coordinates.len());
@@ -49,13 +35,12 @@ impl Solver<'_> {
         let points: Vec<&[f64]> = points.chunks_exact(inputs).collect();
         let open = |(head, declared): (usize, &schema::Head)| {
             let of = |draws: &Deviations| -> Vec<f64> {
-                let deviation = |point: &&[f64]| root_mean_square(self.heads.drawn(head, point, &draws.coefficients));
-                points.iter().map(deviation).collect()
+                let of = |point: &&[f64]| root_mean_square(self.heads.drawn(head, point, &draws.coefficients));
+                points.iter().map(of).collect()
             };
             let [deviations, stiffer] = [of(&deviations), of(&stiffer)];
             let [soft, stiff] = [&deviations, &stiffer].map(|all| root_mean_square(all.iter().copied()));
-            let size = self.size_of(state, head, &points.concat());
-            let is_large = is_resolved && soft > OPEN * size;
+            let is_large = is_resolved && soft > OPEN * self.variation(state, head, &points.concat());
             if !is_large && soft <= FALL * stiff {
                 return None;
             }
@@ -73,28 +58,18 @@ impl Solver<'_> {
         schema.heads.iter().enumerate().filter_map(open).collect()
     }
 
-    /// Some points of the largest group, flat. Every so many of points that fill a domain evenly may all lie in one corner of it: they
-    /// are picked at random.
-    fn some_points(&self) -> Vec<f64> {
-        let inputs = self.schema().coordinates.len();
-        let largest = self.bound.coordinates.iter().max_by_key(|points| points.len());
-        let points = largest.map_or(&[][..], |points| points.as_slice());
-        let count = points.len() / inputs;
-        let chosen = sample(&mut StdRng::seed_from_u64(0), count, count.min(MOST));
-        chosen.into_iter().flat_map(|at| &points[at * inputs..][..inputs]).copied().collect()
-    }
-
-    /// Size of a head at points; its natural one where it is zero.
-    fn size_of(&self, state: &State, head: usize, points: &[f64]) -> f64 {
-        let (size, natural) = (root_mean_square(self.heads.values(head, points, &state.theta)), self.heads.scale[head]);
-        if size > ZERO * natural { size } else { natural }
-    }
-
-    /// Size of all heads beside their natural ones, at most.
-    fn share_of_natural(&self, state: &State) -> f64 {
+    /// Gives terms of what is at rest a size: their natural one, which is smaller where all fields vary little.
+    fn set_sizes_at_rest(&mut self, state: &State) {
         let points = self.some_points();
-        let share = |head: usize| self.size_of(state, head, &points) / self.heads.scale[head];
-        (0..self.schema().heads.len()).map(share).fold(0.0, f64::max).min(1.0)
+        let share = |head: usize| self.variation(state, head, &points) / self.heads.scale[head];
+        let share = (0..self.schema().heads.len()).map(share).fold(0.0, f64::max).min(1.0);
+        let terms = self.schema().groups.iter().zip(&self.bound.sizes);
+        for (own, (term, natural)) in self.sizes.iter_mut().zip(terms.map(|(group, natural)| (group.terms, natural))) {
+            for (term, natural) in term.iter().zip(natural) {
+                let rows = own[term.first..term.first + term.rows].iter_mut();
+                rows.filter(|size| **size < ZERO * natural).for_each(|size| *size = share * natural);
+            }
+        }
     }
 
     /// Deviations of all unknowns about a state, with little stiffness of their own and with more of it.
