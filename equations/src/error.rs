@@ -189,6 +189,19 @@ pub enum PrepareError {
         /// The scene.
         scene: &'static str,
     },
+    /// Two tables where one is taken.
+    #[error(
+        "--data is given twice{}: {} and {}; give one table, with the rows of both in one file if they are one record",
+        .group.as_ref().map_or_else(String::new, |group| format!(" for group `{group}`")), .first.display(), .second.display()
+    )]
+    Twice {
+        /// The group, if one is named.
+        group: Option<String>,
+        /// The table that came first.
+        first: PathBuf,
+        /// The other one.
+        second: PathBuf,
+    },
     /// A file of parameters that cannot be read.
     #[error("{}: {reason}", .path.display())]
     File {

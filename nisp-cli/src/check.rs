@@ -90,7 +90,9 @@ fn held(entry: &Entry, group: &Group, prepared: &Prepared) -> Vec<String> {
     for (at, (column, values)) in group.columns.iter().zip(columns).enumerate() {
         let mut text = range(column.name, unit(&column.unit), values.iter().copied());
         let gaps = values.iter().filter(|value| value.is_nan()).count();
-        if gaps > 0 {
+        if gaps == values.len() {
+            text = format!("{}: not measured", column.name);
+        } else if gaps > 0 {
             let _ = write!(text, ", not measured in {gaps} of {} rows", values.len());
         }
         if let Some(noise) = survey.noise(values).filter(|_| is_observed(at)) {

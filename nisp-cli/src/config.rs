@@ -42,6 +42,7 @@ pub(crate) fn flags(path: &Path) -> Result<Vec<OsString>, String> {
             }
             Value::Boolean(false) => {}
             Value::Boolean(true) => flags.push(format!("--{key}").into()),
+            Value::Array(_) if key == "data" => return refuse("is one file, or a table [data] of GROUP = FILE pairs"),
             _ => {
                 let Some(text) = plain(value) else { return refuse("is no text and no number") };
                 let mut flag = OsString::from(format!("--{key}="));

@@ -46,6 +46,9 @@ impl Program {
         }
         let names = || self.equations.iter().map(|entry| entry.name);
         self.equations.iter().find(|entry| entry.name == name).cloned().ok_or_else(|| {
+            if path.is_file() {
+                return format!("`{name}` is a file; an equation's text has a name that ends in .{TEXT}");
+            }
             let near = nisp_data::nearest_name(name, names());
             let hint = near.map_or_else(String::new, |near| format!(", did you mean `{near}`?"));
             format!(

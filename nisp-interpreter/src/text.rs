@@ -53,9 +53,19 @@ impl Mistake {
     /// A text that is no sequence of words, numbers and signs.
     pub(crate) fn lexical(error: &proc_macro2::LexError, text: &str) -> Self {
         let span = error.span();
-        let message =
-            "expected words, numbers and signs: a quote, a bracket or a sign here has no partner or no meaning";
-        Self::at(span.start(), span.end(), false, message.into(), None, text)
+        let start = span.start();
+        let sign = text.lines().nth(start.line.saturating_sub(1)).and_then(|line| line.chars().nth(start.column));
+        let (message, help) = match sign {
+            Some('\'') => ("a quote has no meaning here", Some("a derivative is written `d(u, t)`")),
+            Some('°') => ("`°` has no meaning here", Some("degrees are `deg`; temperatures are in `K`")),
+            Some('×' | '·' | '⋅') => ("this sign has no meaning here", Some("a product is written with `*`")),
+            Some('−' | '–') => ("this dash has no meaning here", Some("a minus is written with `-`")),
+            _ => (
+                "expected words, numbers and signs: a quote, a bracket or a sign here has no partner or no meaning",
+                None,
+            ),
+        };
+        Self::at(start, span.end(), false, message.into(), help.map(Into::into), text)
     }
 
     fn at(

@@ -74,7 +74,10 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
     let scene = entry.scene(request.scene.as_deref())?;
     let schema = scene.schema;
     let (mut read, mut clouds) = (Vec::new(), Vec::new());
-    for (group, path) in &request.data {
+    for (at, (group, path)) in request.data.iter().enumerate() {
+        if let Some((_, first)) = request.data[..at].iter().find(|(other, _)| other == group) {
+            return Err(PrepareError::Twice { group: group.clone(), first: first.clone(), second: path.clone() });
+        }
         match clouds::named(schema, group.as_deref()) {
             Some(of) => clouds.push(CloudFile { of, path }),
             None => {

@@ -11,8 +11,10 @@ use super::Run;
 
 /// How the run ended, in words.
 fn end(solution: &Solution) -> &'static str {
+    let is_out_of_steps = solution.settings.iterations.is_some_and(|most| solution.iterations >= most);
     match solution.status {
         Status::Converged => "converged",
+        Status::Budget if is_out_of_steps => "stopped by --iterations",
         Status::Budget => "budget spent",
         Status::NotConverged => "not converged",
         Status::Interrupted => "interrupted",

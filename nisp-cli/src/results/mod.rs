@@ -231,7 +231,7 @@ fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Res
     let panels = match (shown.as_slice(), truth.and_then(|truth| Some((truth, truth.of(shown.first()?.name)?)))) {
         ([estimate], Some((truth, real))) => {
             let (at, _) = truth.points.as_chunks::<2>();
-            let scale = ColourScale::sequential(real);
+            let scale = ColourScale::sequential(&shown_with(real, &estimate.values));
             compared(solution, estimate, points, (&truth.points, at, real), scale)?.into()
         }
         _ => {
@@ -244,6 +244,13 @@ fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Res
         }
     };
     map(prepared, solution, panels)
+}
+
+/// Values that a scale of colours shows beside a truth: those of the estimate, too, but for wild ones.
+fn shown_with(real: &[f64], found: &[f64]) -> Vec<f64> {
+    let (low, high) = real.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (x.min(l), x.max(h)));
+    let range = high - low;
+    real.iter().copied().chain(found.iter().map(|value| value.clamp(low - range, high + range))).collect()
 }
 
 /// The first source, or field if there is none, over planes of the first two coordinates.

@@ -230,3 +230,39 @@ fn rivals_that_do_not_know_an_equation_say_so() {
     place.put("truth.csv", "t_s,f_V\n0,6\n1,0.298722\n2,0.0148725\n");
     assert!(asked("--data gap.csv --truth truth.csv")["none"].as_str().unwrap().contains("they know no gaps"));
 }
+
+/// What the command says of a small text, after a change of it and with a line of options.
+fn said(from: &str, to: &str, options: &str) -> String {
+    let place = Place::new();
+    let text = "coordinates: t [s];\nfields: T [K];\nsources: P [W];\nparameters: C [J/K] = 2;\n\
+                on body { balance: C * d(T, t) == P; }\non samples { observe T; }\n";
+    assert!(text.contains(from));
+    place.put("room.pde", &text.replace(from, to));
+    place.put("room.txt", text);
+    let rows =
+        |first: i32| (first..first + 40).map(|i| format!("{i},{}\n", 290.0 + f64::from(i).sin())).collect::<String>();
+    place.put("one.csv", &format!("t,T\n{},\n,\n", rows(0)));
+    place.put("two.csv", &format!("t,T\n{}", rows(40)));
+    place.put("list.toml", "data = [\"one.csv\"]\n");
+    let ran = place.run(&format!("solve {options} --out out"));
+    ran.stdout + &ran.stderr
+}
+
+#[test]
+fn usual_slips_have_messages_of_their_own() {
+    for (from, to, options, part) in [
+        ("d(T, t)", "dT/dt", "room.pde --data one.csv", "a derivative is written `d(T, t)`"),
+        ("d(T, t)", "T'", "room.pde --data one.csv", "a derivative is written `d(u, t)`"),
+        ("C * d", "C × d", "room.pde --data one.csv", "a product is written with `*`"),
+        ("T [K]", "T [°C]", "room.pde --data one.csv", "temperatures are in `K`"),
+        ("t", "t", "room.txt --data one.csv", "ends in .pde"),
+        ("t", "t", "room.pde --config list.toml", "or a table [data] of GROUP = FILE pairs"),
+        ("t", "t", "room.pde --data one.csv --data two.csv", "--data is given twice: one.csv and two.csv"),
+        ("t", "t", "room.pde --data samples=one.csv --data samples=two.csv", "given twice for group `samples`"),
+        // Two rows of nothing but commas stand below the first table.
+        ("t", "t", "room.pde --data one.csv --iterations 2", "stopped by --iterations after"),
+    ] {
+        let found = said(from, to, options);
+        assert!(found.contains(part), "`{part}` is not in: {found}");
+    }
+}

@@ -48,6 +48,10 @@ impl Table {
         for record in reader.records() {
             let record = record.map_err(|error| syntax(path, &error))?;
             let line = place.of_record(text, record.position().map_or(0, |at| at.byte() as usize));
+            // Spreadsheets write rows of nothing but separators below their table.
+            if record.iter().all(str::is_empty) {
+                continue;
+            }
             if record.len() != columns.len() {
                 let what =
                     format!("{} cells where the header has {}; fill or remove this row", record.len(), columns.len());

@@ -7,6 +7,10 @@ fn meant(nearest: Option<&str>, otherwise: &str) -> String {
 }
 
 pub(crate) fn unknown_name(name: &str, nearest: Option<&str>) -> String {
+    if let Some(field) = nearest.filter(|field| name.strip_prefix('d') == Some(field)) {
+        let step = format!("a derivative is written `d({field}, t)`, with the coordinate behind the comma");
+        return help(format!("`{}` is not declared", shorten(name)), step);
+    }
     let step = meant(nearest, "declare it as a coordinate, field, source or parameter, or define it with `let`");
     help(format!("`{}` is not declared", shorten(name)), step)
 }
