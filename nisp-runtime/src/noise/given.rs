@@ -11,10 +11,12 @@ const NOISY: f64 = 2e-3;
 pub(crate) fn of_given(bound: &Bound, group: usize) -> Vec<f64> {
     let schema = bound.problem.scene().schema;
     let terms = schema.groups[group].terms;
-    let is_given = schema.coordinates.len() == 1 && terms.iter().all(|term| term.kind == TermKind::Residual);
+    if schema.coordinates.len() != 1 || terms.iter().any(|term| term.kind != TermKind::Residual) {
+        return vec![0.0; bound.columns[group].len()];
+    }
     let of = |column: &Vec<f64>| {
         let values = in_order(&bound.coordinates[group], column);
-        by_differences(&values).filter(|noise| is_given && *noise > NOISY * deviation(&values)).unwrap_or(0.0)
+        by_differences(&values).filter(|noise| *noise > NOISY * deviation(&values)).unwrap_or(0.0)
     };
     bound.columns[group].iter().map(of).collect()
 }
