@@ -81,7 +81,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         (None, None) => Some(Table::parse(Path::new("data/plate/plate_points.csv"), TRUTH)?),
         (None, Some(_)) => None,
     };
-    let truth = truth.map(|table| Truth::read(&table, scene.schema, None, Headers::default())).transpose()?;
+    let truth = truth.map(|table| Truth::read(&table, scene.schema, &[], Headers::default())).transpose()?;
     let points = grid(sample.radius).filter(|point| disc.contains(point)).flatten().collect();
     let source = path.display().to_string();
     Ok(Prepared {

@@ -21,7 +21,7 @@ pub struct Prepared {
     pub outline: Vec<[f64; 2]>,
     /// Over three coordinates and more, the points of planes to draw, and what they are called; none otherwise.
     pub planes: Vec<(String, Vec<f64>)>,
-    /// What was measured over one coordinate.
+    /// What was measured.
     pub measured: Vec<Measured>,
     /// Truth, for scoring only.
     pub truth: Option<Truth>,
@@ -48,7 +48,7 @@ pub struct Prepared {
 pub struct Measured {
     /// Its name.
     pub name: &'static str,
-    /// The places of its rows.
+    /// The places of its rows, point by point.
     pub at: Vec<f64>,
     /// Its values, NaN where nothing was measured.
     pub values: Vec<f64>,

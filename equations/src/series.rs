@@ -80,7 +80,7 @@ impl Series {
             request,
         )?;
         let span = found.bounds.first().copied();
-        let truth = truth.map(|truth| Truth::read(truth, schema, span, Headers::default())).transpose()?;
+        let truth = truth.map(|truth| Truth::read(truth, schema, span.as_slice(), Headers::default())).transpose()?;
         let given =
             Given { start: span.map_or(0.0, |[first, _]| first), parameter: &|name| parameter(schema, request, name) };
         let rival = (self.rival)(schema.name, given);

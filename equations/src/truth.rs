@@ -49,28 +49,39 @@ impl Headers<'_> {
 }
 
 impl Truth {
-    /// Reads whichever heads the table has; over time, at its times within `range`.
+    /// Reads whichever heads the table has; over one coordinate, where it is within `bounds`. A coordinate on which none of them
+    /// depends may be missing: they are then looked at halfway between its bounds.
     ///
     /// # Errors
     /// A table without any of them, a cell that is no number, times that do not rise or are all outside.
     pub fn read(
         table: &Table,
         scene: &Scene,
-        range: Option<[f64; 2]>,
+        bounds: &[[f64; 2]],
         headers: Headers<'_>,
     ) -> Result<Truth, PrepareError> {
-        let coordinates = scene.coordinates.iter().map(|c| headers.read(table, c.name, c.unit.text));
+        let heads = heads(table, scene, headers)?;
+        let is_needed = |axis: &usize| heads.iter().any(|(head, _)| scene.axes(*head).contains(axis));
+        let coordinates = scene.coordinates.iter().enumerate().map(|(axis, coordinate)| {
+            let read = headers.read(table, coordinate.name, coordinate.unit.text);
+            match (read, bounds.get(axis)) {
+                (Err(DataError::Column { .. }), Some([low, high])) if !is_needed(&axis) => {
+                    Ok(vec![0.5 * (low + high); table.rows()])
+                }
+                (read, _) => read,
+            }
+        });
         let coordinates = coordinates.collect::<Result<Vec<_>, _>>()?;
-        let inside = |row: usize| match range {
+        let inside = |row: usize| match bounds {
             // A time that was rounded on its way into a file still counts.
-            Some([first, last]) => {
+            [[first, last]] => {
                 let slack = 1e-6 * (last - first);
                 coordinates[0][row] >= first - slack && coordinates[0][row] <= last + slack
             }
-            None => true,
+            _ => true,
         };
         let kept: Vec<usize> = (0..table.rows()).filter(|&row| inside(row)).collect();
-        if let Some(data) = range {
+        if let [data] = *bounds {
             table.require_increasing(scene.coordinates[0].name)?;
             if kept.is_empty() {
                 let truth = [coordinates[0][0], coordinates[0][table.rows() - 1]];
@@ -78,19 +89,7 @@ impl Truth {
             }
         }
         let keep = |values: Vec<f64>| kept.iter().map(|&row| values[row]).collect();
-        let mut heads = Vec::new();
-        for head in scene.heads {
-            match headers.read(table, head.name, head.unit.text) {
-                Ok(values) => heads.push((head.name, keep(values))),
-                Err(DataError::Column { .. }) => {}
-                Err(error) => return Err(error.into()),
-            }
-        }
-        if heads.is_empty() {
-            let heads = scene.heads.iter().map(|head| head.name).collect::<Vec<_>>().join(", ");
-            let columns = table.headers().collect::<Vec<_>>().join(", ");
-            return Err(PrepareError::TruthHeads { path: table.path().into(), heads, columns });
-        }
+        let heads = heads.into_iter().map(|(head, values)| (scene.heads[head].name, keep(values))).collect();
         let points = kept.iter().flat_map(|&row| coordinates.iter().map(move |values| values[row])).collect();
         Ok(Truth { outside: table.rows() - kept.len(), points, heads })
     }
@@ -99,4 +98,21 @@ impl Truth {
     pub fn of(&self, head: &str) -> Option<&[f64]> {
         self.heads.iter().find(|(name, _)| *name == head).map(|(_, values)| values.as_slice())
     }
+}
+
+/// The heads that a table has, by their numbers, with all of their values.
+fn heads(table: &Table, scene: &Scene, headers: Headers<'_>) -> Result<Vec<(usize, Vec<f64>)>, PrepareError> {
+    let read =
+        scene.heads.iter().enumerate().filter_map(|(at, head)| match headers.read(table, head.name, head.unit.text) {
+            Ok(values) => Some(Ok((at, values))),
+            Err(DataError::Column { .. }) => None,
+            Err(error) => Some(Err(error.into())),
+        });
+    let heads = read.collect::<Result<Vec<_>, PrepareError>>()?;
+    if heads.is_empty() {
+        let heads = scene.heads.iter().map(|head| head.name).collect::<Vec<_>>().join(", ");
+        let columns = table.headers().collect::<Vec<_>>().join(", ");
+        return Err(PrepareError::TruthHeads { path: table.path().into(), heads, columns });
+    }
+    Ok(heads)
 }

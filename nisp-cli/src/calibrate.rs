@@ -132,6 +132,7 @@ fn picture(calibration: &Calibration) -> Result<Vec<u8>, DataError> {
         x: Quantity::new("x", "m"),
         y: Quantity::new("y", "m"),
         outline: Vec::new(),
+        marks: Vec::new(),
         panels: vec![panel],
     };
     Ok(field_map(&map)?.svg().into())

@@ -72,6 +72,7 @@ fn membrane(data: &Path) -> Result<Picture, DataError> {
         x: Quantity::new("x", "m"),
         y: Quantity::new("y", "m"),
         outline: Domain::ellipse([0.0, 0.0], [0.06, 0.04])?.outline(200),
+        marks: Vec::new(),
         panels: vec![
             panel("estimate", &moved, scale)?,
             panel("truth", f, scale)?,

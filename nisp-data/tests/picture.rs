@@ -74,6 +74,7 @@ fn scattered([wide, tall]: [f64; 2]) -> FieldMap {
         x: Quantity::new("x", "m"),
         y: Quantity::new("y", "m"),
         outline: vec![],
+        marks: vec![],
         panels: vec![panel],
     }
 }
@@ -83,6 +84,9 @@ fn maps_of_scattered_points_are_drawn() {
     let map = scattered([1.0, 1.0]);
     let svg = field_map(&map).unwrap().svg().to_string();
     assert!(svg.contains("data:image/png;base64,") && svg.contains("f [Pa]") && !svg.contains("NaN"));
+    assert!(!svg.contains("measured"));
+    let marked = field_map(&FieldMap { marks: vec![[0.01, 0.01]], ..map.clone() }).unwrap().svg().to_string();
+    assert!(marked.contains("measured"));
     assert!(field_map(&FieldMap { panels: vec![], ..map }).is_err());
 }
 

@@ -99,10 +99,36 @@ fn refuses_with_what_to_do() {
     assert!(refusal(b"# a\n# b\n").contains("only comments"));
     assert!(refusal(b"t,q\n0,1\n").contains("at least 2 are needed"));
     assert!(refusal(b"t,q\n0,1\n1\n").contains("line 3: 1 cells where the header has 2"));
+    assert!(refusal(b"Run 3\nby hand\nt;q\n0;1\n1;2\n").contains("the line that begins with `Run 3` is a title"));
+    assert!(
+        refusal(b"Run 3, by hand\nt,q,f\n0,1,2\n1,2,3\n")
+            .contains("line 2: 3 cells where the header has 2; if the line")
+    );
     assert!(refusal(b"0,1\n0,1\n1,2\n").contains("put a line of column names above it"));
     assert!(refusal(b"t,q\n0,\xff\n").contains("not UTF-8 text (byte 6)"));
     assert!(Table::read("/nowhere/t.csv").unwrap_err().to_string().contains("no such file"));
     assert!(Table::read("/").unwrap_err().to_string().contains("is a folder"));
+}
+
+#[test]
+fn thousands_are_not_taken_for_ones() {
+    let q = |cells: [&str; 4]| {
+        let rows: Vec<String> = (0..4).zip(cells).map(|(t, cell)| format!("{t};{cell}\n")).collect();
+        parse(&format!("t;q\n{}", rows.concat())).quantity("q", "m").map_err(|error| error.to_string())
+    };
+    let doubt = q(["998", "999", "1.000", "1.001"]).unwrap_err();
+    assert!(doubt.contains("line 4, column `q`: `1.000` stands in a column of whole numbers up to 999"), "{doubt}");
+    assert!(q(["0", "-640", "-1,280", "2.560"]).is_err());
+    assert_eq!(q(["998", "999", "1.000", "1.0010"]).unwrap(), [998.0, 999.0, 1.0, 1.001]);
+    assert_eq!(q(["1", "1.125", "1.250", "2"]).unwrap(), [1.0, 1.125, 1.25, 2.0]);
+    assert_eq!(q(["120", "120.125", "130,250", "140"]).unwrap(), [120.0, 120.125, 130.25, 140.0]);
+    assert_eq!(q(["0.125", "100", "200", "300"]).unwrap(), [0.125, 100.0, 200.0, 300.0]);
+    for cell in ["1,234.5", "1.234,5", "1'234", "1 234,5", "1.234.567"] {
+        let said = q(["1", "2", cell, "4"]).unwrap_err();
+        assert!(said.contains("without marks between thousands"), "{said}");
+    }
+    assert!(q(["1", "2", "2026-01-02", "4"]).unwrap_err().contains("is a date"));
+    assert!(q(["1", "2", "12.05.2026", "4"]).unwrap_err().contains("is a date"));
 }
 
 #[test]

@@ -150,7 +150,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     }
 
     let headers = Headers { chosen: &request.columns, rather: theory.rather, also: ALSO };
-    let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
+    let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, &[], headers)).transpose()?;
     let mut contact = Contact {
         displacement: ["u", "v", "w"],
         unit: Scale::new(1e-3),

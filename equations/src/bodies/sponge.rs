@@ -150,7 +150,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     bind_cloud(&mut problem, &observed.cloud)?;
 
     let headers = Headers { chosen: &request.columns, rather: &[], also: ALSO };
-    let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, None, headers)).transpose()?;
+    let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, &[], headers)).transpose()?;
     let square = Domain::cuboid(&low[..2], &high[..2])?;
     let mut contact = Contact {
         displacement: ["u_x", "u_y", "u_z"],

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use nisp::schema::{Origin, Scene};
 
-use super::Tables;
+use super::{Tables, wants_data};
 use crate::entry::hint;
 use crate::error::PrepareError;
 use crate::prepared::Assumed;
@@ -36,17 +36,37 @@ pub(super) fn points(schema: &Scene, tables: &Tables<'_>, request: &Request) -> 
     }
 }
 
-/// Every name in `--column` must be one that the scene observes, or a coordinate.
+/// Every group with columns of measurements must have a table.
+pub(super) fn measured(schema: &Scene, tables: &Tables<'_>) -> Result<(), PrepareError> {
+    let lacking = schema.groups.iter().filter(|group| wants_data(group) && tables.of(group).is_none());
+    let faults = lacking.map(|group| {
+        let columns: Vec<&str> = group.columns.iter().map(|column| column.name).collect();
+        PrepareError::Unmeasured { group: group.name, columns: columns.join(", ") }
+    });
+    let faults: Vec<_> = faults.collect();
+    if faults.is_empty() { Ok(()) } else { Err(PrepareError::all(faults)) }
+}
+
+/// Every name in `--column` must be one that the scene observes, or a coordinate, or a quantity that the truth has.
 pub(crate) fn columns(schema: &Scene, request: &Request) -> Result<(), PrepareError> {
-    let measured = schema.groups.iter().filter(|group| !group.is_beliefs());
-    let observed = measured.flat_map(|group| group.columns).map(|column| column.name);
-    let known: Vec<_> = observed.chain(schema.coordinates.iter().map(|axis| axis.name)).collect();
+    let mut known = are_read(schema);
+    if request.truth.is_some() {
+        let others = schema.heads.iter().map(|head| head.name).filter(|head| !known.contains(head));
+        known.extend(others.collect::<Vec<_>>());
+    }
     match request.columns.iter().find(|(name, _)| !known.contains(&name.as_str())) {
         Some((name, _)) => {
             Err(PrepareError::Column { name: name.clone(), hint: hint(name, &known), have: known.join(", ") })
         }
         None => Ok(()),
     }
+}
+
+/// The names that are read from tables of measurements.
+pub(super) fn are_read(schema: &Scene) -> Vec<&'static str> {
+    let measured = schema.groups.iter().filter(|group| !group.is_beliefs());
+    let observed = measured.flat_map(|group| group.columns).map(|column| column.name);
+    observed.chain(schema.coordinates.iter().map(|axis| axis.name)).collect()
 }
 
 /// Parameters that nobody gave beside data of the user's own.

@@ -54,7 +54,7 @@ impl<'a> Tables<'a> {
 /// A scene with all that was found for it.
 pub(crate) struct Found {
     pub(crate) problem: Problem,
-    /// What was measured over one coordinate.
+    /// What was measured.
     pub(crate) measured: Vec<Measured>,
     /// What the user should know of the data.
     pub(crate) warnings: Vec<String>,
@@ -94,8 +94,13 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
     };
     let found = bind(scene, &tables, request)?;
     let truth = request.truth.as_ref().map(Table::read).transpose()?;
-    let range = found.bounds.first().filter(|_| schema.coordinates.len() == 1).copied();
-    let truth = truth.map(|truth| Truth::read(&truth, schema, range, Headers::default())).transpose()?;
+    // A column may be chosen for what is measured, whose truth has another one.
+    let (unmeasured, measured) = request.columns.iter().cloned().partition::<Vec<_>, _>(|(name, _)| {
+        schema.heads.iter().any(|head| head.name == name) && !check::are_read(schema).contains(&name.as_str())
+    });
+    let also: Vec<(&str, &str)> = measured.iter().map(|(name, header)| (name.as_str(), header.as_str())).collect();
+    let headers = Headers { chosen: &unmeasured, also: &also, ..Headers::default() };
+    let truth = truth.map(|truth| Truth::read(&truth, schema, &found.bounds, headers)).transpose()?;
     let points = wanted(schema, &found, request)?;
     let files: Vec<String> = tables.files().map(|path| path.display().to_string()).collect();
     Ok(Prepared {
@@ -124,6 +129,7 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
     let schema = scene.schema;
     check::columns(schema, request)?;
     check::points(schema, tables, request)?;
+    check::measured(schema, tables)?;
     let mut found = Found {
         problem: Problem::new(scene),
         measured: Vec::new(),
@@ -164,10 +170,6 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
     for (group, rows) in schema.groups.iter().zip(rows).filter(|(group, _)| !group.is_beliefs()) {
         let (points, columns) = match rows {
             Some(Rows { points, columns }) => (points.into(), columns),
-            None if wants_data(group) => {
-                let columns: Vec<&str> = group.columns.iter().map(|column| column.name).collect();
-                return Err(PrepareError::Unmeasured { group: group.name, columns: columns.join(", ") });
-            }
             None => {
                 let placed = unmeasured(schema, group, &found.bounds, tables.folder, request)?;
                 let columns = normals(schema, group, &placed);

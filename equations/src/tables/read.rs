@@ -35,14 +35,12 @@ pub(super) fn rows(
             return Err(PrepareError::all([points.err(), columns.err()].into_iter().flatten().collect()));
         }
     };
-    if schema.coordinates.len() == 1 {
-        let measured = group.columns.iter().zip(&columns).filter(|(_, values)| !values.iter().all(|x| x.is_nan()));
-        found.measured.extend(measured.map(|(c, values)| Measured {
-            name: c.name,
-            at: points.clone(),
-            values: values.clone(),
-        }));
-    }
+    let measured = group.columns.iter().zip(&columns).filter(|(_, values)| !values.iter().all(|x| x.is_nan()));
+    found.measured.extend(measured.map(|(c, values)| Measured {
+        name: c.name,
+        at: points.clone(),
+        values: values.clone(),
+    }));
     Ok(Rows { points, columns })
 }
 

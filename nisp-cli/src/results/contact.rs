@@ -8,7 +8,7 @@ use nisp_data::export::Mesh;
 use nisp_data::picture::{Grid, MapPanel, Picture, Quantity, SurfaceView, surface_view};
 use nisp_equations::{Contact, Prepared};
 
-use super::Answer;
+use super::{Answer, maps};
 
 /// Files that show the deformed surface.
 pub(super) const SURFACE: [&str; 3] = ["surface.svg", "surface.vtu", "surface.ply"];
@@ -17,7 +17,7 @@ pub(super) const SURFACE: [&str; 3] = ["surface.svg", "surface.vtu", "surface.pl
 pub(super) fn answer(prepared: &Prepared, contact: &Contact, solution: &mut Solution) -> Result<Answer, DataError> {
     let estimates = super::evaluate(solution, &prepared.points);
     let head = shown(contact, solution)?;
-    let plot = maps(prepared, contact, solution, head, &estimates).map(|plot| plot.svg().into());
+    let plot = pressure(prepared, contact, solution, head, &estimates).map(|plot| plot.svg().into());
     let mut answer = Answer::new(prepared, estimates)?;
     answer.show(super::PLOT, plot);
     let surface = match surface(prepared, contact, solution, head) {
@@ -41,7 +41,7 @@ pub(super) fn answer(prepared: &Prepared, contact: &Contact, solution: &mut Solu
 /// A map of the pressure, or of the height where nothing presses.
 pub(crate) fn map(prepared: &Prepared, contact: &Contact, solution: &mut Solution) -> Result<Picture, DataError> {
     let estimates = solution.evaluate(&prepared.points);
-    maps(prepared, contact, solution, shown(contact, solution)?, &estimates)
+    pressure(prepared, contact, solution, shown(contact, solution)?, &estimates)
 }
 
 /// The head that pictures show.
@@ -84,7 +84,7 @@ fn surface(prepared: &Prepared, contact: &Contact, solution: &Solution, head: &H
 }
 
 /// The estimate, and beside it truth and error where the truth is known, with the outlines of the patches.
-fn maps(
+fn pressure(
     prepared: &Prepared,
     contact: &Contact,
     solution: &Solution,
@@ -107,7 +107,7 @@ fn maps(
     let panels = match prepared.truth.as_ref().and_then(|truth| Some((truth, truth.of(head.name)?))) {
         None => {
             let value = Quantity::new(head.name, head.unit.text);
-            let panel = super::panel("estimate", value, grid, ColourScale::from_zero(found));
+            let panel = maps::panel("estimate", value, grid, ColourScale::from_zero(found));
             vec![MapPanel { contours: outlines, ..panel }]
         }
         Some((truth, real)) => {
@@ -117,7 +117,7 @@ fn maps(
             let both = [outlines, own.clone()].concat();
             let truth = (truth.points.as_slice(), at.as_slice(), real);
             let [shown, real, error] =
-                super::compared(solution, estimate, &places, truth, ColourScale::from_zero(real))?;
+                maps::compared(solution, (estimate, &places), truth, ColourScale::from_zero(real))?;
             vec![
                 MapPanel { contours: both.clone(), ..shown },
                 MapPanel { contours: own, ..real },
@@ -125,5 +125,5 @@ fn maps(
             ]
         }
     };
-    super::map(prepared, solution, panels)
+    maps::map(prepared, solution, [0, 1], panels)
 }

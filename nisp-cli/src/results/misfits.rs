@@ -79,8 +79,15 @@ fn picture(scene: &Scene, misfits: &[Misfits]) -> Option<Result<Picture, DataErr
                 })
             });
             let panels = panels.collect::<Result<Vec<_>, DataError>>();
-            let map =
-                |panels| FieldMap { title, subtitle, x: quantity(0), y: quantity(1), outline: Vec::new(), panels };
+            let map = |panels| FieldMap {
+                title,
+                subtitle,
+                x: quantity(0),
+                y: quantity(1),
+                outline: Vec::new(),
+                marks: Vec::new(),
+                panels,
+            };
             Some(panels.and_then(|panels| field_map(&map(panels))))
         }
         _ => None,

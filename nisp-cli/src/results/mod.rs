@@ -1,6 +1,8 @@
 //! The files of a solved problem: source and state as CSV, a plot, and the answer itself.
 
 mod contact;
+mod curves;
+mod maps;
 mod misfits;
 
 pub(crate) use contact::map as contact_map;
@@ -8,22 +10,13 @@ pub(crate) use contact::map as contact_map;
 use std::path::Path;
 
 use crate::interrupt;
+use nisp::schema::Scene;
 use nisp::solve::driver::Status;
 use nisp::{Estimate, Solution};
-use nisp_data::colour::ColourScale;
 use nisp_data::export::Mesh;
 use nisp_data::out_dir::Content;
-use nisp_data::picture::{
-    Curve, FieldMap, Grid, LinePanel, LinePlot, MapPanel, Picture, Quantity, field_map, line_plot,
-};
 use nisp_data::{DataError, Table};
 use nisp_equations::Prepared;
-
-/// Points of a map at least.
-const FEWEST: usize = 4;
-
-/// Points of a curve: a layer between two measurements shows too.
-const CURVE: usize = 600;
 
 /// Names of the files that will be written.
 pub(crate) fn names(prepared: &Prepared) -> Vec<&'static str> {
@@ -94,31 +87,28 @@ fn shown(prepared: &Prepared, solution: &mut Solution, asked: Option<&Path>) -> 
     if let Some(contact) = &prepared.contact {
         return contact::answer(prepared, contact, solution);
     }
-    let times = &prepared.points;
-    let outside = asked.map(|path| Outside::of(path, solution, times));
-    if solution.scene().coordinates.len() > 1 {
-        let mut estimates = evaluate(solution, times);
-        outside.iter().for_each(|outside| outside.mask(&mut estimates));
-        let draw = if prepared.planes.is_empty() { maps } else { planes };
-        let plot = draw(prepared, solution, &estimates).map(|plot| plot.svg().into());
-        let volume = (solution.scene().coordinates.len() == 3).then(|| volume(prepared, &estimates));
-        let mut answer = Answer::new(prepared, estimates)?;
-        answer.show(PLOT, plot);
-        if let Some(volume) = volume {
-            answer.show(VOLUME, volume);
-        }
-        answer.warnings.extend(outside.and_then(|outside| outside.said()));
-        return Ok(answer);
-    }
-    let (first, last) = (times[0], times[times.len() - 1]);
-    let fine: Vec<f64> = (0..CURVE).map(|i| first + (last - first) * i as f64 / (CURVE - 1) as f64).collect();
+    let scene = solution.scene();
+    let (points, axes) = (&prepared.points, scene.coordinates.len());
+    let outside = asked.map(|path| Outside::of(path, solution, points));
+    let axis = curves::axis(scene);
+    let fine = match axis {
+        Some(axis) => curves::points(prepared, scene, axis),
+        None => maps::points(prepared, scene),
+    };
     // Together, because the factorisation behind the error bars is the dear part.
-    let mut estimates = evaluate(solution, &[times.as_slice(), &fine].concat());
-    let curves: Vec<_> = estimates.iter_mut().map(|estimate| split(estimate, times.len())).collect();
+    let mut estimates = evaluate(solution, &[points.as_slice(), &fine].concat());
+    let drawn: Vec<_> = estimates.iter_mut().map(|estimate| split(estimate, points.len() / axes)).collect();
     outside.iter().for_each(|outside| outside.mask(&mut estimates));
-    let plot = plot(prepared, solution, &fine, &curves).map(|plot| plot.svg().into());
+    let plot = match axis {
+        Some(axis) => curves::draw(prepared, solution, axis, (&fine, &drawn)),
+        None => maps::draw(prepared, solution, &estimates, (&fine, &drawn)),
+    };
+    let volume = (axes == 3).then(|| volume(prepared, &estimates));
     let mut answer = Answer::new(prepared, estimates)?;
-    answer.show(PLOT, plot);
+    answer.show(PLOT, plot.map(|plot| plot.svg().into()));
+    if let Some(volume) = volume {
+        answer.show(VOLUME, volume);
+    }
     answer.warnings.extend(outside.and_then(|outside| outside.said()));
     Ok(answer)
 }
@@ -198,124 +188,10 @@ fn volume(prepared: &Prepared, estimates: &[Estimate]) -> Result<Vec<u8>, DataEr
     Ok(mesh.vtu_bytes())
 }
 
-fn plot(prepared: &Prepared, solution: &Solution, fine: &[f64], curves: &[Estimate]) -> Result<Picture, DataError> {
-    let scene = solution.scene();
-    let mut sorted: Vec<&Estimate> = curves.iter().collect();
-    sorted.sort_by_key(|estimate| !estimate.source);
-    let panels = sorted.into_iter().map(|estimate| {
-        let mut panel = LinePanel::new(Quantity::new(estimate.name, estimate.unit.text));
-        let head = scene.heads.iter().find(|head| head.name == estimate.name);
-        panel.caption = head.map_or_else(String::new, |head| first_line(head.docs).into());
-        let measured = prepared.measured.iter().find(|measured| measured.name == estimate.name);
-        let measured = measured.map(|measured| {
-            let rows = measured.at.iter().copied().zip(measured.values.iter().copied());
-            rows.filter(|(_, value)| !value.is_nan()).unzip::<f64, f64, Vec<f64>, Vec<f64>>()
-        });
-        panel.measured = measured.as_ref().map(|(times, values)| Curve::new(times, values));
-        panel.estimate = Some(Curve::new(fine, &estimate.values));
-        panel.deviation.clone_from(&estimate.deviations);
-        let truth = prepared.truth.as_ref();
-        panel.truth = truth.and_then(|truth| Some(Curve::new(&truth.points, truth.of(estimate.name)?)));
-        panel
-    });
-    let x = Quantity::new(scene.coordinates[0].name, scene.coordinates[0].unit.text);
-    line_plot(&LinePlot { title: title(solution), subtitle: subtitle(prepared, solution), x, panels: panels.collect() })
-}
-
-/// Sources, or fields if there are none, over a plane domain: a lone one beside its truth where that is known.
-fn maps(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Result<Picture, DataError> {
-    let (points, _) = prepared.points.as_chunks::<2>();
-    let sources = estimates.iter().any(|estimate| estimate.source);
-    let shown: Vec<&Estimate> = estimates.iter().filter(|estimate| estimate.source == sources).take(3).collect();
-    let truth = prepared.truth.as_ref();
-    let panels = match (shown.as_slice(), truth.and_then(|truth| Some((truth, truth.of(shown.first()?.name)?)))) {
-        ([estimate], Some((truth, real))) => {
-            let (at, _) = truth.points.as_chunks::<2>();
-            let scale = ColourScale::sequential(&shown_with(real, &estimate.values));
-            compared(solution, estimate, points, (&truth.points, at, real), scale)?.into()
-        }
-        _ => {
-            let panel = |estimate: &&Estimate| {
-                let scale = ColourScale::sequential(&estimate.values);
-                let value = Quantity::new(estimate.name, estimate.unit.text);
-                Ok(panel("estimate", value, Grid::from_points(points, &estimate.values)?, scale))
-            };
-            shown.iter().map(panel).collect::<Result<_, DataError>>()?
-        }
-    };
-    map(prepared, solution, panels)
-}
-
-/// Values that a scale of colours shows beside a truth: those of the estimate, too, but for wild ones.
-fn shown_with(real: &[f64], found: &[f64]) -> Vec<f64> {
-    let (low, high) = real.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (x.min(l), x.max(h)));
-    let range = high - low;
-    real.iter().copied().chain(found.iter().map(|value| value.clamp(low - range, high + range))).collect()
-}
-
-/// The first source, or field if there is none, over planes of the first two coordinates.
-fn planes(prepared: &Prepared, solution: &Solution, estimates: &[Estimate]) -> Result<Picture, DataError> {
-    let scene = solution.scene();
-    let shown = estimates.iter().find(|estimate| estimate.source).or(estimates.first());
-    let name = shown.map_or("", |estimate| estimate.name);
-    let drawn = prepared.planes.iter().map(|(title, points)| {
-        let found = solution.evaluate(points).into_iter().find(|estimate| estimate.name == name);
-        let places = points.chunks_exact(scene.coordinates.len()).map(|point| [point[0], point[1]]);
-        found.map(|estimate| (title, estimate, places.collect::<Vec<_>>()))
-    });
-    // A plane may only touch the body.
-    let drawn: Vec<_> = drawn.flatten().filter(|(_, _, places)| places.len() >= FEWEST).collect();
-    let values: Vec<f64> = drawn.iter().flat_map(|(_, estimate, _)| estimate.values.iter().copied()).collect();
-    // One scale for all, so that they can be compared.
-    let scale = ColourScale::sequential(&values);
-    let panels = drawn.iter().map(|(title, estimate, places)| {
-        let value = Quantity::new(estimate.name, estimate.unit.text);
-        Ok(panel(title, value, Grid::from_points(places, &estimate.values)?, scale))
-    });
-    let panels = panels.collect::<Result<_, DataError>>()?;
-    map(prepared, solution, panels)
-}
-
-/// Panels over the first two coordinates.
-fn map(prepared: &Prepared, solution: &Solution, panels: Vec<MapPanel>) -> Result<Picture, DataError> {
-    let scene = solution.scene();
-    let quantity = |at: usize| Quantity::new(scene.coordinates[at].name, scene.coordinates[at].unit.text);
-    field_map(&FieldMap {
-        title: title(solution),
-        subtitle: subtitle(prepared, solution),
-        x: quantity(0),
-        y: quantity(1),
-        outline: prepared.outline.clone(),
-        panels,
-    })
-}
-
-fn panel(title: &str, value: Quantity, grid: Grid, scale: ColourScale) -> MapPanel {
-    MapPanel { title: title.into(), value, grid, scale, contours: Vec::new() }
-}
-
-/// An estimate, the truth in the same colours, and what the estimate is off by; the truth with its points, flat and in the
-/// plane of the picture.
-fn compared(
-    solution: &Solution,
-    estimate: &Estimate,
-    places: &[[f64; 2]],
-    (points, at, real): (&[f64], &[[f64; 2]], &[f64]),
-    scale: ColourScale,
-) -> Result<[MapPanel; 3], DataError> {
-    let again = solution.evaluate(points).into_iter().find(|again| again.name == estimate.name);
-    let found = again.iter().flat_map(|found| &found.values);
-    let error: Vec<f64> = found.zip(real).map(|(found, real)| found - real).collect();
-    // One wild point must not leave the rest of the error without a colour.
-    let most = real.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-    let clamped: Vec<f64> = error.iter().map(|error| error.clamp(-most, most)).collect();
-    let quantity = |name: &str| Quantity::new(name, estimate.unit.text);
-    let difference = quantity(&format!("error of {}", estimate.name));
-    Ok([
-        panel("estimate", quantity(estimate.name), Grid::from_points(places, &estimate.values)?, scale),
-        panel("truth", quantity(estimate.name), Grid::from_points(at, real)?, scale),
-        panel("error", difference, Grid::from_points(at, &error)?, ColourScale::diverging(&clamped)),
-    ])
+/// The least and the greatest value of a coordinate among the points of [`Prepared`].
+fn range(prepared: &Prepared, scene: &Scene, axis: usize) -> [f64; 2] {
+    let values = prepared.points.iter().skip(axis).step_by(scene.coordinates.len());
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)])
 }
 
 fn title(solution: &Solution) -> String {

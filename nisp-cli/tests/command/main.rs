@@ -10,6 +10,7 @@ mod contact;
 mod contract;
 mod eval;
 mod few_places;
+mod fewer_coordinates;
 mod folders;
 mod forward;
 mod forward_exact;

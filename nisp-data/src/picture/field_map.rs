@@ -25,6 +25,8 @@ pub struct FieldMap {
     pub y: Quantity,
     /// The region's edge (`Domain::outline`); empty if the colours may end where the values do.
     pub outline: Vec<[f64; 2]>,
+    /// Where was measured, as dots; empty if that is not shown.
+    pub marks: Vec<[f64; 2]>,
     /// From left to right, at most three.
     pub panels: Vec<MapPanel>,
 }
@@ -46,6 +48,8 @@ pub struct MapPanel {
 
 /// Height over width of a map whose axes have a scale each.
 const STRETCHED: f64 = 0.75;
+/// Radius of a dot.
+const MARK: f64 = 1.4;
 /// A lone map need not fill the page.
 const WIDEST: f64 = 560.0;
 
@@ -77,8 +81,9 @@ pub fn field_map(map: &FieldMap) -> Result<Picture, DataError> {
     let used = left + count * width + gap * (count - 1.0);
     top += heading::draw(&mut canvas, [left, top], used - left, &map.title, &map.subtitle);
     let names = contour_names(map);
-    let entries: Vec<_> =
-        names.iter().enumerate().map(|(k, name)| (Swatch::Line(contour_stroke(k)), name.to_string())).collect();
+    let entries = names.iter().enumerate().map(|(k, name)| (Swatch::Line(contour_stroke(k)), name.to_string()));
+    let marked = (!map.marks.is_empty()).then(|| (Swatch::Dot { colour: INK, radius: MARK }, "measured".to_string()));
+    let entries: Vec<_> = entries.chain(marked).collect();
     legend::draw(&mut canvas, [left, top], page - left - MARGIN, &entries);
     top += legend::height(&entries, page - left - MARGIN) + 1.3 * LABEL;
 
@@ -167,6 +172,10 @@ fn draw_map(
         canvas.pieces(&pieces, Stroke::solid("#ffffff", stroke.width + 1.2));
         canvas.pieces(&pieces, stroke);
     }
+    // A light rim keeps a dot visible on every colour.
+    let marks: Vec<[f64; 2]> = map.marks.iter().map(|&mark| place(mark)).collect();
+    canvas.dots(&marks, 1.5 * MARK, "#ffffff");
+    canvas.dots(&marks, MARK, INK);
     Ok(())
 }
 

@@ -190,7 +190,8 @@ fn other_stroke(index: usize) -> Stroke<'static> {
 fn legend_entries(plot: &LinePlot) -> Vec<(Swatch<'static>, String)> {
     let any = |test: fn(&LinePanel) -> bool| plot.panels.iter().any(test);
     let mut entries = Vec::new();
-    if any(|panel| panel.measured.is_some()) {
+    // Dots alone are what the title says.
+    if any(|panel| panel.measured.is_some()) && any(|panel| panel.curves().count() > 1) {
         entries.push((Swatch::Dot { colour: MEASURED, radius: 1.5 * MEASURED_RADIUS }, "measured".to_string()));
     }
     if any(|panel| panel.deviation.is_some() && panel.estimate.is_some()) {

@@ -3,12 +3,14 @@
 mod lookup;
 mod read;
 mod rows;
+mod thousands;
 mod write;
 
 pub use rows::Rows;
 use std::path::{Path, PathBuf};
 
 use crate::DataError;
+use thousands::Thousands;
 
 /// Columns of numbers with one header each, all of the same length.
 #[derive(Debug, Clone)]
@@ -24,8 +26,9 @@ pub struct Table {
 struct Column {
     header: String,
     values: Vec<f64>,
-    /// The first cell that is no finite number. It only matters to whoever asks for this column.
+    /// The first cell that is no finite number. It only matters where this column is asked for.
     fault: Option<Fault>,
+    thousands: Thousands,
 }
 
 #[derive(Debug, Clone)]

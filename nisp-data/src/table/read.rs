@@ -2,9 +2,13 @@
 
 use std::path::Path;
 
+use super::thousands::Thousands;
 use super::{Column, Fault, Kind, Table};
 use crate::DataError;
 use crate::input::{MOST_BYTES, decode, read_bytes};
+
+/// What parts cells.
+const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
 
 /// Fewer rows than this carry no equation of motion.
 const MIN_ROWS: usize = 2;
@@ -53,8 +57,15 @@ impl Table {
                 continue;
             }
             if record.len() != columns.len() {
-                let what =
-                    format!("{} cells where the header has {}; fill or remove this row", record.len(), columns.len());
+                let instead = if lines.is_empty() || columns.len() == 1 {
+                    format!(
+                        "; if the line that begins with `{}` is a title, begin it with `#` or remove it",
+                        &headers[0]
+                    )
+                } else {
+                    "; fill or remove this row".into()
+                };
+                let what = format!("{} cells where the header has {}{instead}", record.len(), columns.len());
                 return Err(DataError::line(path, line, what));
             }
             if record.iter().any(|cell| cell.contains(['\n', '\r'])) {
@@ -71,6 +82,7 @@ impl Table {
             let what = format!("{} row(s) of data below the header; at least {least} {are} needed", lines.len());
             return Err(DataError::file(path, what));
         }
+        columns.iter_mut().for_each(Column::doubt_thousands);
         Ok(Table { path: path.to_path_buf(), columns, lines })
     }
 }
@@ -115,12 +127,22 @@ impl Column {
             Err(_) => Kind::Word,
         };
         let value = parsed.unwrap_or(f64::NAN);
+        if value.is_finite() {
+            self.thousands.see(line, cell, value);
+        }
         // The worst is what must be told.
         let worse = self.fault.as_ref().is_none_or(|fault| fault.kind < kind);
         if !value.is_finite() && worse {
             self.fault = Some(Fault { line, what: describe(cell), kind });
         }
         self.values.push(value);
+    }
+
+    /// A column whose numbers may be a thousand times larger is refused where it is asked for.
+    fn doubt_thousands(&mut self) {
+        if let (None, Some((line, what))) = (&self.fault, self.thousands.doubt()) {
+            self.fault = Some(Fault { line, what, kind: Kind::Word });
+        }
     }
 }
 
@@ -134,6 +156,16 @@ fn number(cell: &str, mark: u8) -> Result<f64, std::num::ParseFloatError> {
         b',' => cell.parse(),
         _ => cell.replacen(',', ".", 1).parse(),
     }
+}
+
+/// True of `1,234.5`, `1.234,5`, `1'234` and `1 234`.
+fn parts_thousands(cell: &str) -> bool {
+    let digits = cell.trim_start_matches(['-', '+']);
+    let mut parts = digits.split([',', '.', '\'', ' ', '\u{a0}', '\u{202f}']);
+    let is_digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
+    parts.next().is_some_and(|first| first.len() < 4 && is_digits(first))
+        && parts.next().is_some_and(|second| second.len() == 3 && is_digits(second))
+        && parts.all(is_digits)
 }
 
 /// True of a date or a time of day: digits with dashes, slashes or colons between them.
@@ -151,6 +183,8 @@ fn describe(cell: &str) -> String {
         format!("`{shown}` is not a finite number; remove the row")
     } else if cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok() {
         format!("`{shown}` is not a number; write the decimal comma as a point, or part cells by semicolons")
+    } else if parts_thousands(cell) {
+        format!("`{shown}` is not a number; write it without marks between thousands, with a point for decimals")
     } else if is_date(cell) {
         format!("`{shown}` is a date or a time of day; write seconds, or another unit, from a start of your choice")
     } else {
@@ -158,10 +192,10 @@ fn describe(cell: &str) -> String {
     }
 }
 
-/// The separator of the header line: a comma unless there is none and another one is.
+/// The separator of the header line, or of the first line that has one: a comma unless there is none and another one is.
 pub(super) fn separator(text: &str) -> u8 {
-    let header = text.lines().find(|line| !line.trim().is_empty() && !line.starts_with('#')).unwrap_or("");
-    [b',', b';', b'\t'].into_iter().find(|&mark| header.as_bytes().contains(&mark)).unwrap_or(b',')
+    let mut lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    lines.find_map(|line| SEPARATORS.into_iter().find(|mark| line.as_bytes().contains(mark))).unwrap_or(b',')
 }
 
 pub(super) fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<Vec<Column>, DataError> {
@@ -172,7 +206,15 @@ pub(super) fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<
         let what = "the first line holds numbers; put a line of column names above it, for instance `t [s],q [m]`";
         return Err(DataError::file(path, what));
     }
-    Ok(headers.iter().map(|header| Column { header: header.to_string(), values: Vec::new(), fault: None }).collect())
+    Ok(headers
+        .iter()
+        .map(|header| Column {
+            header: header.to_string(),
+            values: Vec::new(),
+            fault: None,
+            thousands: Thousands::default(),
+        })
+        .collect())
 }
 
 pub(super) fn syntax(path: &Path, error: &csv::Error) -> DataError {

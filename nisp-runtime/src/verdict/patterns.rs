@@ -58,7 +58,7 @@ fn along(left: &Misfits, row: &[f64]) -> Check {
     let mean = row.iter().sum::<f64>() / row.len() as f64;
     let said = if mean.abs() > CONSTANT * root_mean_square(row.iter().copied()) {
         format!(
-            "`{}` is off by {} all along: its sensor has an offset, or the equations do not describe it",
+            "`{}` is off by {} all along: its sensor has an offset, its column is in another unit, or the equations do not describe it",
             left.term.name,
             left.words(-mean)
         )
