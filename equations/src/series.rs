@@ -9,7 +9,7 @@ use crate::entry::{Entry, Given, Series};
 use crate::error::PrepareError;
 use crate::prepared::Prepared;
 use crate::request::Request;
-use crate::tables::{self, Tables};
+use crate::tables::{self, Clock, Tables};
 use crate::truth::{Headers, Truth};
 
 impl Series {
@@ -44,21 +44,25 @@ impl Series {
     pub fn prepare(&self, entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         let file = request.file(entry.name)?;
         let example = file.is_none();
-        let table = match file {
+        let mut table = match file {
             Some(path) => Table::read(path)?,
             None => Table::parse(Path::new(entry.data), self.data)?,
         };
-        let truth = match &request.truth {
+        let mut truth = match &request.truth {
             Some(path) => Some(Table::read(path)?),
             None if example => Some(Table::parse(Path::new(entry.data), self.truth)?),
             None => None,
         };
+        let clock = Clock::of([&table]);
+        [&mut table].into_iter().chain(&mut truth).for_each(|table| clock.count(table));
         let mut request = request.clone();
         if example {
             let own = self.columns.iter().map(|(name, header)| ((*name).into(), (*header).into()));
             request.columns.splice(0..0, own);
         }
-        self.bind(entry, &request, &table, truth.as_ref())
+        let mut prepared = self.bind(entry, &request, &table, truth.as_ref())?;
+        prepared.warnings.extend(clock.said(prepared.problem.scene().schema, &table, &request));
+        Ok(prepared)
     }
 
     /// Binds the scene to tables, whatever files the request names.

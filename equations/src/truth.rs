@@ -48,6 +48,16 @@ impl Headers<'_> {
     }
 }
 
+impl Headers<'_> {
+    /// Checks that a coordinate rises strictly, under whichever header it stands.
+    fn require_increasing(&self, table: &Table, name: &str) -> Result<(), DataError> {
+        let chosen = self.chosen.iter().rev().find(|(own, _)| own == name).map(|(_, header)| header.as_str());
+        let also = self.also.iter().find(|(own, _)| *own == name).map(|(_, also)| *also);
+        let own = chosen.or(also.filter(|_| !table.has(name)));
+        table.require_increasing(own.unwrap_or(name))
+    }
+}
+
 impl Truth {
     /// Reads whichever heads the table has; over one coordinate, where it is within `bounds`. A coordinate on which none of them
     /// depends may be missing: they are then looked at halfway between its bounds.
@@ -82,7 +92,7 @@ impl Truth {
         };
         let kept: Vec<usize> = (0..table.rows()).filter(|&row| inside(row)).collect();
         if let [data] = *bounds {
-            table.require_increasing(scene.coordinates[0].name)?;
+            headers.require_increasing(table, scene.coordinates[0].name)?;
             if kept.is_empty() {
                 let truth = [coordinates[0][0], coordinates[0][table.rows() - 1]];
                 return Err(PrepareError::TruthRange { path: table.path().into(), truth, data });

@@ -24,4 +24,4 @@ pub use elsewhere::Written;
 pub use error::DataError;
 pub use names::nearest_name;
 pub use out_dir::OutDir;
-pub use table::{Rows, Table};
+pub use table::{Rows, Table, moment};

@@ -131,6 +131,31 @@ fn thousands_are_not_taken_for_ones() {
     assert!(q(["1", "2", "12.05.2026", "4"]).unwrap_err().contains("is a date"));
 }
 
+/// 1970 begins 54 years of 365 days and 13 leap days before 2024.
+#[test]
+fn dates_become_seconds_once_their_beginning_is_known() {
+    let seconds = |first: &str, second: &str| {
+        let mut table = parse(&format!("t,q\n{first},1\n{second},2\n"));
+        assert!(table.quantity("t", "s").is_err());
+        table.count_from(table.begins().unwrap());
+        table.quantity("t", "s").unwrap()
+    };
+    assert_eq!(seconds("2026-01-02 03:04:05", "2026-01-03T03:04:05.25"), [0.0, 86_400.25]);
+    assert_eq!(seconds("2024-02-28 12:00", "2024-03-01 12:00:00Z"), [0.0, 2.0 * 86_400.0]);
+    assert_eq!(seconds("9:59:59", "10:00"), [0.0, 1.0]);
+    let mut later = parse("t,q\n1970-01-03 00:00:00,1\n2024-01-01 00:00:00,2\n");
+    later.count_from(std::time::SystemTime::UNIX_EPOCH);
+    assert_eq!(later.quantity("t", "min").unwrap(), [2880.0, (54.0 * 365.0 + 13.0) * 1440.0]);
+    assert!(later.quantity("t", "K").unwrap_err().to_string().contains("`t` holds dates, where `t` is in K"));
+    // What may be meant by a temperature is no date.
+    let log = parse("timestamp,room T [degC]\n2026-01-01 00:00:00,1\n2026-01-01 00:00:01,2\n");
+    let said = log.quantity("T", "K").unwrap_err().to_string();
+    assert!(said.contains("--column 'T=room T [degC]'"), "{said}");
+    for other in ["02.01.2026 03:04", "2026-13-01 00:00:00", "2026-01-02", "soon"] {
+        assert!(parse(&format!("t,q\n2026-01-01 00:00:00,1\n{other},2\n")).begins().is_none(), "{other}");
+    }
+}
+
 #[test]
 fn columns_of_one_name_are_refused_even_where_they_are_chosen() {
     let table = parse("t,v_V,note,v_V,note\n0,1,a,2,b\n1,2,a,3,b\n");

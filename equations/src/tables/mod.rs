@@ -2,6 +2,7 @@
 //! without measurements lie in declared domains or, over one coordinate, within the span of the data.
 
 mod check;
+mod clock;
 mod clouds;
 mod read;
 mod units;
@@ -21,6 +22,7 @@ use crate::prepared::{Measured, Prepared};
 use crate::request::Request;
 use crate::truth::{Headers, Truth};
 pub(crate) use check::{assumed, columns as check_columns};
+pub(crate) use clock::Clock;
 pub(crate) use clouds::CloudFile;
 use read::Rows;
 pub(crate) use read::{header, read};
@@ -86,14 +88,18 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
             }
         }
     }
+    let clock = Clock::of(read.iter().map(|(_, table)| table));
+    read.iter_mut().for_each(|(_, table)| clock.count(table));
     let tables = Tables {
         any: read.iter().rev().find(|(group, _)| group.is_none()).map(|(_, table)| table),
         own: read.iter().filter_map(|(group, table)| Some(((*group)?, table))).collect(),
         clouds,
         folder,
     };
-    let found = bind(scene, &tables, request)?;
-    let truth = request.truth.as_ref().map(Table::read).transpose()?;
+    let mut found = bind(scene, &tables, request)?;
+    found.warnings.extend(read.iter().find_map(|(_, table)| clock.said(schema, table, request)));
+    let mut truth = request.truth.as_ref().map(Table::read).transpose()?;
+    truth.iter_mut().for_each(|table| clock.count(table));
     // A column may be chosen for what is measured, whose truth has another one.
     let (unmeasured, measured) = request.columns.iter().cloned().partition::<Vec<_>, _>(|(name, _)| {
         schema.heads.iter().any(|head| head.name == name) && !check::are_read(schema).contains(&name.as_str())
@@ -101,7 +107,7 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
     let also: Vec<(&str, &str)> = measured.iter().map(|(name, header)| (name.as_str(), header.as_str())).collect();
     let headers = Headers { chosen: &unmeasured, also: &also, ..Headers::default() };
     let truth = truth.map(|truth| Truth::read(&truth, schema, &found.bounds, headers)).transpose()?;
-    let points = wanted(schema, &found, request)?;
+    let points = wanted(schema, &found, clock, request)?;
     let files: Vec<String> = tables.files().map(|path| path.display().to_string()).collect();
     Ok(Prepared {
         points,

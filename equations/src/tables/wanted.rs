@@ -3,8 +3,8 @@
 use nisp::schema::Scene;
 use nisp_data::Table;
 
-use super::Found;
 use super::read::places;
+use super::{Clock, Found};
 use crate::error::PrepareError;
 use crate::places::Body;
 use crate::request::{Request, Wanted};
@@ -13,10 +13,14 @@ use crate::request::{Request, Wanted};
 const GRID: [usize; 4] = [201, 61, 21, 9];
 
 /// Where the answer is wanted.
-pub(super) fn wanted(schema: &Scene, found: &Found, request: &Request) -> Result<Vec<f64>, PrepareError> {
+pub(super) fn wanted(schema: &Scene, found: &Found, clock: Clock, request: &Request) -> Result<Vec<f64>, PrepareError> {
     let axes = schema.coordinates.len();
     let counts = match &request.wanted {
-        Some(Wanted::At(path)) => return places(schema, &Table::read_places(path)?, request),
+        Some(Wanted::At(path)) => {
+            let mut table = Table::read_places(path)?;
+            clock.count(&mut table);
+            return places(schema, &table, request);
+        }
         Some(Wanted::Grid(counts)) if counts.len() == axes => counts.clone(),
         Some(Wanted::Grid(counts)) => {
             let names: Vec<&str> = schema.coordinates.iter().map(|axis| axis.name).collect();

@@ -13,12 +13,18 @@ pub(super) fn wanted(answer: &OpenAnswer, options: &EvalOptions) -> Result<Vec<f
     }
     if let Some(path) = &options.place.at {
         let table = Table::read_places(path).map_err(|error| error.to_string())?;
-        let axis = |name: &str, unit: &str| {
-            let chosen = options.column.iter().rev().find(|(own, _)| own == name);
-            match chosen {
-                Some((_, header)) => table.chosen(name, header, unit),
-                None => table.quantity(name, unit),
-            }
+        let header =
+            |name: &str| options.column.iter().rev().find(|(own, _)| own == name).map(|(_, header)| header.as_str());
+        if let Some(axis) = coordinates.iter().find(|axis| table.is_dated(header(axis.name).unwrap_or(axis.name))) {
+            let (path, name, unit) = (path.display(), axis.name, axis.unit.text);
+            return Err(format!(
+                "{path}: `{name}` is given by dates, and an answer does not know from when it was counted: write {unit} from the moment that \
+                 `nisp solve` named"
+            ));
+        }
+        let axis = |name: &str, unit: &str| match header(name) {
+            Some(header) => table.chosen(name, header, unit),
+            None => table.quantity(name, unit),
         };
         let axes = coordinates.iter().map(|c| axis(c.name, c.unit.text)).collect::<Result<Vec<_>, _>>();
         let axes = axes.map_err(|error| error.to_string())?;

@@ -8,6 +8,7 @@ mod check;
 mod common;
 mod contact;
 mod contract;
+mod dates;
 mod eval;
 mod few_places;
 mod fewer_coordinates;

@@ -67,6 +67,10 @@ impl Table {
 
     /// How numbers in the unit that the header of a column says become numbers in another; nothing where it says none.
     fn conversion_of(&self, column: &Column, (name, unit): (&str, &str)) -> Result<Option<Conversion>, DataError> {
+        if column.is_dated() {
+            let what = format!("`{}` holds dates, where `{name}` is in {unit}; choose another column", column.header);
+            return column.dated(unit).map(Some).ok_or(DataError::Column { path: self.path.clone(), what });
+        }
         if column.header == name {
             return Ok(None);
         }
@@ -192,7 +196,13 @@ impl Table {
             return other;
         }
         // What is suggested must not be refused for its unit.
-        let passes = |header: &str| unit.is_none_or(|unit| self.other_unit(header, name, unit).is_none());
+        let is_date = |header: &str| self.columns.iter().any(|own| own.header == header && own.is_dated());
+        let passes = |header: &str| {
+            let suits = |unit| {
+                self.other_unit(header, name, unit).is_none() && (!is_date(header) || conversion("s", unit).is_some())
+            };
+            unit.is_none_or(suits)
+        };
         let nearest = longer.first().map(|column| column.header.as_str()).or_else(|| self.nearest(name, &passes));
         self.no_column(&wanted, &format!("; {}", choose(name, nearest)))
     }
@@ -216,12 +226,15 @@ impl Table {
         DataError::Column { path: self.path.clone(), what }
     }
 
-    /// The header most like the name among those that pass, if it may be meant: `psi` is not meant by `phi`, but `time` by `t`. A
-    /// letter in the other case is another quantity, and meant only where nothing else is.
+    /// The header most like the name among those that pass, if it may be meant: `psi` is not meant by `phi`, but `time` by `t`, and
+    /// `room T` by `T`. A letter in the other case is another quantity, and meant only where nothing else is.
     fn nearest(&self, name: &str, passes: &dyn Fn(&str) -> bool) -> Option<&str> {
         let likeness = |header: &str| likeness(base(header), name);
-        let meant =
-            |header: &&str| header.to_lowercase().starts_with(&name.to_lowercase()) || likeness(header) >= ALIKE;
+        let meant = |header: &&str| {
+            header.to_lowercase().starts_with(&name.to_lowercase())
+                || base(header).split(|mark: char| !mark.is_alphanumeric()).any(|word| word == name)
+                || likeness(header) >= ALIKE
+        };
         let is_other = |header: &str| base(header).len() == 1 && base(header) != name;
         let by_likeness = |a: &&str, b: &&str| is_other(b).cmp(&is_other(a)).then(likeness(a).total_cmp(&likeness(b)));
         self.headers().filter(meant).filter(|header| passes(header)).max_by(by_likeness)

@@ -1,13 +1,16 @@
 //! Tables of measurements: CSV in, CSV out, columns found by name and unit.
 
+mod dates;
 mod lookup;
 mod read;
 mod rows;
 mod thousands;
 mod write;
 
+pub use dates::moment;
 pub use rows::Rows;
 use std::path::{Path, PathBuf};
+use std::time::SystemTime;
 
 use crate::DataError;
 use thousands::Thousands;
@@ -22,13 +25,15 @@ pub struct Table {
 }
 
 /// One column of a table.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 struct Column {
     header: String,
     values: Vec<f64>,
     /// The first cell that is no finite number. It only matters where this column is asked for.
     fault: Option<Fault>,
     thousands: Thousands,
+    /// What the cells say where every one so far is a date or a time of day.
+    dates: Vec<SystemTime>,
 }
 
 #[derive(Debug, Clone)]

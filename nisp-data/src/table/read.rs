@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use super::thousands::Thousands;
+use super::dates::date;
 use super::{Column, Fault, Kind, Table};
 use crate::DataError;
 use crate::input::{MOST_BYTES, decode, read_bytes};
@@ -129,6 +129,8 @@ impl Column {
         let value = parsed.unwrap_or(f64::NAN);
         if value.is_finite() {
             self.thousands.see(line, cell, value);
+        } else if self.dates.len() == self.values.len() {
+            self.dates.extend(date(cell));
         }
         // The worst is what must be told.
         let worse = self.fault.as_ref().is_none_or(|fault| fault.kind < kind);
@@ -186,7 +188,10 @@ fn describe(cell: &str) -> String {
     } else if parts_thousands(cell) {
         format!("`{shown}` is not a number; write it without marks between thousands, with a point for decimals")
     } else if is_date(cell) {
-        format!("`{shown}` is a date or a time of day; write seconds, or another unit, from a start of your choice")
+        format!(
+            "`{shown}` is a date or a time of day; write seconds, or another unit, from a start of your choice, or dates like `2026-01-31 12:00:00` in \
+             every row"
+        )
     } else {
         format!("`{shown}` is not a number; correct it or remove the row")
     }
@@ -206,15 +211,7 @@ pub(super) fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<
         let what = "the first line holds numbers; put a line of column names above it, for instance `t [s],q [m]`";
         return Err(DataError::file(path, what));
     }
-    Ok(headers
-        .iter()
-        .map(|header| Column {
-            header: header.to_string(),
-            values: Vec::new(),
-            fault: None,
-            thousands: Thousands::default(),
-        })
-        .collect())
+    Ok(headers.iter().map(|header| Column { header: header.to_string(), ..Column::default() }).collect())
 }
 
 pub(super) fn syntax(path: &Path, error: &csv::Error) -> DataError {

@@ -2,17 +2,20 @@
 
 use std::io::BufRead;
 use std::path::Path;
+use std::time::SystemTime;
 
 use super::Table;
 use super::read::{check_headers, reader, separator, syntax};
 use crate::DataError;
 
-/// Rows of a CSV that is still being written.
+/// Rows of a CSV that is still being written. Dates in them are counted from those of the first row.
 pub struct Rows<R> {
     records: csv::Reader<R>,
     record: csv::StringRecord,
     row: Table,
     separator: u8,
+    /// From when dates are counted.
+    begin: Option<SystemTime>,
 }
 
 impl<R: BufRead> Rows<R> {
@@ -41,6 +44,7 @@ impl<R: BufRead> Rows<R> {
             record: csv::StringRecord::new(),
             row: Table { path: path.into(), columns, lines: vec![0] },
             separator: mark,
+            begin: None,
         })
     }
 
@@ -67,7 +71,12 @@ impl<R: BufRead> Rows<R> {
         for (column, cell) in columns.iter_mut().zip(&self.record) {
             column.values.clear();
             column.fault = None;
+            column.dates.clear();
             column.push(line, cell, self.separator);
+        }
+        self.begin = self.begin.or_else(|| self.row.begins());
+        if let Some(begin) = self.begin {
+            self.row.count_from(begin);
         }
         Some(Ok(&self.row))
     }
@@ -92,6 +101,14 @@ mod tests {
         assert!(read().unwrap().unwrap_err().to_string().contains("`x` is not a number"));
         assert_eq!(read().unwrap().unwrap(), (4.0, 5e-3));
         assert!(read().is_none());
+    }
+
+    #[test]
+    fn dates_are_counted_from_the_first_row() {
+        let text = "time,q\n2026-02-28 23:59:59.5,1\n2026-03-01 00:00:01.500,2\n";
+        let mut rows = Rows::read(Path::new("pipe"), text.as_bytes()).unwrap();
+        let mut read = || rows.next_row().unwrap().unwrap().chosen("t", "time", "ms").unwrap()[0];
+        assert_eq!([read(), read()], [0.0, 2000.0]);
     }
 
     #[test]

@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::thousands::Thousands;
 use super::{Column, Table};
 use crate::DataError;
 use crate::atomic::write_atomic;
@@ -21,7 +20,7 @@ impl Table {
             return Err(DataError::invalid(what));
         }
         let header = if matches!(unit, "" | "1") { name.to_string() } else { format!("{name} [{unit}]") };
-        self.columns.push(Column { header, values: values.to_vec(), fault: None, thousands: Thousands::default() });
+        self.columns.push(Column { header, values: values.to_vec(), ..Column::default() });
         Ok(())
     }
 

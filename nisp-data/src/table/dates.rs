@@ -1,0 +1,66 @@
+//! Columns of dates and times of day, as loggers write them: they become seconds once it is said from when to count.
+
+use std::time::{Duration, SystemTime};
+
+use nisp_units::{Conversion, conversion};
+
+use super::{Column, Table};
+
+impl Table {
+    /// The earliest first cell of its columns of dates, or else of times of day; none where no column holds any.
+    pub fn begins(&self) -> Option<SystemTime> {
+        let firsts = || self.columns.iter().filter(|column| column.is_dated()).map(|column| column.dates[0]);
+        firsts().filter(|first| !is_of_day(*first)).min().or_else(|| firsts().min())
+    }
+
+    /// True if the column that answers to a name holds dates or times of day.
+    pub fn is_dated(&self, name: &str) -> bool {
+        self.find(name, None).is_ok_and(Column::is_dated)
+    }
+
+    /// Makes its columns of dates columns of seconds since a moment. Until then they are no numbers.
+    pub fn count_from(&mut self, begin: SystemTime) {
+        for column in self.columns.iter_mut().filter(|column| column.is_dated()) {
+            column.values = column.dates.iter().map(|date| seconds(begin, *date)).collect();
+            column.fault = None;
+        }
+    }
+}
+
+impl Column {
+    /// True if every cell is a date or a time of day.
+    pub(super) fn is_dated(&self) -> bool {
+        !self.dates.is_empty() && self.dates.len() == self.values.len()
+    }
+
+    /// How its numbers become numbers in a unit where they are seconds since a moment.
+    pub(super) fn dated(&self, unit: &str) -> Option<Conversion> {
+        conversion("s", unit).filter(|_| self.is_dated())
+    }
+}
+
+/// A moment as words.
+pub fn moment(at: SystemTime) -> String {
+    let text = humantime::format_rfc3339_seconds(at).to_string().replace('T', " ");
+    let text = text.trim_end_matches('Z');
+    text.strip_prefix("1970-01-01 ").unwrap_or(text).to_string()
+}
+
+/// `2026-01-02 03:04:05`, with a `T`, decimals of seconds or a `Z` if need be, or a time of day alone; seconds may be left out.
+pub(super) fn date(cell: &str) -> Option<SystemTime> {
+    let cell = cell.trim_end_matches('Z');
+    let (day, time) = cell.split_once([' ', 'T']).unwrap_or(("1970-01-01", cell));
+    let hour = if time.find(':')? == 1 { format!("0{time}") } else { time.to_string() };
+    let time = if hour.len() == 5 { format!("{hour}:00") } else { hour };
+    humantime::parse_rfc3339_weak(&format!("{day} {time}")).ok()
+}
+
+/// True of a time of day without a date.
+fn is_of_day(at: SystemTime) -> bool {
+    at < SystemTime::UNIX_EPOCH + Duration::from_secs(86_400)
+}
+
+/// Seconds from one moment to another, which may come before it.
+fn seconds(from: SystemTime, to: SystemTime) -> f64 {
+    to.duration_since(from).map_or_else(|before| -before.duration().as_secs_f64(), |after| after.as_secs_f64())
+}
