@@ -29,3 +29,38 @@ fn sound_problems_pass() {
         assert_eq!((code, &failed[..]), (Some(0), &[][..]), "{line}: {status}");
     }
 }
+
+#[test]
+fn two_sources_that_act_alike_are_named_together() {
+    let place = Place::new();
+    let two = "coordinates: t [s]; fields: T [K]; sources: P [K/s], S [K/s];
+        on body { balance: d(T, t) + 0.1 [1/s] * T == P + S; } on samples { observe T; }";
+    place.put("two.pde", two);
+    let row = |i: u32| {
+        let t = f64::from(i) * 0.5;
+        format!("{t},{:.3}\n", 2.0 + (0.3 * t).sin())
+    };
+    place.put("run.csv", &format!("t [s],T [K]\n{}", (0..100).map(row).collect::<String>()));
+    let ran = place.run("solve two.pde --data run.csv");
+    assert_eq!(ran.code, Some(3), "{}", ran.stdout);
+    let said = "only what both make together may be known";
+    assert!(ran.stderr.contains(said) || ran.stdout.contains(said), "{}{}", ran.stdout, ran.stderr);
+}
+
+#[test]
+fn a_table_of_known_values_that_ends_early_is_named() {
+    let place = Place::new();
+    let tank = "coordinates: t [s]; fields: h [m]; sources: q [m/s];
+        on body { columns: p [m/s]; balance: d(h, t) == q + p; } on samples { observe h; }";
+    place.put("tank.pde", tank);
+    let rows = |count: u32, header: &str, value: fn(f64) -> f64| {
+        let row = |i: u32| format!("{i},{}\n", value(f64::from(i)));
+        format!("t [s],{header}\n{}", (0..count).map(row).collect::<String>())
+    };
+    place.put("known.csv", &rows(60, "p [m/s]", |t| (0.1 * t).cos()));
+    place.put("run.csv", &rows(100, "h [m]", |t| 10.0 * (0.1 * t).sin() + 0.01 * t));
+    let ran = place.run("solve tank.pde --data body=known.csv --data samples=run.csv");
+    assert_eq!(ran.code, Some(3), "{}", ran.stdout);
+    let said = "t = 0.000 s to t = 59.000 s: give rows of `body` for all of them";
+    assert!(ran.stderr.contains(said) || ran.stdout.contains(said), "{}{}", ran.stdout, ran.stderr);
+}

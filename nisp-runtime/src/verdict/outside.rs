@@ -2,7 +2,7 @@
 
 use super::Check;
 use crate::problem::Bound;
-use crate::schema::TermKind;
+use crate::schema::{Group, TermKind};
 
 /// Points that make up a domain, at least; fewer are conditions.
 const FEW_POINTS: usize = 8;
@@ -20,9 +20,7 @@ fn domain(bound: &Bound) -> Option<Domain> {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
     let groups = schema.groups.iter().zip(&bound.coordinates);
-    let equations = groups.filter(|(group, points)| {
-        points.len() >= FEW_POINTS * inputs && group.terms.iter().any(|term| term.kind == TermKind::Residual)
-    });
+    let equations = groups.filter(|(group, points)| points.len() >= FEW_POINTS * inputs && is_equation(group));
     let points: Vec<&[f64]> = equations.flat_map(|(_, points)| points.chunks_exact(inputs)).collect();
     let end = |axis: usize, of: fn(f64, f64) -> f64| points.iter().map(|point| point[axis]).reduce(of);
     let low = (0..inputs).map(|axis| end(axis, f64::min)).collect::<Option<Vec<_>>>()?;
@@ -38,8 +36,11 @@ pub(super) fn checks(bound: &Bound) -> Vec<Check> {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
     let groups = schema.groups.iter().zip(&bound.coordinates);
+    // Equations with columns hold at the rows of a table.
+    let is_given = |group: &&Group| !group.columns.is_empty() && group.place.is_none() && is_equation(group);
+    let given: Vec<String> = schema.groups.iter().filter(is_given).map(|group| format!("`{}`", group.name)).collect();
     let observed = groups.filter(|(group, _)| group.terms.iter().any(|term| term.kind == TermKind::Observation));
-    let check = |(group, points): (&crate::schema::Group, &Vec<f64>)| {
+    let check = |(group, points): (&Group, &Vec<f64>)| {
         let is_outside = |point: &&[f64]| {
             (0..inputs).any(|axis| {
                 let slack = domain.spacing[axis];
@@ -48,12 +49,23 @@ pub(super) fn checks(bound: &Bound) -> Vec<Check> {
         };
         let all = points.len() / inputs;
         let count = points.chunks_exact(inputs).filter(is_outside).count();
+        let hint = match given.as_slice() {
+            [] => "check the units and the order of their coordinates".into(),
+            _ => {
+                format!("give rows of {} for all of them, or check the units of their coordinates", given.join(" and "))
+            }
+        };
+        let (name, low, high) = (group.name, bound.place(&domain.low), bound.place(&domain.high));
         let said = format!(
-            "{count} of the {all} points of `{}` are outside of the points at which the equations are asked to hold: check the \
-             units and the order of their coordinates",
-            group.name
+            "{count} of the {all} points of `{name}` are outside of the points at which the equations are asked to hold, {low} to \
+             {high}: {hint}"
         );
         Check::new("outside", (group.name, ""), (count as f64 / all.max(1) as f64, 0.0), said)
     };
     observed.map(check).collect()
+}
+
+/// True for a group of equations.
+fn is_equation(group: &Group) -> bool {
+    group.terms.iter().any(|term| term.kind == TermKind::Residual)
 }

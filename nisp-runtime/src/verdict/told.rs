@@ -3,6 +3,7 @@
 use super::Check;
 use crate::facts::Told;
 use crate::problem::Bound;
+use crate::schema::Group;
 
 /// Standard deviations that a source is large at least, in the mean over the time along which it is alike; or by which it is
 /// nearer to the truth than none: a source that is large in few places only. Of simulated sources that are smaller one in five is
@@ -16,14 +17,23 @@ const OPEN: f64 = 0.9;
 /// Two checks for every source that its carrier tells of.
 pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
     let heads = bound.problem.scene().schema.heads;
-    let check = |told: &Told| {
-        let name = heads[told.head].name;
-        let size = told.size.max(told.nearer * LEAST / NEARER);
+    let size = |told: &Told| told.size.max(told.nearer * LEAST / NEARER);
+    let check = |own: &Told| {
+        let (name, size_of) = (heads[own.head].name, size(own));
+        let is_beside =
+            |other: &&Told| other.head != own.head && size(other) < LEAST && are_together(bound, own.head, other.head);
+        let hint = match told.iter().find(is_beside) {
+            Some(other) => format!(
+                "`{}` acts in the same equations and is told no better, so that only what both make together may be known: then declare \
+                 one of them, or measure one",
+                heads[other.head].name
+            ),
+            None => "below that, measure more often, more exactly, or for longer".into(),
+        };
         let said = format!(
-            "`{name}` is {size:.2} times as large as its standard deviation, and is told from none from {LEAST} on; below that, \
-             measure more often, more exactly, or for longer"
+            "`{name}` is {size_of:.2} times as large as its standard deviation, and is told from none from {LEAST} on; {hint}"
         );
-        Check::new("told", ("", name), (size.recip(), 1.0 / LEAST), said)
+        Check::new("told", ("", name), (size_of.recip(), 1.0 / LEAST), said)
     };
     let open = |told: &Told| {
         let name = heads[told.head].name;
@@ -35,4 +45,10 @@ pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
         Check::new("determined", ("", name), (told.open, OPEN), said)
     };
     told.iter().flat_map(|told| [check(told), open(told)]).collect()
+}
+
+/// True if some equations read both of two heads.
+fn are_together(bound: &Bound, one: usize, other: usize) -> bool {
+    let reads = |group: &Group, head| group.jets.iter().any(|jet| jet.head == head);
+    bound.problem.scene().schema.groups.iter().any(|group| reads(group, one) && reads(group, other))
 }
