@@ -63,6 +63,13 @@ pub(crate) fn expected_separator(found: &str) -> String {
     )
 }
 
+/// `learn k` where parameters are declared.
+pub(crate) fn learned_by_a_scene(found: &str) -> String {
+    help(format!("expected `,` or `;`, found {found}"), LEARNED)
+}
+
+const LEARNED: &str = "declare the parameter like any other, and let a scene learn it: `scene fit { learn k; }`";
+
 pub(crate) fn expected_name(what: &str, found: &str) -> String {
     format!("expected the name of {what}, found {found}")
 }
@@ -280,6 +287,7 @@ pub(crate) fn one_module(found: &str) -> String {
 
 pub(crate) fn expected_statement(found: &str, word: &str, known: &[&'static str]) -> String {
     let step = match nearest(word, known.iter().copied()) {
+        _ if word == "learn" => LEARNED.into(),
         Some(found) => format!("did you mean `{found}`?"),
         None => "terms stand in a group of points: `on name { term: a == b; }`".into(),
     };

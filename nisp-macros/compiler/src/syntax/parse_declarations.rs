@@ -43,8 +43,9 @@ pub(super) fn parse(
     while !stream.at_end() && stream.take(";").is_none() {
         match entry(stream, context, kind, docs) {
             Ok(declaration) => {
+                let is_learn = declaration.name.text == "learn";
                 declarations.push(declaration);
-                if !separator(stream, context) {
+                if !separator(stream, context, is_learn) {
                     break;
                 }
             }
@@ -54,8 +55,8 @@ pub(super) fn parse(
     declarations
 }
 
-/// Takes a comma, or looks at a semicolon; a missing one is reported. False if the statement is over without one.
-fn separator(stream: &mut Stream<'_>, context: &mut Context<'_>) -> bool {
+/// Takes a comma, or looks at a semicolon; a missing one is reported, after `learn` as what it is. False if the statement is over without one.
+fn separator(stream: &mut Stream<'_>, context: &mut Context<'_>, is_learn: bool) -> bool {
     if stream.take(",").is_some() || stream.at(";") {
         return true;
     }
@@ -63,7 +64,8 @@ fn separator(stream: &mut Stream<'_>, context: &mut Context<'_>) -> bool {
         context.errors.push(stream.previous(), catalogue::missing_semicolon());
         return false;
     }
-    context.errors.push(stream.place(), catalogue::expected_separator(&stream.found()));
+    let message = if is_learn { catalogue::learned_by_a_scene } else { catalogue::expected_separator };
+    context.errors.push(stream.place(), message(&stream.found()));
     if stream.peek_word().is_none() {
         skip_entry(stream, context);
     }
