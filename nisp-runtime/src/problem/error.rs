@@ -39,7 +39,7 @@ pub enum BindError {
         range: String,
     },
     /// A parameter without a value.
-    #[error("parameter `{name}` has no value; give it one{}", unit_hint(.unit))]
+    #[error("parameter `{name}` has no value; give it one{}: where it is learned, the one to start from", unit_hint(.unit))]
     MissingParameter {
         /// Its name.
         name: String,
