@@ -22,9 +22,15 @@ impl Solver<'_> {
         holds.chain(vec![false; priors + 1]).collect()
     }
 
-    /// Where steps start again with equations that know no better than their columns; nothing where no column is noisy.
+    /// Where steps start again with equations that know no better than their columns: at the best end of those before. From the
+    /// first state a source may take the noise for its own, which the evidence has no reason to leave. Nothing where no column is
+    /// noisy.
     pub(super) fn blurred(&mut self, noise: &Noise, place: &Place) -> Option<State> {
         let is_noisy = self.noise_of_columns.iter().flatten().any(|noise| *noise > 0.0);
-        (is_noisy && !place.is_blurred).then(|| State { blurred: true, step: place.state.step, ..self.first(noise) })
+        (is_noisy && !place.is_blurred).then(|| State {
+            blurred: true,
+            step: place.state.step,
+            ..place.best().map_or_else(|| self.first(noise), |best| best.state.clone())
+        })
     }
 }
