@@ -1,6 +1,6 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
-use super::prior::unresolved;
+use super::short::unresolved;
 use super::solver::{Solver, groups};
 use super::state::{Phase, State};
 use crate::facts::{Answer, OTHER_THAN_SPLINES};
@@ -32,6 +32,7 @@ impl Solver<'_> {
     /// changes with what is believed of its sources is unknown as well: draws are from the posterior under another belief, about the
     /// answer under that one.
     pub(super) fn doubted(&mut self, state: &State) -> Option<(Deviations, Vec<f64>)> {
+        let beyond = self.beyond(state)?;
         let mut other = state.clone();
         if !self.judged(Phase::Solve).is_empty() {
             self.doubt(&mut other).ok()?;
@@ -50,13 +51,25 @@ impl Solver<'_> {
         };
         add(&mut deviations.coefficients, &state.theta, &other.theta);
         add(&mut deviations.learned, &state.learned, &other.learned);
-        let mut beyond = vec![0.0; state.theta.len()];
-        for head in self.judged(Phase::Solve) {
-            let roughness = state.classes[self.roughness[head]].size;
-            let first = self.heads.first[head];
-            beyond[first..first + self.heads.lattices[head].len()].fill(unresolved(&self.heads, head, roughness));
-        }
         Some((deviations, beyond))
+    }
+
+    /// By coefficient the deviation of what the cells cannot hold.
+    fn beyond(&mut self, state: &State) -> Option<Vec<f64>> {
+        let mut beyond = vec![0.0; state.theta.len()];
+        let judged = self.judged(Phase::Solve);
+        if judged.is_empty() {
+            return Some(beyond);
+        }
+        let deviations = self.deviations(state)?;
+        for head in judged {
+            let own = self.heads.first[head]..self.heads.first[head + 1];
+            let likely = |draw: &Vec<f64>| own.clone().map(|at| state.theta[at] + draw[at]).collect();
+            let likely: Vec<Vec<f64>> = deviations.coefficients.iter().map(likely).collect();
+            let roughness = state.classes[self.roughness[head]].size;
+            beyond[own].fill(unresolved(&self.heads, head, &likely, roughness));
+        }
+        Some(beyond)
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state.

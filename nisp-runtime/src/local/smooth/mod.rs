@@ -15,6 +15,7 @@ mod places;
 mod prior;
 mod run;
 mod sampled;
+mod short;
 mod solver;
 mod starts;
 mod state;
@@ -50,7 +51,7 @@ use state::State;
 pub(crate) const METHOD: &str = "splines on a lattice";
 
 /// What error bars take, in steps.
-const BARS: f64 = 1.0 + judged::DOUBTS as f64;
+const BARS: f64 = 2.0 + judged::DOUBTS as f64;
 
 /// Points of the largest equation on a finer lattice, beside those on the one before.
 const MORE: usize = 2;
