@@ -1,4 +1,5 @@
-//! Sources that depend on some of the coordinates only: bars are no longer than what the cells cannot hold asks for.
+//! Sources that depend on some of the coordinates only: bars are no longer than what the cells cannot hold asks for, and a source that
+//! varies along another coordinate too is noticed.
 
 use super::sources::scattered;
 use super::*;
@@ -12,6 +13,21 @@ nisp::pde! {
         sources: q(x);
         on inside { motion: d(u, t, 2) == d(u, x, 2) + q; }
         on begin { flat: u == 0; still: d(u, t) == 0; }
+        on walls { held: u == 0; }
+        on probes { observe u; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A rod that is warmed evenly all the time.
+    pub mod steady {
+        units: off;
+        coordinates: x, t: time;
+        fields: u;
+        sources: q(x);
+        on inside { flow: d(u, t) == 0.1 * d(u, x, 2) + q; }
+        on begin { cold: u == 0; }
         on walls { held: u == 0; }
         on probes { observe u; }
         scene recover { }
@@ -50,4 +66,26 @@ fn a_smooth_source_has_no_bars_of_one_with_edges() {
     let off = root_mean_square(found.iter().zip(pairs(&places)).map(|(found, [x, _])| found - source(x)));
     let bars = root_mean_square(deviations.unwrap().into_iter());
     assert!(off < 2.0 * bars && bars < 12.0 * off, "{off} {bars}");
+}
+
+/// A warmth of `sin(pi x) (1 + 0.12 cos 20t)`, of which a source over `x` alone has the first part. What is left of the values is as large
+/// as their noise at most, and no polynomial of low degree.
+#[test]
+fn a_source_that_varies_along_another_coordinate_too_is_noticed() {
+    let (rate, frequency) = (0.1 * PI * PI, 20.0);
+    let swing = |t: f64| {
+        (rate * (frequency * t).cos() + frequency * (frequency * t).sin()) / (rate * rate + frequency * frequency)
+    };
+    let exact = |share: f64| {
+        move |[x, t]: [f64; 2]| {
+            let decay = (-rate * t).exp();
+            (PI * x).sin() * ((1.0 - decay) / rate + share * (swing(t) - swing(0.0) * decay))
+        }
+    };
+    let even = solve(&rod(scene::<steady::recover::Scene>(), 0.01, exact(0.0)));
+    assert_eq!(even.status, Status::Converged, "{:?}", even.verdict.checks);
+    let swings = solve(&rod(scene::<steady::recover::Scene>(), 0.01, exact(0.12)));
+    let check = swings.verdict.checks.iter().find(|check| check.check == "pattern").unwrap();
+    assert!(!check.passed && check.message.contains("neighbours"), "{check:?}");
+    assert_eq!(swings.status, Status::Inconsistent);
 }

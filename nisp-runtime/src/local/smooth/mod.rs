@@ -109,7 +109,7 @@ pub(crate) fn solve(
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
         let missed = solver.missed(&run.state, noise);
-        let is_missed = missed > MISSED;
+        let is_missed = missed > MISSED || solver.alike(&run.state, noise) > 1.0;
         // Where cells miss measurements, which then count as noise, one finer lattice may be too coarse as well.
         let patience = if is_missed || !is_noisy { PATIENCE } else { 1 };
         idle = if strain > EASED * before { idle + 1 } else { 0 };
