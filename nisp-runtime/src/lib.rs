@@ -9,6 +9,7 @@ mod bounds;
 mod bytes;
 pub mod carrier;
 pub mod compiled;
+mod correlation;
 pub mod engine;
 mod facts;
 pub mod functions;

@@ -4,6 +4,7 @@
 mod bounded;
 mod clouds;
 mod mixed;
+mod some;
 mod sources;
 mod units;
 

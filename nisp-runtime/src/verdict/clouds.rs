@@ -1,11 +1,10 @@
 //! What an answer's surface leaves of a cloud: no more than the cloud's own roughness, and without a pattern.
 
-use std::num::NonZero;
-
 use super::patterns::BELOW;
 use super::{Check, root_mean_square};
+use crate::correlation;
 use crate::facts::CloudFacts;
-use crate::nearest::{Nearest, Neighbour};
+use crate::nearest::Nearest;
 use crate::problem::Bound;
 use crate::roughness::{middle, roughness};
 use crate::units::Number;
@@ -20,8 +19,6 @@ const STRAY: f64 = 5.0;
 /// does not matter.
 const PATTERN: f64 = 5.0;
 const SLIGHT: f64 = 0.02;
-/// Neighbours whose misfits are compared.
-const NEIGHBOURS: NonZero<usize> = NonZero::new(5).unwrap();
 
 /// Checks of one cloud.
 pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
@@ -68,7 +65,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     if !cloud.signed {
         return checks;
     }
-    let (correlation, z) = pattern(&places, &kept, &tree);
+    let (correlation, z) = correlation::of_neighbours(&places, &kept, &tree);
     let systematic = correlation.max(0.0).sqrt() * rms;
     // Far below the noise that is declared, it is what a fit that follows the cloud leaves.
     let least = tolerance.unwrap_or(cloud.resolution / 2.0);
@@ -81,43 +78,4 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     );
     checks.push(Check::new("pattern", place, (if matters { z } else { z.min(PATTERN) }, PATTERN), said));
     checks
-}
-
-/// Correlation of neighbouring misfits, and the same in its standard deviation under noise.
-fn pattern(places: &[[f64; 3]], misfits: &[f64], tree: &Nearest<3>) -> (f64, f64) {
-    let square = misfits.iter().map(|m| m * m).sum::<f64>() / misfits.len().max(1) as f64;
-    let (mut sum, mut pairs) = (0.0, 0.0f64);
-    for (i, place) in places.iter().enumerate() {
-        for Neighbour { index: j, .. } in tree.some(place, NEIGHBOURS) {
-            if j != i {
-                sum += misfits[i] * misfits[j];
-                pairs += 1.0;
-            }
-        }
-    }
-    if square == 0.0 || pairs == 0.0 {
-        return (0.0, 0.0);
-    }
-    let correlation = sum / pairs / square;
-    // Most pairs are counted from both of their ends.
-    (correlation, correlation * (pairs / 2.0).sqrt())
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::network::normal;
-    use rand::{RngExt, SeedableRng, rngs::StdRng};
-
-    #[test]
-    fn noise_has_no_pattern_and_a_tilt_has() {
-        let mut random = StdRng::seed_from_u64(5);
-        let mut off = || (random.random::<f64>() - 0.5, 1e-2 * normal(&mut random));
-        let (places, mut misfits): (Vec<[f64; 3]>, Vec<f64>) =
-            (0..3000).map(|_| (off(), off())).map(|((x, misfit), (y, _))| ([x, y, 0.0], misfit)).unzip();
-        let tree = Nearest::of(&places).unwrap();
-        assert!(pattern(&places, &misfits, &tree).1.abs() < 4.0);
-        places.iter().zip(&mut misfits).for_each(|(place, misfit)| *misfit += 1e-2 * place[0]);
-        assert!(pattern(&places, &misfits, &tree).1 > PATTERN);
-    }
 }

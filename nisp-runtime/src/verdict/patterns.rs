@@ -3,6 +3,7 @@
 use super::misfits::Misfits;
 use super::stretches::worst;
 use super::{Check, root_mean_square, slow, smooth};
+use crate::correlation;
 use crate::facts::Answer;
 use crate::noise::in_order;
 use crate::rhythm::rhythm;
@@ -39,16 +40,26 @@ pub(super) fn checks(left: &Misfits, answer: &Answer) -> Vec<Check> {
     checks
 }
 
-/// Smooth misfits over several coordinates, beside an answer made from a share of the measurements.
+/// Smooth misfits over several coordinates, or neighbouring ones that are alike, beside an answer made from a share of the measurements.
 fn over(left: &Misfits, row: &[f64], used: f64) -> Check {
     let (excess, share) = smooth::excess(&left.places, left.axes(), row, used);
+    let (alike, deviations) = correlation::over_coordinates(&left.places, left.axes(), row);
+    // An answer made from a share of the measurements is off from one place to the next by what the noise of these leaves.
+    if used < 1.0 || alike < SLIGHT || deviations < excess {
+        let said = format!(
+            "what is left of `{}` is no noise: {:.1} % of its square is smooth, so the equations or a parameter do not fit these data, \
+             or a part of them is smoothed away",
+            left.term.name,
+            100.0 * share
+        );
+        return Check::new("pattern", left.name(), (excess, SMOOTH), said);
+    }
     let said = format!(
-        "what is left of `{}` is no noise: {:.1} % of its square is smooth, so the equations or a parameter do not fit these data, or a \
-         part of them is smoothed away",
-        left.term.name,
-        100.0 * share
+        "what is left of `{}` is no noise: neighbours correlate by {alike:.2}, so that the equations or a parameter do not fit these data, \
+         a source varies along a coordinate that it was not given, or the cells are too coarse for it",
+        left.term.name
     );
-    Check::new("pattern", left.name(), (excess, SMOOTH), said)
+    Check::new("pattern", left.name(), (deviations, SMOOTH), said)
 }
 
 /// Slow misfits along a record.

@@ -1,8 +1,9 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
-use super::prior::unresolved;
+use super::short::unresolved;
 use super::solver::{Solver, groups};
 use super::state::{Phase, State};
+use crate::correlation;
 use crate::facts::{Answer, OTHER_THAN_SPLINES};
 use crate::local::draws::{Deviations, Draws};
 use crate::local::group::Group;
@@ -24,6 +25,9 @@ const EXACT: f64 = 1e-3;
 pub(super) const MISSED: f64 = 1.3;
 /// The same ratio above which the cells are taken to be too coarse for what is measured.
 pub(super) const FAR: f64 = 4.0;
+/// Correlation of neighbouring misfits in its own deviations, and the least that matters.
+const ALIKE: f64 = 5.0;
+const SLIGHT: f64 = 0.05;
 /// Steps to an answer under another belief.
 pub(super) const DOUBTS: u64 = 4;
 
@@ -32,6 +36,7 @@ impl Solver<'_> {
     /// changes with what is believed of its sources is unknown as well: draws are from the posterior under another belief, about the
     /// answer under that one.
     pub(super) fn doubted(&mut self, state: &State) -> Option<(Deviations, Vec<f64>)> {
+        let beyond = self.beyond(state)?;
         let mut other = state.clone();
         if !self.judged(Phase::Solve).is_empty() {
             self.doubt(&mut other).ok()?;
@@ -50,13 +55,25 @@ impl Solver<'_> {
         };
         add(&mut deviations.coefficients, &state.theta, &other.theta);
         add(&mut deviations.learned, &state.learned, &other.learned);
-        let mut beyond = vec![0.0; state.theta.len()];
-        for head in self.judged(Phase::Solve) {
-            let roughness = state.classes[self.roughness[head]].size;
-            let first = self.heads.first[head];
-            beyond[first..first + self.heads.lattices[head].len()].fill(unresolved(&self.heads, head, roughness));
-        }
         Some((deviations, beyond))
+    }
+
+    /// By coefficient the deviation of what the cells cannot hold.
+    fn beyond(&mut self, state: &State) -> Option<Vec<f64>> {
+        let mut beyond = vec![0.0; state.theta.len()];
+        let judged = self.judged(Phase::Solve);
+        if judged.is_empty() {
+            return Some(beyond);
+        }
+        let deviations = self.deviations(state)?;
+        for head in judged {
+            let own = self.heads.first[head]..self.heads.first[head + 1];
+            let likely = |draw: &Vec<f64>| own.clone().map(|at| state.theta[at] + draw[at]).collect();
+            let likely: Vec<Vec<f64>> = deviations.coefficients.iter().map(likely).collect();
+            let roughness = state.classes[self.roughness[head]].size;
+            beyond[own].fill(unresolved(&self.heads, head, &likely, roughness));
+        }
+        Some(beyond)
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state.
@@ -92,7 +109,32 @@ impl Solver<'_> {
         let of_others =
             |(at, bound): &(usize, Bound)| left(&groups(bound, &self.heads)[*at], &|row| share * self.sizes[*at][row]);
         let between = self.others.as_ref().map_or(0.0, of_others);
-        asked.chain([between, self.missed(state, noise) / MISSED]).fold(0.0, f64::max)
+        asked.chain([between, self.missed(state, noise) / MISSED, self.alike(state, noise)]).fold(0.0, f64::max)
+    }
+
+    /// How much more neighbouring misfits of noisy measurements are alike than those of noise may be, at most: so they are where cells are
+    /// too coarse for the measurements, or an equation does not fit these. The state's learned scalars are set.
+    pub(super) fn alike(&self, state: &State, noise: &Noise) -> f64 {
+        let of = |found: &ObservationNoise| {
+            let group = &self.groups[found.group];
+            let term = &group.schema.terms[found.term];
+            let evaluated = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            let places = self.bound.measured(found.group, term, &self.bound.coordinates[found.group]);
+            let row = |row: usize| {
+                let misfits: Vec<f64> = (0..group.sites.count).map(|p| evaluated.row(row, p)).collect();
+                let misfits = self.bound.measured(found.group, term, &misfits);
+                let (correlation, deviations) =
+                    correlation::over_coordinates(&places, self.schema().coordinates.len(), &misfits);
+                if correlation > SLIGHT { deviations / ALIKE } else { 0.0 }
+            };
+            (term.first..term.first + term.rows).map(row).fold(0.0, f64::max)
+        };
+        let is_robust = |found: &&ObservationNoise| self.bound.losses[found.group][found.term].is_robust();
+        let is_cloud = |found: &&ObservationNoise| {
+            self.schema().groups[found.group].terms[found.term].kind != TermKind::Observation
+        };
+        let all = noise.observations.iter().filter(|found| !found.is_exact());
+        all.filter(|found| !is_cloud(found) && !is_robust(found)).map(of).fold(0.0, f64::max)
     }
 
     /// How far an answer is from one on another lattice, at most: heads at the points of equations and data over their size, or learned

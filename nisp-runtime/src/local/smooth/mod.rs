@@ -15,6 +15,7 @@ mod places;
 mod prior;
 mod run;
 mod sampled;
+mod short;
 mod solver;
 mod starts;
 mod state;
@@ -50,7 +51,7 @@ use state::State;
 pub(crate) const METHOD: &str = "splines on a lattice";
 
 /// What error bars take, in steps.
-const BARS: f64 = 1.0 + judged::DOUBTS as f64;
+const BARS: f64 = 2.0 + judged::DOUBTS as f64;
 
 /// Points of the largest equation on a finer lattice, beside those on the one before.
 const MORE: usize = 2;
@@ -108,7 +109,7 @@ pub(crate) fn solve(
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
         let missed = solver.missed(&run.state, noise);
-        let is_missed = missed > MISSED;
+        let is_missed = missed > MISSED || solver.alike(&run.state, noise) > 1.0;
         // Where cells miss measurements, which then count as noise, one finer lattice may be too coarse as well.
         let patience = if is_missed || !is_noisy { PATIENCE } else { 1 };
         idle = if strain > EASED * before { idle + 1 } else { 0 };

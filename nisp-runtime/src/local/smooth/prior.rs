@@ -2,8 +2,6 @@
 //! sources are believed to change little instead (that of a membrane). Lengths and times make no distance: both are counted in cells,
 //! of which there are as many along the longest length as along the longest time.
 
-use std::f64::consts::{FRAC_PI_2, PI};
-
 use crate::local::block::Block;
 use crate::local::heads::Heads;
 use crate::local::lattice::Lattice;
@@ -71,24 +69,9 @@ impl Prior {
     }
 }
 
-/// The deviation of a head's coefficients that stands for waves shorter than four cells, of which the data say nothing and which the
-/// cells cannot hold. A head of this roughness that bends little has a spectrum of `roughness^2 / frequency^4` down to these waves.
-/// From there on it falls as that of a head with edges does, with the third power; it is summed up over two octaves.
-pub(super) fn unresolved(heads: &Heads, head: usize, roughness: f64) -> f64 {
-    let lattice = &heads.lattices[head];
-    let dimensions = lattice.dimensions();
-    let lowest = FRAC_PI_2 / root_of_cell(lattice).powf(2.0 / dimensions as f64);
-    // The integral of `frequency^(dimensions - 4)`, times the directions of waves over the volume of their frequencies.
-    let octaves = match dimensions {
-        1 => 15.0 / 32.0 / PI,
-        2 => 0.75 / (2.0 * PI),
-        3 => 4f64.ln() / (2.0 * PI * PI),
-        _ => 3.0 / (8.0 * PI * PI),
-    };
-    let variance = roughness.powi(2) * lowest.powi(dimensions as i32 - 4) * octaves;
-    let parts = heads.parts(head, &lattice.site(lattice.len() / 2));
-    let squares: f64 = parts.iter().map(|(_, part)| (part / heads.scale[head]).powi(2)).sum();
-    (variance / squares).sqrt()
+/// Variance of second differences of coefficients from a cell to the next, of a head of this roughness that bends little.
+pub(super) fn bends(lattice: &Lattice, roughness: f64) -> f64 {
+    (roughness * spacing(lattice).powi(2) / root_of_cell(lattice)).powi(2)
 }
 
 /// A cell along any coordinate, over the longest side.
@@ -112,7 +95,7 @@ fn row(first: usize, numbers: &[u32], factors: &[f64]) -> (Vec<u32>, Vec<f64>) {
 }
 
 /// By number of a function, the number of the next along a coordinate.
-fn next(lattice: &Lattice, axis: usize) -> Vec<Option<u32>> {
+pub(super) fn next(lattice: &Lattice, axis: usize) -> Vec<Option<u32>> {
     let mut next = vec![None; lattice.len()];
     lattice.neighbours(axis).for_each(|(at, after)| next[at as usize] = Some(after));
     next
