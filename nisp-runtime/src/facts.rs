@@ -225,6 +225,15 @@ pub(crate) fn spread(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone
 /// How much larger a source may be than the evidence says, for what learned scalars would be then.
 pub(crate) const LARGER: f64 = 3.0;
 
+/// What is known of a scalar that is learned beside sources, of its parameter.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Leaning {
+    /// How far it moves where sources may be [`LARGER`] times as large; nothing where there was no time.
+    pub(crate) moved: Option<f64>,
+    /// Its deviation; nothing without error bars.
+    pub(crate) deviation: Option<f64>,
+}
+
 /// What a carrier says of its answer, in the engine's units.
 #[derive(Clone)]
 pub(crate) struct Answer {
@@ -239,9 +248,8 @@ pub(crate) struct Answer {
     pub(crate) scores: Vec<Score>,
     /// How much is told of sources; empty where the carrier does not say.
     pub(crate) told: Vec<Told>,
-    /// By learned scalar, how far its parameter moves where sources may be [`LARGER`] times as large; empty where the carrier does
-    /// not tell.
-    pub(crate) leaning: Vec<f64>,
+    /// By learned scalar; empty without sources, and where the carrier does not tell.
+    pub(crate) leaning: Vec<Leaning>,
     /// The largest change of a learned scalar's parameter in one more whole Gauss-Newton step; nothing at the end of the steps, and
     /// where the carrier does not tell.
     pub(crate) ahead: Option<f64>,

@@ -3,6 +3,7 @@
 use nisp::solve::driver::Flow;
 use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 
+mod beside;
 mod blurred;
 mod bounded;
 mod driven;

@@ -1,6 +1,6 @@
 //! Rows about an iterate: of terms, of priors, and of those that keep everything bounded.
 
-use super::cells::MANY;
+use super::cells::{MANY, SMOOTH};
 use super::iterate::{Phase, State};
 use super::rows::Rows;
 use super::solver::Solver;
@@ -16,6 +16,8 @@ pub(super) const RIDGE: f64 = 1e-6;
 const FREE: f64 = 10.0;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
 const LEARNED: f64 = 10.0;
+/// The same beside sources, before the first end.
+const HELD: f64 = 0.03;
 
 impl Solver<'_> {
     /// What a row of a group is divided by.
@@ -49,7 +51,8 @@ impl Solver<'_> {
             }
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, Some(shared));
             for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| takes_part(term)) {
-                if self.left_out == Some(self.classes[at][number]) {
+                let is_unmeasured = !self.is_measured && term.kind == TermKind::Observation;
+                if is_unmeasured || self.left_out == Some(self.classes[at][number]) {
                     continue;
                 }
                 let loss = self.loss_of(state, (at, number));
@@ -80,7 +83,14 @@ impl Solver<'_> {
         for head in 0..self.heads.bases.len() {
             let numbers = self.heads.numbers(head, 0);
             let stay = RIDGE.max((FREE * (numbers.len() as f64).sqrt()).recip());
-            for &number in numbers {
+            // Without data fields begin anywhere, and the equations make the rest of them.
+            let order = match self.amplitude[head] {
+                None if !self.is_measured => self.heads.bases[head].degree - SMOOTH,
+                _ => 0,
+            };
+            let stay = if self.is_measured { stay } else { RIDGE };
+            for (function, &number) in numbers.iter().enumerate() {
+                let stay = if function < order { FREE.recip() } else { stay };
                 // What no data speak of stays where equations have a value. The row holds coefficients to where they are more than
                 // it draws them to zero.
                 let pull = if phase == Phase::Regress { 0.0 } else { RIDGE.powi(2) * state.theta[number] };
@@ -88,10 +98,11 @@ impl Solver<'_> {
             }
         }
         rows.sort();
+        let deviation = if state.held { HELD } else { LEARNED };
         for (at, parameter) in state.learned.iter().enumerate() {
             let mut shared = none.clone();
-            shared[at] = LEARNED.recip();
-            rows.push(Row { first: 0, slopes: &[], shared: &shared, value: parameter / LEARNED }, known);
+            shared[at] = deviation.recip();
+            rows.push(Row { first: 0, slopes: &[], shared: &shared, value: parameter / deviation }, known);
         }
         Ok((rows, cost))
     }

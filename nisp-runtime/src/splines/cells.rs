@@ -19,7 +19,7 @@ const JUMP: f64 = 4.0;
 /// Measurements closer to each other than this share of their mean distance have one breakpoint.
 const CLOSE: f64 = 0.25;
 /// Degree of the equations' residuals: cubic splines are good to the fourth power of a cell.
-const SMOOTH: usize = 5;
+pub(super) const SMOOTH: usize = 5;
 /// Longest gap between the points of an equation, beside the mean one, that still counts as part of an interval.
 const GAP: f64 = 30.0;
 /// Points of an equation at least that stand for an interval.

@@ -119,6 +119,8 @@ impl Run<'_> {
                     place.since = 0;
                     if place.state.convex {
                         place.state.convex = false;
+                    } else if place.state.held {
+                        place.state.held = false;
                     } else {
                         // An iterate that wanders about has no evidence.
                         place.next(if found.change < WANDERING {

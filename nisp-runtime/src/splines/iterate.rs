@@ -20,6 +20,8 @@ pub(super) struct State {
     pub(super) tolerance: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
     pub(super) convex: bool,
+    /// Whether learned scalars stay near their start, until sources beside them have found their sizes.
+    pub(super) held: bool,
     pub(super) step: u64,
 }
 
@@ -42,6 +44,7 @@ impl State {
             .with(&format!("{prefix}tolerance"), &[self.tolerance])
             .with_counter(&format!("{prefix}blurred"), u64::from(self.blurred))
             .with_counter(&format!("{prefix}convex"), u64::from(self.convex))
+            .with_counter(&format!("{prefix}held"), u64::from(self.held))
             .with_counter(&format!("{prefix}step"), self.step)
     }
 
@@ -55,6 +58,7 @@ impl State {
         [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
         self.blurred = saved.counter(&format!("{prefix}blurred"))? == 1;
         self.convex = saved.counter(&format!("{prefix}convex"))? == 1;
+        self.held = saved.counter(&format!("{prefix}held"))? == 1;
         self.step = saved.counter(&format!("{prefix}step"))?;
         Ok(())
     }

@@ -19,7 +19,7 @@ impl Solver<'_> {
     /// By learned scalar, how far its parameter moves from an end where sources may be [`LARGER`] times as large and as rough;
     /// nothing without sources or scalars.
     pub(super) fn leaning(&mut self, kind: Smoothness, end: &State) -> Result<Vec<f64>, Fault> {
-        if end.learned.is_empty() || !self.has_sources() {
+        if !self.is_beside_sources() {
             return Ok(Vec::new());
         }
         self.set_smoothness(kind, end);

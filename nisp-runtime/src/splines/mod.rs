@@ -22,6 +22,7 @@ mod jumps;
 mod kept;
 mod leaning;
 pub mod live;
+mod marginal;
 mod place;
 mod prior;
 mod resolved;
@@ -39,7 +40,7 @@ use thiserror::Error;
 
 use crate::bounds;
 use crate::carrier::Progress;
-use crate::facts::{Answer, OTHER_THAN_SPLINES};
+use crate::facts::{Answer, Leaning, OTHER_THAN_SPLINES};
 use crate::memory::{self, Exceeded};
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -215,9 +216,9 @@ pub(crate) fn solve(
     if bars.is_open {
         status = Status::NotConverged;
     }
-    let mut leaning = Vec::new();
+    let mut moved = Vec::new();
     if let Some(best) = place.best().filter(|_| status == Status::Converged && run.has_time_for(leaning::STEPS)) {
-        leaning = solver.leaning(KINDS[best.kind], &best.state)?;
+        moved = solver.leaning(KINDS[best.kind], &best.state)?;
     }
     let mut roots = Vec::new();
     if status == Status::Converged
@@ -238,8 +239,11 @@ pub(crate) fn solve(
     let misfits = solver.misfits(&place.state);
     let course = place.best().map(|best| KINDS[best.kind].course);
     let State { theta, learned, step: iterations, .. } = place.state;
+    let is_beside_sources = solver.is_beside_sources();
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let (kept, told) = bars.keep((heads, theta, learned), course);
+    let own = kept.learned().into_iter().filter(|_| is_beside_sources).enumerate();
+    let leaning = own.map(|(at, (_, deviation))| Leaning { moved: moved.get(at).copied(), deviation }).collect();
     let answer = Answer {
         facts,
         between: None,

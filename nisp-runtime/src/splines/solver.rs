@@ -35,6 +35,8 @@ pub(super) struct Solver<'a> {
     pub(super) priors: Vec<Prior>,
     /// The class of a condition that is left out.
     pub(super) left_out: Option<usize>,
+    /// Whether the rows of data count.
+    pub(super) is_measured: bool,
     /// Sizes of equations, by group and row.
     pub(super) sizes: Vec<Vec<f64>>,
     /// By group and column, the noise of what equations know.
@@ -85,6 +87,7 @@ impl<'a> Solver<'a> {
             amplitude,
             priors,
             left_out: None,
+            is_measured: true,
             sizes,
             noise_of_columns: (0..bound.columns.len()).map(|group| of_given(bound, group)).collect(),
             blurs,

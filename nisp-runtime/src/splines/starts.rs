@@ -42,6 +42,7 @@ impl Solver<'_> {
             blurred: false,
             tolerance: LOOSE,
             convex,
+            held: self.is_beside_sources(),
             step: 0,
         };
         self.level(&mut state);

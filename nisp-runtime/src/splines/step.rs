@@ -5,6 +5,7 @@ use super::rows::Counted;
 use super::solver::Solver;
 use super::told::Along;
 use super::triangle::covariance::Covariance;
+use crate::schema;
 use crate::solve::fault::Fault;
 use crate::tolerance;
 use crate::weighed::{Tally, renew};
@@ -51,6 +52,10 @@ impl Solver<'_> {
         let (rows, before) = self.rows(state, phase)?;
         self.triangle.clear();
         self.triangle.add_all(rows.walk());
+        let pull = self.pull(state, phase)?;
+        if let Some(pull) = &pull {
+            self.triangle.draw(&pull.slopes);
+        }
         let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
         let covariance = self.triangle.covariance();
         let is_equation = self.equations(state);
@@ -75,14 +80,18 @@ impl Solver<'_> {
         let noisy =
             state.classes.iter().zip(&tallies).filter_map(|(class, tally)| class.told_by(tally)).reduce(f64::min);
         let squares: f64 = tallies.iter().map(|tally| tally.squares).sum();
-        let evidence = -0.5 * squares - self.log_sizes(state, &tallies) + worth - self.triangle.log_determinant();
+        let lacking = pull.as_ref().map_or(0.0, |pull| self.lacking(pull, state, &tallies, worth));
+        let sizes = self.log_sizes(state, &tallies, |_| true);
+        let evidence = -0.5 * squares - sizes + worth + lacking - self.triangle.log_determinant();
         let (step, shared) = self.within_bounds(state, &rows, (step, shared));
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
         let mut next = state.clone();
+        let slopes = pull.map_or_else(Vec::new, |pull| pull.slopes);
+        let drawn: f64 = slopes.iter().zip(&shared).map(|(slope, x)| slope * x).sum();
         for halvings in 0..MOST_HALVINGS {
             next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
             next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
-            let after = self.loss(&next, phase);
+            let after = self.loss(&next, phase) - share * drawn;
             let is_less = after <= before * (1.0 + 1e-9) + 1e-12;
             if after.is_finite() && (is_less || halvings + 1 >= HALVINGS) {
                 break;
@@ -111,11 +120,11 @@ impl Solver<'_> {
         Ok(Some(Found { next, loss, change, ahead, evidence, covariance, noisy, told }))
     }
 
-    /// Sum of the logarithms of what rows are divided by, those of priors aside.
-    fn log_sizes(&self, state: &State, tallies: &[Tally]) -> f64 {
+    /// Sum of the logarithms of what rows of such terms are divided by, those of priors aside.
+    pub(super) fn log_sizes(&self, state: &State, tallies: &[Tally], is_such: impl Fn(&schema::Term) -> bool) -> f64 {
         let mut sum = 0.0;
         for (at, group) in self.groups.iter().enumerate() {
-            for (number, term) in group.schema.terms.iter().enumerate() {
+            for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| is_such(term)) {
                 let rows = term.first..term.first + term.rows;
                 let logs: f64 = rows.map(|row| self.sigma(state, at, number, row).ln()).sum();
                 let count = tallies[self.classes[at][number]].count;

@@ -209,8 +209,23 @@ impl Triangle {
 
     /// Sum of the logarithms of the diagonal: half that of the normal matrix's determinant.
     pub(super) fn log_determinant(&self) -> f64 {
-        let band = self.rows.iter().step_by(self.band).map(|x| x.abs().ln()).sum::<f64>();
-        band + (0..self.shared).map(|at| self.corner[at * (self.shared + 1)].abs().ln()).sum::<f64>()
+        self.log_determinant_of_band()
+            + (0..self.shared).map(|at| self.corner[at * (self.shared + 1)].abs().ln()).sum::<f64>()
+    }
+
+    /// The same without the shared unknowns.
+    pub(super) fn log_determinant_of_band(&self) -> f64 {
+        self.rows.iter().step_by(self.band).map(|x| x.abs().ln()).sum()
+    }
+
+    /// Draws the shared unknowns along slopes: what is made least is half the sum of squares less the slopes times the unknowns.
+    pub(super) fn draw(&mut self, slopes: &[f64]) {
+        let mut drawn = vec![0.0; self.shared];
+        for at in 0..self.shared {
+            let before: f64 = (0..at).map(|row| self.corner[row * self.shared + at] * drawn[row]).sum();
+            drawn[at] = (slopes[at] - before) / self.corner[at * (self.shared + 1)];
+        }
+        self.corner_right.iter_mut().zip(&drawn).for_each(|(right, drawn)| *right += drawn);
     }
 }
 

@@ -1,24 +1,43 @@
 //! Learned scalars of which little more is known than that sources are small.
 
 use super::Check;
-use crate::facts::LARGER;
+use crate::facts::{LARGER, Leaning};
 use crate::problem::Bound;
 
 /// How far a scalar may move, as a share of itself or of its natural size, where sources may be larger. Where sources are zero or
 /// constant over parts of a record scalars move by less than a hundredth, where they follow what is measured by a fifth and more.
 pub(crate) const FARTHEST: f64 = 0.1;
+/// How far it may move in its own deviations, which say that it may, and in all: what is as many times larger as the sources are is known
+/// by their size alone.
+const SURE: f64 = 3.0;
+const SCALES: f64 = 0.8;
+/// The largest deviation of a scalar that is known, as a share of itself or of its natural size. A larger one is that of a logarithm, and
+/// as a deviation of the scalar too short to one side.
+const OPEN: f64 = 0.5;
 
-/// A check for every learned scalar, of how far it moves.
-pub(super) fn checks(bound: &Bound, leaning: &[f64]) -> Vec<Check> {
+/// Checks for every scalar that is learned beside sources: how far it moves, and whether it is known at all.
+pub(super) fn checks(bound: &Bound, leaning: &[Leaning]) -> Vec<Check> {
     let schema = bound.problem.scene().schema;
-    let check = |(learned, &moved): (&crate::engine::Learned, &f64)| {
+    let check = |(learned, found): (&crate::engine::Learned, &Leaning)| {
         let name = schema.scalars[learned.slot].name;
-        let said = format!(
-            "learned `{name}` moves by {:.0} % where sources may be {LARGER} times as large: little more is known of it than that it \
-             leaves them small; give it, or measure a source, or a part of the record in which sources are known",
-            100.0 * moved
-        );
-        Check::new("leaning", ("", name), (moved, FARTHEST), said)
+        let moves = found.moved.map(|moved| {
+            let said = format!(
+                "learned `{name}` moves by {:.0} % where sources may be {LARGER} times as large: little more is known of it than that \
+                 it leaves them small; give it, or measure a source, or a part of the record in which sources are known",
+                100.0 * moved
+            );
+            let limit = FARTHEST.max((SURE * found.deviation.unwrap_or(0.0)).min(SCALES));
+            Check::new("leaning", ("", name), (moved, limit), said)
+        });
+        let is_known = found.deviation.map(|deviation| {
+            let said = format!(
+                "the data do not determine `{name}` beside the sources: its deviation is {:.0} % of it; give it, or a belief about \
+                 it (`learn {name} within ...`), or measure a source",
+                100.0 * deviation
+            );
+            Check::new("determined", ("", name), (deviation, OPEN), said)
+        });
+        moves.into_iter().chain(is_known)
     };
-    bound.learned.iter().zip(leaning).map(check).collect()
+    bound.learned.iter().zip(leaning).flat_map(check).collect()
 }
