@@ -3,6 +3,7 @@
 use std::fmt;
 
 use nisp_compiler::error::{Fault, Place};
+use nisp_compiler::syntax::is_name;
 use proc_macro2::{Delimiter, Group, Ident, LineColumn, Span, TokenStream, TokenTree};
 
 /// Something that is wrong with an equation, and where.
@@ -127,11 +128,15 @@ fn is_module(tokens: &TokenStream) -> bool {
     false
 }
 
-/// A name that can stand for a module: letters, digits and underscores, not beginning with a digit.
+/// A name that can stand for a module: letters, digits and underscores, not beginning with a digit, and no word of Rust.
 fn identifier(name: &str) -> String {
     let plain: String = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
     let begins = plain.chars().next().is_some_and(|c| !c.is_ascii_digit());
-    if begins && !plain.trim_matches('_').is_empty() { plain } else { format!("equation_{plain}") }
+    match plain {
+        plain if !begins || plain.trim_matches('_').is_empty() => format!("equation_{plain}"),
+        plain if is_name(&plain) => plain,
+        plain => format!("{plain}_"),
+    }
 }
 
 /// True for two texts of equations that differ in nothing but spaces, comments and documentation.

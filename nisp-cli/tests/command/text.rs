@@ -56,6 +56,18 @@ fn a_new_equation_already_solves() {
     assert!(place.run("new 3d").stderr.contains("letters, digits and underscores"));
 }
 
+/// What a file is called is not what a name in Rust may be.
+#[test]
+fn a_text_may_have_any_name() {
+    let place = Place::new();
+    for (file, name) in [("box.pde", "box_"), ("loop-2.pde", "loop_2"), ("2.pde", "equation_2"), ("wärme.pde", "w_rme")]
+    {
+        place.put(file, "coordinates: t; fields: u; on start { is: u == 1; } on body { falls: d(u, t) == -u; }");
+        let ran = place.run(&format!("check {file}"));
+        assert!(ran.code == Some(0) && ran.stdout.starts_with(name), "{}{}", ran.stdout, ran.stderr);
+    }
+}
+
 #[test]
 fn mistakes_have_their_place() {
     let place = Place::new();

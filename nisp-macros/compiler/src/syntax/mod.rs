@@ -61,6 +61,7 @@ mod tree;
 pub(crate) use parse_number::{exact, real};
 pub(crate) use print_latex::print_latex;
 pub(crate) use print_text::print_text;
+pub use recover::is_name;
 pub use tree::*;
 
 /// Reads the tokens inside `pde! { ... }`. None if there is no module in them at all.

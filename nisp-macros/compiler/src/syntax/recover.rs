@@ -78,6 +78,11 @@ pub(super) fn statements(
     }
 }
 
+/// True of what can be a name: no word of Rust.
+pub fn is_name(text: &str) -> bool {
+    text != "_" && syn::parse_str::<syn::Ident>(text).is_ok()
+}
+
 /// Takes a name, or says what it would have named.
 pub(super) fn name(stream: &mut Stream<'_>, context: &mut Context<'_>, what: &str) -> Checked<Name> {
     let place = stream.place();
@@ -90,7 +95,7 @@ pub(super) fn name(stream: &mut Stream<'_>, context: &mut Context<'_>, what: &st
         context.broken.extend([plain.to_string(), name.text.clone()]);
         return Err(context.errors.report(place, catalogue::raw_name(plain)));
     }
-    if name.text == "_" || syn::parse_str::<syn::Ident>(&name.text).is_err() {
+    if !is_name(&name.text) {
         context.broken.insert(name.text.clone());
         return Err(context.errors.report(place, catalogue::keyword_as_name(&name.text)));
     }
