@@ -168,7 +168,7 @@ pub(crate) struct Options {
     /// TOML of the camera that took a depth image (PNG of 16 bit, or NPY): fx, fy, cx, cy, and where it is.
     #[arg(long, value_name = "FILE", help_heading = DATA)]
     pub(crate) camera: Option<PathBuf>,
-    /// Header of the column that holds a quantity, for instance q=q_m_sigma0.01. Repeatable.
+    /// Header of the column that holds a quantity, for instance q=pos, or 'q=pos [mm]' if it says no unit. Repeatable.
     #[arg(long, value_name = "NAME=HEADER", value_parser = pair, help_heading = DATA)]
     pub(crate) column: Vec<(String, String)>,
     /// About how many points a group in a domain shall have, for instance inside=4000. Repeatable.

@@ -111,6 +111,17 @@ fn refuses_with_what_to_do() {
 }
 
 #[test]
+fn a_unit_may_be_chosen_where_the_header_has_none() {
+    let table = parse("t,pos,v [m/s]\n0,1,1\n1,2,2\n");
+    assert_eq!(table.chosen("q", "pos [mm]", "m").unwrap(), [1e-3, 2e-3]);
+    assert_eq!(table.chosen("q", "pos", "m").unwrap(), [1.0, 2.0]);
+    let other = table.chosen("q", "pos [K]", "m").unwrap_err().to_string();
+    assert!(other.contains("`pos [K]` is in K, where `q` is in m"), "{other}");
+    // What a header says is not overruled.
+    assert!(table.chosen("q", "v [mm/s]", "m/s").is_err() && table.chosen("q", "speed [mm]", "m").is_err());
+}
+
+#[test]
 fn thousands_are_not_taken_for_ones() {
     let q = |cells: [&str; 4]| {
         let rows: Vec<String> = (0..4).zip(cells).map(|(t, cell)| format!("{t};{cell}\n")).collect();

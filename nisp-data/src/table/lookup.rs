@@ -30,14 +30,32 @@ impl Table {
     }
 
     /// The column with a header that the user chose for `name`, in `unit`, converted as in [`Table::quantity`]. A header whose
-    /// brackets hold another unit is refused.
+    /// brackets hold another unit is refused. `pos [mm]` may be chosen where the header is `pos` alone: its numbers are millimetres.
     pub fn chosen(&self, name: &str, header: &str, unit: &str) -> Result<Vec<f64>, DataError> {
-        self.converted(self.under(name, header)?, (name, unit), Table::checked)
+        self.chosen_by((name, header, unit), Table::checked)
     }
 
     /// As [`Table::chosen`], with NaN for cells that are empty or `nan`: nothing was measured there.
     pub fn chosen_measured(&self, name: &str, header: &str, unit: &str) -> Result<Vec<f64>, DataError> {
-        self.converted(self.under(name, header)?, (name, unit), Table::with_gaps)
+        self.chosen_by((name, header, unit), Table::with_gaps)
+    }
+
+    fn chosen_by<'a>(
+        &'a self,
+        (name, header, unit): (&str, &str, &str),
+        read: fn(&'a Table, &'a Column) -> Result<&'a [f64], DataError>,
+    ) -> Result<Vec<f64>, DataError> {
+        let bare = base(header);
+        let plain = || self.single(name, &self.matching(|own| own == bare));
+        let (Some(own), true, Some(column)) = (in_brackets(header), self.answering(header, None).is_empty(), plain()?)
+        else {
+            return self.converted(self.under(name, header)?, (name, unit), read);
+        };
+        let values = read(self, column)?;
+        match conversion(own, unit) {
+            Some(conversion) => Ok(values.iter().map(|&x| conversion.of(Number::file(x)).as_declared()).collect()),
+            None => Err(self.other_unit(header, name, unit).unwrap_or_else(|| self.absent(name, header))),
+        }
     }
 
     /// The column with a header that the user chose for a name.
