@@ -59,3 +59,59 @@ fn a_drive_is_followed_where_its_answer_is_lost_in_the_noise() {
         }
     }
 }
+
+nisp::pde! {
+    /// A coil and a wheel: the current answers to the voltage within an eighth of the time between two rows.
+    mod motor {
+        units: off;
+        coordinates: t;
+        fields: i, w;
+        sources: load;
+        on inside {
+            columns: V;
+            coil: 0.0025 * d(i, t) == V - i - w;
+            wheel: d(w, t) == i - load;
+        }
+        on samples { observe i, w; }
+    }
+}
+
+/// A voltage is switched, and the current is elsewhere before the next row. States follow from a load of one by exponentials, after
+/// each switch with constants of their own: `w' = i - 1`, `0.0025 i' = V - i - w`.
+#[test]
+fn a_switched_voltage_moves_a_current_between_two_rows() {
+    const EACH: u32 = 40;
+    const STEP: f64 = 0.02;
+    let volts = |row: u32| if (row / EACH) % 2 == 0 { 3.0 } else { 5.0 };
+    // Roots of 0.0025 r^2 + r + 1, and the rest state (1, V - 1).
+    let roots = [1.0, -1.0].map(|sign: f64| (-1.0 + sign * (1.0f64 - 0.01).sqrt()) / 0.005);
+    let mut state = [1.0, 2.0];
+    let mut normal = normals(3);
+    let (mut times, mut rows) = (Vec::new(), [Vec::new(), Vec::new(), Vec::new()]);
+    for row in 0..6 * EACH {
+        let v = volts(row);
+        times.push(STEP * f64::from(row));
+        rows[0].push(state[0] + 0.01 * normal());
+        rows[1].push(state[1] + 0.01 * normal());
+        rows[2].push(v);
+        // w = V - 1 + a e^(r1 t) + b e^(r2 t), and i = 1 + w'.
+        let (off, slope) = (state[1] - (v - 1.0), state[0] - 1.0);
+        let b = (slope - roots[0] * off) / (roots[1] - roots[0]);
+        let parts = [off - b, b];
+        let grown = [0, 1].map(|k| parts[k] * (roots[k] * STEP).exp());
+        state = [1.0 + roots[0] * grown[0] + roots[1] * grown[1], v - 1.0 + grown[0] + grown[1]];
+    }
+    let [i, w, v] = rows;
+    let mut problem = Problem::new(scene::<motor::all::Scene>());
+    problem.set_group("inside", times.clone().into(), vec![v]).unwrap();
+    problem.set_group("samples", times.clone().into(), vec![i, w]).unwrap();
+    let mut solution = solve(&problem, Carrier::Splines);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let found = solution.evaluate_with_errors(&times);
+    let load = of(&found, "load");
+    let off: Vec<f64> = load.values.iter().map(|found| (found - 1.0).abs()).collect();
+    let bars = load.deviations.as_ref().expect("a sound answer has error bars");
+    assert!(off.iter().sum::<f64>() < 0.05 * off.len() as f64, "{off:?}");
+    let beyond = off.iter().zip(bars).filter(|(off, bar)| **off > 4.0 * **bar).count();
+    assert!(20 * beyond < off.len(), "{beyond}");
+}

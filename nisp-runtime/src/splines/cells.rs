@@ -2,7 +2,7 @@
 
 use super::basis::{Basis, HIGHEST_DEGREE};
 use super::drives;
-use super::jumps::jumps;
+use super::jumps::{jumps, of_columns};
 use super::prior;
 use super::resolved;
 use crate::noise::Noise;
@@ -16,6 +16,8 @@ const FEWEST: f64 = 200.0;
 pub(super) const EXACT: f64 = 2.0;
 /// Cells from a measurement to the next where what is measured jumps in between.
 const JUMP: f64 = 4.0;
+/// Breakpoints closer to each other than this share of the record are one.
+const ROUNDING: f64 = 1e-9;
 /// Measurements closer to each other than this share of their mean distance have one breakpoint.
 const CLOSE: f64 = 0.25;
 /// Degree of the equations' residuals: cubic splines are good to the fourth power of a cell.
@@ -51,7 +53,7 @@ pub(super) fn stretches(bound: &Bound) -> bool {
 /// their own points.
 fn all_breakpoints(bound: &Bound, stretches: bool, least: f64, jumps: &[[f64; 2]]) -> Vec<f64> {
     if let Some(points) = asked(bound) {
-        return told_by(bound, &points);
+        return freed(told_by(bound, &points), of_columns(bound));
     }
     let groups = bound.problem.scene().schema.groups.iter().zip(&bound.coordinates);
     let mut measured: Vec<f64> = groups.filter(|(g, _)| !g.columns.is_empty()).flat_map(|(_, c)| c).copied().collect();
@@ -60,7 +62,8 @@ fn all_breakpoints(bound: &Bound, stretches: bool, least: f64, jumps: &[[f64; 2]
     measured.sort_by(f64::total_cmp);
     let close = CLOSE * (high - low) / measured.len().max(1) as f64;
     measured.dedup_by(|next, before| *next - *before < close.min((high - low) / FEWEST));
-    let inside = measured.into_iter().filter(|x| *x - low > 1e-9 * (high - low) && high - *x > 1e-9 * (high - low));
+    let inside =
+        measured.into_iter().filter(|x| *x - low > ROUNDING * (high - low) && high - *x > ROUNDING * (high - low));
     let places: Vec<f64> = std::iter::once(low).chain(inside).chain([high]).collect();
     let mut breakpoints = vec![low];
     for gap in places.windows(2) {
@@ -103,6 +106,21 @@ fn told_by(bound: &Bound, points: &[f64]) -> Vec<f64> {
     let count = points.len();
     let means = points[1..count - 1].windows(SMOOTH).map(|near| near.iter().sum::<f64>() / SMOOTH as f64);
     std::iter::once(low).chain(means).chain([high]).collect()
+}
+
+/// The same with cells of their own between some pairs of neighbouring points, which no equation settles.
+fn freed(mut breakpoints: Vec<f64>, mut pairs: Vec<[f64; 2]>) -> Vec<f64> {
+    pairs.sort_by(|a, b| a[1].total_cmp(&b[1]));
+    let is_between =
+        |at: f64| pairs[pairs.partition_point(|pair| pair[1] <= at)..].first().is_some_and(|pair| pair[0] < at);
+    breakpoints.retain(|at| !is_between(*at));
+    let shares = (0..=JUMP as u32).map(|k| f64::from(k) / JUMP);
+    breakpoints
+        .extend(shares.flat_map(|share| pairs.iter().map(move |[before, after]| before + (after - before) * share)));
+    breakpoints.sort_by(f64::total_cmp);
+    let close = ROUNDING * (breakpoints[breakpoints.len() - 1] - breakpoints[0]);
+    breakpoints.dedup_by(|next, before| *next - *before < close);
+    breakpoints
 }
 
 /// Breakpoints from which on a record is asked how many of them it needs.

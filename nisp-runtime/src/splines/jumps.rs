@@ -1,15 +1,20 @@
-//! Where measurements jump from one to the next.
+//! Where measurements jump from one to the next, or what equations take for known does.
 //!
 //! A source that is measured may step. When it did, between two rows, is what the fields know that it moves: with no cell to itself
 //! the step takes place at one time alone, and the rows beside it make up for what is wrong with that.
 
-use crate::noise::Noise;
+use crate::noise::{Noise, deviation, of_given};
 use crate::problem::Bound;
+use crate::schema::{Group, TermKind};
 
 /// A jump over the noise, and over the changes before and after it, at least. A wave of seven rows changes by less beside its steepest
 /// place.
 const FAR: f64 = 10.0;
 const ALONE: f64 = 1.5;
+/// The same of what equations know, between whose rows they hold but where it jumps: a drive of three rows a wave changes by less.
+const SWITCHED: f64 = 4.0;
+/// Noise that a column is looked at with at least, as a share of what it varies by: smaller jumps set little going.
+const SLIGHT: f64 = 0.01;
 
 /// Pairs of places between which something that is observed jumps.
 pub(super) fn jumps(bound: &Bound, noise: &Noise) -> Vec<[f64; 2]> {
@@ -21,17 +26,40 @@ pub(super) fn jumps(bound: &Bound, noise: &Noise) -> Vec<[f64; 2]> {
                 bound.coordinates[found.group].iter().copied().zip(bound.columns[found.group][column].iter().copied());
             let mut rows: Vec<(f64, f64)> = all.filter(|(_, value)| !value.is_nan()).collect();
             rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-            jumps.extend(of_rows(&rows, found.deviation));
+            jumps.extend(of_rows(&rows, found.deviation, ALONE));
+        }
+    }
+    jumps
+}
+
+/// Pairs of neighbouring places of equations with columns, between which fields may move faster than the equations say: where a
+/// column jumps, and behind it. A switch may be thrown anywhere between two rows, and what it sets going may be over before the next.
+pub(super) fn of_columns(bound: &Bound) -> Vec<[f64; 2]> {
+    let groups = bound.problem.scene().schema.groups.iter().enumerate();
+    let is_equation = |group: &Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
+    let mut jumps = Vec::new();
+    for (at, _) in groups.filter(|(_, group)| is_equation(group)) {
+        for (column, noise) in bound.columns[at].iter().zip(of_given(bound, at)) {
+            let mut rows: Vec<(f64, f64)> = bound.coordinates[at].iter().copied().zip(column.iter().copied()).collect();
+            rows.sort_by(|a, b| a.0.total_cmp(&b.0));
+            // A column goes on at both ends as it ends.
+            let [before, after] = [rows.first(), rows.last()].map(|end| end.copied().into_iter());
+            let rows: Vec<(f64, f64)> = before.chain(rows.iter().copied()).chain(after).collect();
+            let found = of_rows(&rows, noise.max(SLIGHT * deviation(column)), SWITCHED);
+            let behind =
+                |jump: &[f64; 2]| rows.get(rows.partition_point(|row| row.0 <= jump[1])).map(|next| [jump[1], next.0]);
+            jumps.extend(found.iter().filter_map(behind));
+            jumps.extend(found);
         }
     }
     jumps
 }
 
 /// The same of values at places that rise.
-fn of_rows(rows: &[(f64, f64)], noise: f64) -> Vec<[f64; 2]> {
+fn of_rows(rows: &[(f64, f64)], noise: f64, alone: f64) -> Vec<[f64; 2]> {
     let is_jump = |near: &&[(f64, f64)]| {
         let change = |at: usize| (near[at + 1].1 - near[at].1).abs();
-        change(1) > FAR * noise && change(1) > ALONE * change(0).max(change(2))
+        change(1) > FAR * noise && change(1) > alone * change(0).max(change(2))
     };
     rows.windows(4).filter(is_jump).map(|near| [near[1].0, near[2].0]).collect()
 }
@@ -44,9 +72,9 @@ mod tests {
     fn a_step_is_a_jump_and_a_slope_is_none() {
         let rows = |value: &dyn Fn(f64) -> f64| (0..20).map(f64::from).map(|at| (at, value(at))).collect::<Vec<_>>();
         let step = |at: f64| if at < 7.5 { 1.0 } else { 3.0 };
-        assert_eq!(of_rows(&rows(&step), 0.1), [[7.0, 8.0]]);
-        assert!(of_rows(&rows(&step), 0.3).is_empty());
-        assert!(of_rows(&rows(&|at| at), 0.01).is_empty());
-        assert!(of_rows(&[], 0.01).is_empty());
+        assert_eq!(of_rows(&rows(&step), 0.1, ALONE), [[7.0, 8.0]]);
+        assert!(of_rows(&rows(&step), 0.3, ALONE).is_empty());
+        assert!(of_rows(&rows(&|at| at), 0.01, ALONE).is_empty());
+        assert!(of_rows(&[], 0.01, ALONE).is_empty());
     }
 }
