@@ -1,9 +1,9 @@
 //! Scalars that are learned beside a free source: told by a motion that the source cannot have made, or by nothing.
 
-use nisp::solve::driver::Status;
-use nisp::{Carrier, Check, Problem, Solution, scene};
+use nisp::solve::driver::{Flow, Status};
+use nisp::{Carrier, Check, Problem, Settings, Solution, recover, scene};
 
-use crate::{normals, solve};
+use crate::{normals, settings, solve};
 
 nisp::pde! {
     /// A damped oscillator of which neither the spring nor the force is known.
@@ -23,13 +23,17 @@ const DAMPING: f64 = 0.6;
 const STIFFNESS: f64 = 16.0;
 
 fn solved(motion: impl Fn(f64) -> f64) -> Solution {
+    solve(&measured(motion), Carrier::Splines)
+}
+
+fn measured(motion: impl Fn(f64) -> f64) -> Problem {
     let mut normal = normals(11);
     let times: Vec<f64> = (0..200).map(|i| 0.06 * f64::from(i)).collect();
     let measured = times.iter().map(|&t| motion(t) + 0.01 * normal()).collect();
     let mut problem = Problem::new(scene::<spring::rings::Scene>());
     problem.set_group("motion", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.into(), vec![measured]).unwrap();
-    solve(&problem, Carrier::Splines)
+    problem
 }
 
 fn leaning(solution: &Solution) -> Vec<(&'static str, bool)> {
@@ -57,4 +61,18 @@ fn a_spring_that_a_slow_force_moves_is_not_told() {
     let is_of_scalars = |check: &&Check| ["leaning", "determined"].contains(&check.check) && "ck".contains(check.term);
     assert!(solution.verdict.failed().any(|check| is_of_scalars(&check)), "{:?}", solution.verdict.checks);
     assert!(solution.learned().iter().all(|learned| learned.deviation.is_none()), "bars where nothing is told");
+}
+
+/// A run that ends early has not been asked what its scalars rest on, and does not call them known.
+#[test]
+fn a_spring_of_a_run_that_ended_early_is_not_told() {
+    let problem = measured(|t| (0.7 * t).sin() + 0.3 * (1.1 * t).cos());
+    let whole = solve(&problem, Carrier::Splines).iterations;
+    for iterations in [whole / 8, whole / 4] {
+        let settings = Settings { iterations: Some(iterations), ..settings(Carrier::Splines) };
+        let solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
+        assert_eq!(solution.status, Status::Budget);
+        let open: Vec<&str> = solution.verdict.failed().filter(|c| c.check == "determined").map(|c| c.term).collect();
+        assert!(open.contains(&"c") && open.contains(&"k"), "after {iterations} steps of {whole}: {open:?}");
+    }
 }

@@ -63,7 +63,7 @@ impl Kind {
                 "; give every learned parameter a width (`learn k within 0.1;`) or a term that depends on it"
             }
             Self::Unsolved => "; check the units of the data and the parameters",
-            Self::State => "; start afresh, or give the settings that the state was saved with",
+            Self::State => "; start afresh, or give the settings and the version of nisp that it was saved with",
         }
     }
 }

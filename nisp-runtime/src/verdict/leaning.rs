@@ -1,6 +1,6 @@
 //! Learned scalars of which little more is known than that sources are small.
 
-use super::Check;
+use super::{Check, determined};
 use crate::facts::{LARGER, Leaning};
 use crate::problem::Bound;
 
@@ -15,7 +15,8 @@ const SCALES: f64 = 0.8;
 /// as a deviation of the scalar too short to one side.
 const OPEN: f64 = 0.5;
 
-/// Checks for every scalar that is learned beside sources: how far it moves, and whether it is known at all.
+/// Checks for every scalar that is learned beside sources: how far it moves, and whether it is known at all. One of which neither can be
+/// said fails.
 pub(super) fn checks(bound: &Bound, leaning: &[Leaning]) -> Vec<Check> {
     let schema = bound.problem.scene().schema;
     let check = |(learned, found): (&crate::engine::Learned, &Leaning)| {
@@ -37,7 +38,18 @@ pub(super) fn checks(bound: &Bound, leaning: &[Leaning]) -> Vec<Check> {
             );
             Check::new("determined", ("", name), (deviation, OPEN), said)
         });
-        moves.into_iter().chain(is_known)
+        // A run that its budget ended was asked neither: its scalar may be anything.
+        let is_asked = found.moved.is_some() || found.deviation.is_some();
+        let unasked = (!is_asked).then(|| {
+            determined(
+                name,
+                format!(
+                    "the run ended before it was told whether the data determine `{name}` beside the sources: give a larger budget, or \
+                     more iterations"
+                ),
+            )
+        });
+        moves.into_iter().chain(is_known).chain(unasked)
     };
     bound.learned.iter().zip(leaning).flat_map(check).collect()
 }

@@ -178,7 +178,7 @@ pub(crate) fn agreed(apart: f64, off: f64) -> Check {
     Check::new("agreed", ("", ""), (apart, (DOUBT * off).clamp(SAME, MOST)), said)
 }
 
-/// That equations and conditions without data leave nothing open; `open` says what they do.
+/// That nothing is left open, where `open` says what is.
 pub(crate) fn determined(name: &'static str, open: String) -> Check {
     Check::new("determined", ("", name), (1.0, 0.0), open)
 }
