@@ -232,6 +232,9 @@ pub(crate) struct Leaning {
     pub(crate) moved: Option<f64>,
     /// Its deviation; nothing without error bars.
     pub(crate) deviation: Option<f64>,
+    /// Whether it was found by the whole evidence, so that its deviation says how far it may move. Where only sums of squares were,
+    /// it is the one whose sources are smallest, and more sure than it should be.
+    pub(crate) is_weighed: bool,
 }
 
 /// What a carrier says of its answer, in the engine's units.

@@ -243,7 +243,9 @@ pub(crate) fn solve(
     let (heads, facts) = solver.into_facts(&breakpoints, &theta);
     let (kept, told) = bars.keep((heads, theta, learned), course);
     let own = kept.learned().into_iter().filter(|_| is_beside_sources).enumerate();
-    let leaning = own.map(|(at, (_, deviation))| Leaning { moved: moved.get(at).copied(), deviation }).collect();
+    let leaning = own
+        .map(|(at, (_, deviation))| Leaning { moved: moved.get(at).copied(), deviation, is_weighed: true })
+        .collect();
     let answer = Answer {
         facts,
         between: None,

@@ -7,13 +7,15 @@ use crate::problem::Bound;
 /// How far a scalar may move, as a share of itself or of its natural size, where sources may be larger. Where sources are zero or
 /// constant over parts of a record scalars move by less than a hundredth, where they follow what is measured by a fifth and more.
 pub(crate) const FARTHEST: f64 = 0.1;
-/// How far it may move in its own deviations, which say that it may, and in all: what is as many times larger as the sources are is known
-/// by their size alone.
+/// How far it may move in its own deviations, which say that it may where the whole evidence found it, and in all: what is as many
+/// times larger as the sources are is known by their size alone.
 const SURE: f64 = 3.0;
 const SCALES: f64 = 0.8;
 /// The largest deviation of a scalar that is known, as a share of itself or of its natural size. A larger one is that of a logarithm, and
 /// as a deviation of the scalar too short to one side.
 const OPEN: f64 = 0.5;
+/// The same of a scalar that the whole evidence did not find, and that is more sure than it should be.
+const UNWEIGHED: f64 = 0.15;
 
 /// Checks for every scalar that is learned beside sources: how far it moves, and whether it is known at all. One of which neither can be
 /// said fails.
@@ -27,7 +29,8 @@ pub(super) fn checks(bound: &Bound, leaning: &[Leaning]) -> Vec<Check> {
                  it leaves them small; give it, or measure a source, or a part of the record in which sources are known",
                 100.0 * moved
             );
-            let limit = FARTHEST.max((SURE * found.deviation.unwrap_or(0.0)).min(SCALES));
+            let sure = if found.is_weighed { SURE * found.deviation.unwrap_or(0.0) } else { 0.0 };
+            let limit = FARTHEST.max(sure.min(SCALES));
             Check::new("leaning", ("", name), (moved, limit), said)
         });
         let is_known = found.deviation.map(|deviation| {
@@ -36,7 +39,7 @@ pub(super) fn checks(bound: &Bound, leaning: &[Leaning]) -> Vec<Check> {
                  it (`learn {name} within ...`), or measure a source",
                 100.0 * deviation
             );
-            Check::new("determined", ("", name), (deviation, OPEN), said)
+            Check::new("determined", ("", name), (deviation, if found.is_weighed { OPEN } else { UNWEIGHED }), said)
         });
         // A run that its budget ended was asked neither: its scalar may be anything.
         let is_asked = found.moved.is_some() || found.deviation.is_some();

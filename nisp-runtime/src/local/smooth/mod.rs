@@ -9,6 +9,7 @@ mod bounded;
 mod changes;
 mod freedom;
 mod judged;
+mod leaning;
 mod levels;
 mod meshes;
 mod places;
@@ -213,6 +214,9 @@ fn finish(
     // Only a minimum has error bars. Of a source exact measurements leave as much open as noisy ones where there are few.
     let is_open = is_noisy || solver.is_measured() && sources().next().is_some();
     let wants_bars = status == Status::Converged && is_open;
+    let is_beside_sources = solver.is_beside_sources();
+    let is_minimum = status == Status::Converged;
+    let rougher = if is_minimum { solver.rougher(&state, clock, longest) } else { None };
     let (draws, beyond) = if wants_bars && clock.has_time(BARS * longest) {
         solver.doubted(&state).unwrap_or_default()
     } else {
@@ -257,6 +261,9 @@ fn finish(
     sources().for_each(|head| kept.widen(head, places::widened(bound, head)));
     // What the cells cannot hold tells no source from none.
     answer.told = told::told(bound, &kept);
+    if is_beside_sources {
+        answer.leaning = leaning::facts(&kept, rougher.as_deref());
+    }
     kept.draws.widen(&beyond);
     let factor = Some(factor).filter(|_| wants_bars);
     Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits })
