@@ -82,7 +82,7 @@ nisp::pde! {
 fn a_switched_voltage_moves_a_current_between_two_rows() {
     const EACH: u32 = 40;
     const STEP: f64 = 0.02;
-    let volts = |row: u32| if (row / EACH) % 2 == 0 { 3.0 } else { 5.0 };
+    let volts = |row: u32| if (row / EACH).is_multiple_of(2) { 3.0 } else { 5.0 };
     // Roots of 0.0025 r^2 + r + 1, and the rest state (1, V - 1).
     let roots = [1.0, -1.0].map(|sign: f64| (-1.0 + sign * (1.0f64 - 0.01).sqrt()) / 0.005);
     let mut state = [1.0, 2.0];
