@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use nisp::schema::{Origin, Scene};
+use nisp_data::Table;
 
 use super::{Tables, wants_data};
 use crate::entry::hint;
@@ -33,6 +34,17 @@ pub(super) fn points(schema: &Scene, tables: &Tables<'_>, request: &Request) -> 
             Err(PrepareError::Points { group: name.clone(), hint: hint(name, &known), have })
         }
         None => Ok(()),
+    }
+}
+
+/// Every header in `--column` must stand in some table.
+pub(super) fn headers(schema: &Scene, tables: &[&Table], request: &Request) -> Result<(), PrepareError> {
+    let known = are_read(schema);
+    let chosen = request.columns.iter().filter(|(name, _)| known.contains(&name.as_str()));
+    let mut unknown = chosen.filter(|(_, header)| tables.iter().all(|table| !table.offers(header)));
+    match (unknown.next(), tables) {
+        (Some((name, header)), [first, _, ..]) => Err(first.absent(name, header).into()),
+        _ => Ok(()),
     }
 }
 

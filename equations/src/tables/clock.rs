@@ -28,7 +28,7 @@ impl Clock {
 
     /// What the user should know, where a coordinate of a table is given by dates.
     pub(crate) fn said(self, schema: &Scene, table: &Table, request: &Request) -> Option<String> {
-        let is_dated = |name: &str| table.is_dated(header(request, name).unwrap_or(name));
+        let is_dated = |name: &str| table.is_dated(header(request, name, table).unwrap_or(name));
         let axis = schema.coordinates.iter().find(|axis| is_dated(axis.name))?;
         Some(format!("`{}` is given by dates or times of day, and counted from {}", axis.name, moment(self.begin?)))
     }

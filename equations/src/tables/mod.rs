@@ -88,6 +88,7 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
             }
         }
     }
+    check::headers(schema, &read.iter().map(|(_, table)| table).collect::<Vec<_>>(), request)?;
     let clock = Clock::of(read.iter().map(|(_, table)| table));
     read.iter_mut().for_each(|(_, table)| clock.count(table));
     let tables = Tables {

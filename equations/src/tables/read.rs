@@ -61,7 +61,7 @@ pub(super) fn places(schema: &Scene, table: &Table, request: &Request) -> Result
     let axes = schema.coordinates.iter().map(|axis| read(table, (axis.name, axis.unit.text), false, request));
     let axes = gathered(axes)?;
     if let [axis] = schema.coordinates {
-        table.require_increasing(header(request, axis.name).unwrap_or(axis.name))?;
+        table.require_increasing(header(request, axis.name, table).unwrap_or(axis.name))?;
     }
     Ok((0..table.rows()).flat_map(|row| axes.iter().map(move |axis| axis[row])).collect())
 }
@@ -69,7 +69,7 @@ pub(super) fn places(schema: &Scene, table: &Table, request: &Request) -> Result
 /// The columns of a group, and what is to be said of them.
 fn columns(group: &Group, table: &Table, request: &Request, found: &mut Found) -> Result<Vec<Vec<f64>>, PrepareError> {
     // A quantity without a column of its own is not measured, as long as another one is.
-    let is_lacking = |name: &str| group.may_lack(name) && header(request, name).is_none() && table.lacks(name);
+    let is_lacking = |name: &str| group.may_lack(name) && header(request, name, table).is_none() && table.lacks(name);
     let is_any = group.columns.iter().any(|column| !is_lacking(column.name));
     let columns = gathered(group.columns.iter().map(|c| {
         if is_any && is_lacking(c.name) {
@@ -102,9 +102,10 @@ fn twins(group: &Group, columns: &[Vec<f64>]) -> Vec<String> {
     all.filter_map(of).collect()
 }
 
-/// The header that the user chose for a name; the last word counts.
-pub(crate) fn header<'a>(request: &'a Request, name: &str) -> Option<&'a str> {
-    request.columns.iter().rev().find(|(own, _)| own == name).map(|(_, header)| header.as_str())
+/// The header that the user chose for a name in a table: the last one that it has. One that it has not may be meant for another table.
+pub(crate) fn header<'a>(request: &'a Request, name: &str, table: &Table) -> Option<&'a str> {
+    let chosen = || request.columns.iter().rev().filter(|(own, _)| own == name).map(|(_, header)| header.as_str());
+    chosen().find(|header| table.offers(header)).or_else(|| chosen().next().filter(|_| request.data.len() < 2))
 }
 
 /// The values of a quantity in its declared unit.
@@ -114,7 +115,7 @@ pub(crate) fn read(
     may_lack: bool,
     request: &Request,
 ) -> Result<Vec<f64>, PrepareError> {
-    let values = match (header(request, name), may_lack) {
+    let values = match (header(request, name, table), may_lack) {
         (Some(header), false) => table.chosen(name, header, unit)?,
         (Some(header), true) => table.chosen_measured(name, header, unit)?,
         (None, false) => table.quantity(name, unit)?,

@@ -36,3 +36,26 @@ fn dates_are_times_counted_from_the_first_row_in_every_table() {
     let eval = place.run("eval out/answer.nisp --at log.csv --column t=stamp");
     assert!(eval.code != Some(0) && eval.stderr.contains("from when it was counted: write min"), "{}", eval.stderr);
 }
+
+#[test]
+fn tables_may_have_headers_of_their_own() {
+    let place = Place::new();
+    place.put(
+        "room.pde",
+        &ROOM.replace(
+            "on body { warms: d(T, t) == P; }",
+            "on body { columns: A [K]; warms: d(T, t) == P + A / 60 [min]; }",
+        ),
+    );
+    place.put("log.csv", &log(0, "T [K]", |t| 290.0 + 10.0 * (1.0 - (PI * t / 120.0).cos())));
+    place.put("air.csv", &log(0, "air", |t| 20.0 + (PI * t / 120.0).sin()).replacen("stamp", "when", 1));
+    let files = "room.pde --data samples=log.csv --data body=air.csv";
+    let asked = place.run(&format!("check {files}"));
+    let said = ["--column t=stamp", "--column t=when"];
+    assert!(said.iter().all(|part| asked.stderr.contains(part)), "{}", asked.stderr);
+    let ran = place.run(&format!("check {files} --column t=stamp --column t=when --column A=air[degC]"));
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    assert!(ran.stdout.contains("A [K]: 293.15 to 294.15"), "{}", ran.stdout);
+    let slip = place.run(&format!("check {files} --column t=stmp --column t=when --column A=air"));
+    assert!(slip.code == Some(2) && slip.stderr.contains("no column for `stmp`"), "{}", slip.stderr);
+}

@@ -111,6 +111,12 @@ impl Table {
         Some(DataError::Column { path: self.path.clone(), what })
     }
 
+    /// Whether a header may be chosen, with a unit in brackets if it says none itself.
+    pub fn offers(&self, header: &str) -> bool {
+        let is_bare = || in_brackets(header).is_some() && !self.matching(|own| own == base(header)).is_empty();
+        !self.answering(header, None).is_empty() || is_bare()
+    }
+
     /// Whether some header answers to `name`.
     pub fn has(&self, name: &str) -> bool {
         self.find(name, None).is_ok()
@@ -221,12 +227,15 @@ impl Table {
             };
             unit.is_none_or(suits)
         };
-        let nearest = longer.first().map(|column| column.header.as_str()).or_else(|| self.nearest(name, &passes));
+        // A time is what dates say.
+        let dated = || self.headers().find(|header| is_date(header) && passes(header));
+        let nearest = longer.first().map(|column| column.header.as_str());
+        let nearest = nearest.or_else(dated).or_else(|| self.nearest(name, &passes));
         self.no_column(&wanted, &format!("; {}", choose(name, nearest)))
     }
 
-    /// A header that the user asked for and that is not there.
-    fn absent(&self, name: &str, header: &str) -> DataError {
+    /// What is said of a header that the user chose for a name and that is not there.
+    pub fn absent(&self, name: &str, header: &str) -> DataError {
         let hint =
             self.nearest(header, &|_| true).map(|near| format!("; the nearest is `{near}`: {}", option(name, near)));
         self.no_column(&format!("`{header}`"), &hint.unwrap_or_default())
