@@ -1,5 +1,6 @@
 //! A scalar that is learned beside a free source: told by a source that does not change, or by nothing but that the source is smooth.
 
+use super::some::measured_rod;
 use super::sources::scattered;
 use super::*;
 
@@ -42,14 +43,7 @@ fn solved(scene: SceneRef) -> Solution {
     let rate = 0.1 * PI * PI;
     let warmth = |[x, t]: [f64; 2]| (PI * x).sin() * (1.0 - (-rate * t).exp()) / rate;
     let values = pairs(&samples).map(|place| warmth(place) + 0.003 * normal()).collect();
-    let mut problem = Problem::new(scene);
-    let along = |count: usize| (0..count).map(move |i| i as f64 / (count - 1) as f64);
-    problem.set_group("inside", grid([32, 32], [1.0, 2.0], false).into(), Vec::new()).unwrap();
-    problem.set_group("begin", along(41).flat_map(|s| [s, 0.0]).collect::<Vec<f64>>().into(), Vec::new()).unwrap();
-    let walls: Vec<f64> = along(41).flat_map(|s| [0.0, 2.0 * s, 1.0, 2.0 * s]).collect();
-    problem.set_group("walls", walls.into(), Vec::new()).unwrap();
-    problem.set_group("probes", samples.into(), vec![values]).unwrap();
-    solve(&problem)
+    solve(&measured_rod(scene, samples, values))
 }
 
 #[test]

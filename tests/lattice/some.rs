@@ -42,13 +42,18 @@ fn rod(scene: SceneRef, share: f64, exact: impl Fn([f64; 2]) -> f64) -> Problem 
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let noise = share * root_mean_square(values.iter().map(|value| value - mean));
     let measured = values.iter().map(|value| value + noise * normal()).collect();
+    measured_rod(scene, samples, measured)
+}
+
+/// A rod or a string of length 1 over two units of time that begins at rest and is held at its ends, with values of probes.
+pub(super) fn measured_rod(scene: SceneRef, probes: Vec<f64>, values: Vec<f64>) -> Problem {
     let mut problem = Problem::new(scene);
     let along = |count: usize| (0..count).map(move |i| i as f64 / (count - 1) as f64);
     problem.set_group("inside", grid([32, 32], [1.0, 2.0], false).into(), Vec::new()).unwrap();
     problem.set_group("begin", along(41).flat_map(|s| [s, 0.0]).collect::<Vec<f64>>().into(), Vec::new()).unwrap();
     let walls: Vec<f64> = along(41).flat_map(|s| [0.0, 2.0 * s, 1.0, 2.0 * s]).collect();
     problem.set_group("walls", walls.into(), Vec::new()).unwrap();
-    problem.set_group("probes", samples.into(), vec![measured]).unwrap();
+    problem.set_group("probes", probes.into(), vec![values]).unwrap();
     problem
 }
 

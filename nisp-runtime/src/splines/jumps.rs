@@ -1,4 +1,4 @@
-//! Where measurements jump from one to the next, or what equations take for known does.
+//! Where measurements, or known columns of equations, jump from one row to the next.
 //!
 //! A source that is measured may step. When it did, between two rows, is what the fields know that it moves: with no cell to itself
 //! the step takes place at one time alone, and the rows beside it make up for what is wrong with that.
@@ -11,7 +11,8 @@ use crate::schema::{Group, TermKind};
 /// place.
 const FAR: f64 = 10.0;
 const ALONE: f64 = 1.5;
-/// The same of what equations know, between whose rows they hold but where it jumps: a drive of three rows a wave changes by less.
+/// A jump of a column that equations know, over the changes before and after it. It is stricter, since no equation is asked for between
+/// the two rows: a drive with three rows to a wave is no switch.
 const SWITCHED: f64 = 4.0;
 /// Noise that a column is looked at with at least, as a share of what it varies by: smaller jumps set little going.
 const SLIGHT: f64 = 0.01;
@@ -42,7 +43,7 @@ pub(super) fn of_columns(bound: &Bound) -> Vec<[f64; 2]> {
         for (column, noise) in bound.columns[at].iter().zip(of_given(bound, at)) {
             let mut rows: Vec<(f64, f64)> = bound.coordinates[at].iter().copied().zip(column.iter().copied()).collect();
             rows.sort_by(|a, b| a.0.total_cmp(&b.0));
-            // A column goes on at both ends as it ends.
+            // Before its first row and behind its last one, a column is taken to stay as it is.
             let [before, after] = [rows.first(), rows.last()].map(|end| end.copied().into_iter());
             let rows: Vec<(f64, f64)> = before.chain(rows.iter().copied()).chain(after).collect();
             let found = of_rows(&rows, noise.max(SLIGHT * deviation(column)), SWITCHED);
