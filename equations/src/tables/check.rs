@@ -86,10 +86,15 @@ pub(crate) fn assumed(schema: &Scene, request: &Request) -> Vec<Assumed> {
     let declared =
         schema.scalars.iter().filter(|_| !request.data.is_empty()).filter_map(|scalar| match scalar.origin {
             Origin::Given(Some(value)) if !scalar.name.is_empty() => {
-                let value = scalar.unit.factor.back(value).as_declared();
+                let value = without_rounding(scalar.unit.factor.back(value).as_declared());
                 Some(Assumed { name: scalar.name, value, unit: scalar.unit.text })
             }
             _ => None,
         });
     declared.filter(|assumed| request.parameters.iter().all(|(name, _)| name != assumed.name)).collect()
+}
+
+/// A number as it was written, before a unit's factor was put on and taken off.
+fn without_rounding(value: f64) -> f64 {
+    format!("{value:.13e}").parse().unwrap_or(value)
 }

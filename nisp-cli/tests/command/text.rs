@@ -56,6 +56,21 @@ fn a_new_equation_already_solves() {
     assert!(place.run("new 3d").stderr.contains("letters, digits and underscores"));
 }
 
+/// A number that is put into seconds and back is shown as it was written.
+#[test]
+fn what_is_assumed_is_shown_as_it_was_declared() {
+    let place = Place::new();
+    place.put(
+        "decay.pde",
+        "coordinates: t [h]; fields: u [kg]; parameters: b [1/h] = 0.03;
+         on body { falls: d(u, t) == -b * u; } on samples { observe u; }",
+    );
+    let row = |i: u32| format!("{i},{}\n", (-0.03 * f64::from(i)).exp());
+    place.put("run.csv", &format!("t [h],u [kg]\n{}", (0..30).map(row).collect::<String>()));
+    let ran = place.run("solve decay.pde --data run.csv");
+    assert!(ran.stdout.contains("b = 0.03 1/h"), "{}{}", ran.stdout, ran.stderr);
+}
+
 /// What a file is called is not what a name in Rust may be.
 #[test]
 fn a_text_may_have_any_name() {
