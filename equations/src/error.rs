@@ -23,6 +23,14 @@ pub enum PrepareError {
     /// The table.
     #[error(transparent)]
     Data(#[from] DataError),
+    /// A table without a coordinate that has columns to spare.
+    #[error("{fault}; if each column is a sensor's, its header may say where that is, as `T({axis}=0.1)`")]
+    Gauges {
+        /// What is wrong with the table.
+        fault: String,
+        /// The coordinate that it lacks.
+        axis: String,
+    },
     /// The binding.
     #[error(transparent)]
     Bind(#[from] BindError),

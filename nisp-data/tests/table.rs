@@ -99,11 +99,7 @@ fn refuses_with_what_to_do() {
     assert!(refusal(b"# a\n# b\n").contains("only comments"));
     assert!(refusal(b"t,q\n0,1\n").contains("at least 2 are needed"));
     assert!(refusal(b"t,q\n0,1\n1\n").contains("line 3: 1 cells where the header has 2"));
-    assert!(refusal(b"Run 3\nby hand\nt;q\n0;1\n1;2\n").contains("the line that begins with `Run 3` is a title"));
-    assert!(
-        refusal(b"Run 3, by hand\nt,q,f\n0,1,2\n1,2,3\n")
-            .contains("line 2: 3 cells where the header has 2; if the line")
-    );
+    assert!(refusal(b"Run 3\n0;1\n1;2\n").contains("the line that begins with `Run 3` is a title"));
     assert!(refusal(b"0,1\n0,1\n1,2\n").contains("put a line of column names above it"));
     assert!(refusal(b"t,q\n0,\xff\n").contains("not UTF-8 text (byte 6)"));
     assert!(Table::read("/nowhere/t.csv").unwrap_err().to_string().contains("no such file"));
@@ -162,7 +158,10 @@ fn dates_become_seconds_once_their_beginning_is_known() {
     let log = parse("timestamp,room T [degC]\n2026-01-01 00:00:00,1\n2026-01-01 00:00:01,2\n");
     let said = log.quantity("T", "K").unwrap_err().to_string();
     assert!(said.contains("--column 'T=room T [degC]'"), "{said}");
-    for other in ["02.01.2026 03:04", "2026-13-01 00:00:00", "2026-01-02", "soon"] {
+    assert_eq!(seconds("02.01.2026 03:04", "3.1.2026 3:05:30"), [0.0, 86_490.0]);
+    assert_eq!(seconds("2024/02/28", "2024-03-01"), [0.0, 2.0 * 86_400.0]);
+    assert_eq!(seconds("2026-01-02T03:04:05+01:00", "2026-01-02T00:04:05-0230"), [0.0, 1800.0]);
+    for other in ["02/01/2026 03:04", "2.1.26", "2026-13-01 00:00:00", "31.02.2026", "2026-01-02 1:00+x", "soon"] {
         assert!(parse(&format!("t,q\n2026-01-01 00:00:00,1\n{other},2\n")).begins().is_none(), "{other}");
     }
 }
@@ -241,6 +240,48 @@ fn spreadsheets_write_decimal_commas_and_cells_that_were_not_measured() {
     assert!(fault("\"1,5\"").contains("write the decimal comma as a point"));
     assert!(fault("2026-03-01 12:00:07").contains("is a date or a time of day"));
     assert!(fault("broken").contains("is not a number; correct it"));
+}
+
+#[test]
+fn titles_above_a_header_and_units_below_it_are_known() {
+    let german = parse("Datenlogger 5, Raum 2\nSeriennummer;77\nOrt;Keller\nZeit;Temp, innen\ns;°C\n0;1,5\n1;2,5\n");
+    assert_eq!(german.headers().collect::<Vec<_>>(), ["Zeit [s]", "Temp, innen [°C]"]);
+    assert_eq!(german.chosen("T", "Temp, innen [°C]", "K").unwrap(), [274.65, 275.65]);
+    let title = parse("Run 3, by hand\nt,q,note\n0,1,a; b\n1,2,a; b\n");
+    assert_eq!(title.quantity("q", "m").unwrap(), [1.0, 2.0]);
+    let units = parse("t,q,n\n(ms),mm,-\n0,1,1\n1000,2,1\n");
+    assert_eq!(
+        (units.quantity("t", "s").unwrap(), units.quantity("q", "m").unwrap()),
+        (vec![0.0, 1.0], vec![0.001, 0.002])
+    );
+    // Words that are no units are cells that cannot be read, as they always were.
+    let longer = parse("Run 3, by me, in May\nt,q\n0,1\n1,2\n");
+    assert_eq!(longer.quantity("q", "m").unwrap(), [1.0, 2.0]);
+    let export = parse("Export;31.01.2026\nt;q\n0;1\n1;2\n");
+    assert_eq!(export.quantity("q", "m").unwrap(), [1.0, 2.0]);
+    assert!(parse("t,q\n0,yes\n1,2\n").quantity("q", "m").unwrap_err().to_string().contains("line 2"));
+    assert!(parse("t,q\nna,na\n1,2\n").quantity("q", "m").unwrap_err().to_string().contains("line 2"));
+}
+
+#[test]
+fn a_column_for_each_gauge_becomes_a_row_for_each_measurement() {
+    let wide = parse("t [ms];T(x=10 mm) [K];T(x=25mm) [K];p(x=25 mm);out\n0;1;2;5;8\n1000;3;;6;9\n");
+    assert_eq!(wide.headers().collect::<Vec<_>>(), ["x [mm]", "t [ms]", "T [K]", "p", "out"]);
+    assert_eq!(wide.quantity("t", "s").unwrap(), [0.0, 1.0, 0.0, 1.0]);
+    assert_eq!(wide.quantity("x", "m").unwrap(), [0.01, 0.01, 0.025, 0.025]);
+    let bits = |values: Vec<f64>| values.iter().map(|x| x.to_string()).collect::<Vec<_>>().join(" ");
+    assert_eq!(bits(wide.measured("T", "K").unwrap()), "1 3 2 NaN");
+    assert_eq!(bits(wide.measured("p", "1").unwrap()), "NaN NaN 5 6");
+    assert_eq!(bits(wide.quantity("out", "1").unwrap()), "8 9 8 9");
+    assert!(wide.quantity("T", "K").unwrap_err().to_string().contains("line 3, column `T [K]`: the cell is empty"));
+    let plate = parse("t,\"w (x=0, y=1)\",w(x=2;y=3)\n0,1,2\n1,3,4\n");
+    assert_eq!(
+        (plate.column("x").unwrap(), plate.column("y").unwrap()),
+        (&[0.0, 0.0, 2.0, 2.0][..], &[1.0, 1.0, 3.0, 3.0][..])
+    );
+    assert_eq!(plate.column("w").unwrap(), [1.0, 3.0, 2.0, 4.0]);
+    let said = refusal(b"t,T(x=1 m),T(x=20 mm)\n0,1,2\n1,3,4\n");
+    assert!(said.contains("`T(x=20 mm)` is not said along the same coordinates in the same units"), "{said}");
 }
 
 proptest! {

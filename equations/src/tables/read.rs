@@ -59,11 +59,23 @@ fn gathered<T>(results: impl Iterator<Item = Result<T, PrepareError>>) -> Result
 /// The places of a table's rows, point by point.
 pub(super) fn places(schema: &Scene, table: &Table, request: &Request) -> Result<Vec<f64>, PrepareError> {
     let axes = schema.coordinates.iter().map(|axis| read(table, (axis.name, axis.unit.text), false, request));
-    let axes = gathered(axes)?;
+    let axes = gathered(axes).map_err(|fault| gauges(schema, table, fault))?;
     if let [axis] = schema.coordinates {
         table.require_increasing(header(request, axis.name, table).unwrap_or(axis.name))?;
     }
     Ok((0..table.rows()).flat_map(|row| axes.iter().map(move |axis| axis[row])).collect())
+}
+
+/// What is said where a table has some of the coordinates: it may have a column for each gauge.
+fn gauges(schema: &Scene, table: &Table, fault: PrepareError) -> PrepareError {
+    let lacking: Vec<&str> = schema.coordinates.iter().map(|axis| axis.name).filter(|axis| table.lacks(axis)).collect();
+    let many = schema.coordinates.len() + 1;
+    match &lacking[..] {
+        [axis, ..] if lacking.len() < schema.coordinates.len() && table.headers().count() > many => {
+            PrepareError::Gauges { fault: fault.to_string(), axis: (*axis).to_string() }
+        }
+        _ => fault,
+    }
 }
 
 /// The columns of a group, and what is to be said of them.

@@ -46,13 +46,45 @@ pub fn moment(at: SystemTime) -> String {
     text.strip_prefix("1970-01-01 ").unwrap_or(text).to_string()
 }
 
-/// `2026-01-02 03:04:05`, with a `T`, decimals of seconds or a `Z` if need be, or a time of day alone; seconds may be left out.
+/// A day, a time of day, or both with a space or a `T` between them: `2026-01-02 03:04:05`, `02.01.2026 03:04`, `03:04:05.6`.
 pub(super) fn date(cell: &str) -> Option<SystemTime> {
-    let cell = cell.trim_end_matches('Z');
-    let (day, time) = cell.split_once([' ', 'T']).unwrap_or(("1970-01-01", cell));
+    let (cell, zone) = zone(cell)?;
+    let (day, time) = match cell.split_once([' ', 'T']) {
+        Some((day, time)) => (year_first(day)?, time.trim()),
+        None if cell.contains(':') => ("1970-01-01".to_string(), cell),
+        None => (year_first(cell)?, "00:00"),
+    };
     let hour = if time.find(':')? == 1 { format!("0{time}") } else { time.to_string() };
     let time = if hour.len() == 5 { format!("{hour}:00") } else { hour };
-    humantime::parse_rfc3339_weak(&format!("{day} {time}")).ok()
+    let there = humantime::parse_rfc3339_weak(&format!("{day} {time}")).ok()?;
+    if zone < 0 { there.checked_add(minutes(-zone)) } else { there.checked_sub(minutes(zone)) }
+}
+
+/// A day with its year first. Parted by points, the day of the month comes first; parted by slashes, it may be either.
+fn year_first(day: &str) -> Option<String> {
+    let mark = day.chars().find(|mark| !mark.is_ascii_digit())?;
+    let parts: Vec<&str> = day.split(mark).collect();
+    match (mark, &parts[..]) {
+        ('-' | '/', [year, month, date]) if year.len() == 4 => Some(format!("{year}-{month:0>2}-{date:0>2}")),
+        ('.', [date, month, year]) if year.len() == 4 => Some(format!("{year}-{month:0>2}-{date:0>2}")),
+        _ => None,
+    }
+}
+
+/// A moment without its zone, and how many minutes its clock is ahead of that of `Z`: `+01:00` and `+0100` are 60.
+fn zone(cell: &str) -> Option<(&str, i32)> {
+    let cell = cell.trim_end_matches('Z');
+    let sign = cell.rfind(['+', '-']).filter(|sign| cell[..*sign].contains(':'));
+    let Some(sign) = sign else { return Some((cell, 0)) };
+    let digits = cell[sign + 1..].replace(':', "");
+    let (hours, minutes): (i32, i32) =
+        (digits.get(..2)?.parse().ok()?, digits.get(2..).filter(|m| !m.is_empty()).unwrap_or("0").parse().ok()?);
+    let ahead = 60 * hours + minutes;
+    Some((cell[..sign].trim_end(), if cell[sign..].starts_with('-') { -ahead } else { ahead }))
+}
+
+fn minutes(count: i32) -> Duration {
+    Duration::from_secs(60 * u64::from(count.unsigned_abs()))
 }
 
 /// True of a time of day without a date.

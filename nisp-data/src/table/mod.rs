@@ -1,10 +1,13 @@
 //! Tables of measurements: CSV in, CSV out, columns found by name and unit.
 
 mod dates;
+mod headers;
+mod heading;
 mod lookup;
 mod read;
 mod rows;
 mod thousands;
+mod wide;
 mod write;
 
 pub use dates::moment;

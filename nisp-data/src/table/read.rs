@@ -2,13 +2,19 @@
 
 use std::path::Path;
 
+use csv::StringRecord;
+
 use super::dates::date;
+use super::heading::Heading;
 use super::{Column, Fault, Kind, Table};
 use crate::DataError;
 use crate::input::{MOST_BYTES, decode, read_bytes};
 
-/// What parts cells.
-const SEPARATORS: [u8; 3] = [b',', b';', b'\t'];
+/// What parts cells, and those first that are nothing else within them.
+const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
+
+/// So many lines at the end tell the separator.
+const LAST: usize = 3;
 
 /// Fewer rows than this carry no equation of motion.
 const MIN_ROWS: usize = 2;
@@ -44,12 +50,15 @@ impl Table {
             return Err(DataError::file(path, "the file is empty; a header line and rows of numbers are needed"));
         }
         let mark = separator(text);
-        let mut reader = reader(mark).from_reader(text.as_bytes());
-        let headers = reader.headers().map_err(|error| syntax(path, &error))?.clone();
+        let heading = Heading::of(text, mark);
+        let mut records = reader(mark).from_reader(text.as_bytes()).into_records().skip(heading.titles);
+        let mut next = || Ok(records.next().transpose().map_err(|error| syntax(path, &error))?.unwrap_or_default());
+        let (headers, units) = (next()?, if heading.has_units { next()? } else { StringRecord::new() });
         let mut columns = check_headers(path, &headers)?;
+        columns.iter_mut().zip(&units).for_each(|(column, unit)| column.add_unit(unit));
         let mut lines = Vec::new();
         let mut place = Place { at: 0, line: 1 };
-        for record in reader.records() {
+        for record in records {
             let record = record.map_err(|error| syntax(path, &error))?;
             let line = place.of_record(text, record.position().map_or(0, |at| at.byte() as usize));
             // Spreadsheets write rows of nothing but separators below their table.
@@ -83,7 +92,7 @@ impl Table {
             return Err(DataError::file(path, what));
         }
         columns.iter_mut().for_each(Column::doubt_thousands);
-        Ok(Table { path: path.to_path_buf(), columns, lines })
+        Table { path: path.to_path_buf(), columns, lines }.with_rows_of_gauges()
     }
 }
 
@@ -112,7 +121,7 @@ impl Place {
 /// How CSV with a separator is read.
 pub(super) fn reader(separator: u8) -> csv::ReaderBuilder {
     let mut reader = csv::ReaderBuilder::new();
-    reader.delimiter(separator).comment(Some(b'#')).flexible(true).trim(csv::Trim::All);
+    reader.delimiter(separator).comment(Some(b'#')).flexible(true).has_headers(false).trim(csv::Trim::All);
     reader
 }
 
@@ -150,7 +159,7 @@ impl Column {
 
 /// The number in a cell, NaN where it says that nothing was measured. Where cells are not parted by commas, one may stand for the
 /// decimal point.
-fn number(cell: &str, mark: u8) -> Result<f64, std::num::ParseFloatError> {
+pub(super) fn number(cell: &str, mark: u8) -> Result<f64, std::num::ParseFloatError> {
     if NOT_MEASURED.contains(&cell.to_lowercase().as_str()) {
         return Ok(f64::NAN);
     }
@@ -197,13 +206,17 @@ fn describe(cell: &str) -> String {
     }
 }
 
-/// The separator of the header line, or of the first line that has one: a comma unless there is none and another one is.
+/// The separator: what parts the last lines, since titles may stand above the header, or else the first line that has one.
 pub(super) fn separator(text: &str) -> u8 {
-    let mut lines = text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
-    lines.find_map(|line| SEPARATORS.into_iter().find(|mark| line.as_bytes().contains(mark))).unwrap_or(b',')
+    let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
+    let last: Vec<&str> = lines().rev().take(LAST).collect();
+    let parts = |mark: &u8, line: &str| line.as_bytes().contains(mark);
+    let of_last = SEPARATORS.into_iter().find(|mark| last.iter().all(|line| parts(mark, line)));
+    let of_first = || lines().find_map(|line| SEPARATORS.into_iter().find(|mark| parts(mark, line)));
+    of_last.or_else(of_first).unwrap_or(b',')
 }
 
-pub(super) fn check_headers(path: &Path, headers: &csv::StringRecord) -> Result<Vec<Column>, DataError> {
+pub(super) fn check_headers(path: &Path, headers: &StringRecord) -> Result<Vec<Column>, DataError> {
     if headers.is_empty() {
         return Err(DataError::file(path, "only comments; a header line and rows of numbers are needed"));
     }

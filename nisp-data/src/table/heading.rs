@@ -1,0 +1,69 @@
+//! What stands above the rows of a table: titles, the header, and a line of units.
+
+use csv::StringRecord;
+use nisp_units::is_unit;
+
+use super::Column;
+use super::dates::date;
+use super::headers::{claimed, in_brackets};
+use super::read::{number, reader};
+
+/// No table has more lines above its rows.
+const MOST: usize = 64;
+
+/// Where the header of a table is.
+#[derive(Default)]
+pub(super) struct Heading {
+    /// How many lines stand above the header.
+    pub(super) titles: usize,
+    /// True if the line below the header says units.
+    pub(super) has_units: bool,
+}
+
+impl Heading {
+    /// Looks for the first row of numbers with as many cells as most lines have: the header is the line above it, or the one above
+    /// that if the units of its columns stand between.
+    pub(super) fn of(text: &str, mark: u8) -> Self {
+        let records = reader(mark).from_reader(text.as_bytes()).into_records();
+        let lines: Vec<StringRecord> = records.map_while(Result::ok).take(MOST).collect();
+        let widths = || lines.iter().filter(|line| line.iter().any(|cell| !cell.is_empty())).map(StringRecord::len);
+        let Some(width) = widths().max_by_key(|width| (widths().filter(|other| other == width).count(), *width)) else {
+            return Self::default();
+        };
+        let row = (1..lines.len()).find(|at| lines[*at].len() == width && is_row(&lines[*at]));
+        // Without any the first line is the header, and what is wrong with the others is told.
+        let Some(row) = row.filter(|row| lines[row - 1].len() == width) else { return Self::default() };
+        let has_units = row > 1 && are_units(&lines[row - 2], &lines[row - 1]);
+        Self { titles: if has_units { row - 2 } else { row - 1 }, has_units }
+    }
+}
+
+impl Column {
+    /// Says the unit of a column, if there is one, as its header may.
+    pub(super) fn add_unit(&mut self, unit: &str) {
+        if is_word(unit) {
+            self.header = format!("{} [{}]", self.header, in_brackets(unit).unwrap_or(unit));
+        }
+    }
+}
+
+/// True of cells of which more are numbers than words, or as many where the first is a number.
+fn is_row(line: &StringRecord) -> bool {
+    let words = line.iter().filter(|cell| is_word(cell)).count();
+    let numbers = line.iter().filter(|cell| !cell.is_empty()).count() - words;
+    numbers > words || numbers == words && !line.iter().next().is_some_and(is_word)
+}
+
+/// True of a cell that is no number, no date, and not empty.
+fn is_word(cell: &str) -> bool {
+    !cell.is_empty() && number(cell, b';').is_err() && date(cell).is_none()
+}
+
+/// True if the line below a header without units says those of its columns: every word in it is one.
+fn are_units(header: &StringRecord, below: &StringRecord) -> bool {
+    let words = || below.iter().filter(|cell| is_word(cell));
+    below.len() == header.len()
+        && header.iter().all(|header| claimed(header).is_none())
+        && words().count() > 0
+        && words().all(|word| is_unit(in_brackets(word).unwrap_or(word)))
+}
