@@ -19,6 +19,7 @@ mod gaps;
 mod geometry;
 mod interrupt;
 mod json;
+mod loggers;
 mod open_directions;
 mod plate;
 mod readme;
