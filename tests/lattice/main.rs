@@ -8,6 +8,7 @@ mod mixed;
 mod some;
 mod sources;
 mod units;
+mod waves;
 
 use std::f64::consts::PI;
 use std::time::Duration;

@@ -5,8 +5,8 @@ use super::heads::Heads;
 use super::lattice::{Lattice, MOST_COORDINATES, NONE, Span};
 use crate::problem::Bound;
 
-/// The lattice of the state: `cells` of them along the longest of the coordinates that share a scale.
-pub(super) fn base(bound: &Bound, cells: usize, tests: usize) -> Lattice {
+/// The lattice of the state: by coordinate, so many cells along the longest of those that share a scale with it.
+pub(super) fn base(bound: &Bound, cells: &[f64], tests: usize) -> Lattice {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
     let (mut low, mut spacing, mut count) = (Vec::new(), Vec::new(), Vec::new());
@@ -20,7 +20,7 @@ pub(super) fn base(bound: &Bound, cells: usize, tests: usize) -> Lattice {
         let tied = (0..inputs).filter(|&other| schema.coordinates[other].scale_group == group);
         let longest = tied.map(|other| ranges[other].1 - ranges[other].0).fold(0.0, f64::max);
         // Along a coordinate that all points share, any size will do.
-        let h = if longest > 0.0 { longest / cells as f64 } else { 1.0 };
+        let h = if longest > 0.0 { longest / cells[axis] } else { 1.0 };
         let (from, to) = ranges[axis];
         // Rounding must not add a cell.
         let own = ((to - from) / h - 1e-9).ceil().max((tests + 1) as f64);

@@ -44,7 +44,7 @@ impl Solver {
         let schema = bound.problem.scene().schema;
         let inputs = schema.coordinates.len();
         refuse_what_networks_do(schema, settings)?;
-        let base = base(bound, cells, settings.tests);
+        let base = base(bound, &vec![cells as f64; inputs], settings.tests);
         let mut lattices: Vec<Lattice> =
             (0..schema.heads.len()).map(|head| lattice(bound, settings, &base, head)).collect();
         let mut outer = Vec::new();

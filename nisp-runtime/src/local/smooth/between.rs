@@ -34,12 +34,17 @@ const NOISY: usize = 4;
 /// over more than two coordinates it has three cells along each with [`ENOUGH`].
 pub(super) fn first(bound: &Bound) -> usize {
     let schema = bound.problem.scene().schema;
-    let is_of_all = |head: usize| schema.heads[head].source && schema.axes(head).len() == schema.coordinates.len();
     let given = largest(bound).map_or(0, |at| count(bound, at));
     if schema.observed().is_empty() {
         return if schema.coordinates.len() > 2 { ENOUGH } else { FEW };
     }
-    if (0..schema.heads.len()).any(is_of_all) { given } else { given.max(ENOUGH) }
+    if is_filled(schema) { given.max(ENOUGH) } else { given }
+}
+
+/// True if equations are asked between their points before it is known whether these are enough.
+pub(super) fn is_filled(schema: &schema::Scene) -> bool {
+    let is_of_all = |head: usize| schema.heads[head].source && schema.axes(head).len() == schema.coordinates.len();
+    !(0..schema.heads.len()).any(is_of_all)
 }
 
 /// The problem with an equation asked at so many points, between those that it has; nothing where it has as many, or reads what is

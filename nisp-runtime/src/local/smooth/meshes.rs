@@ -1,5 +1,6 @@
 //! Which lattices carry fields and smooth sources, and which of their coefficients meet in a row.
 
+use super::proportions::Proportions;
 use crate::local::heads::Heads;
 use crate::local::lattice::{Lattice, NONE, Place};
 use crate::local::meshes::base;
@@ -21,7 +22,7 @@ const POINTS: f64 = 2.0;
 const DENSE: f64 = 4.0;
 /// Functions of whose highest derivative hardly any point sees anything, as a share of what the others show, are left out.
 const UNSEEN: f64 = 1e-9;
-/// Cells along a coordinate at most.
+/// Cells along a coordinate of an even lattice at most.
 const MOST_CELLS: usize = 80;
 
 /// Order of a head's highest derivative.
@@ -39,8 +40,8 @@ pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
 }
 
 /// The lattices of all heads, over cells as fine as the points of the equations can tell; and how many cells these are along
-/// every coordinate. Where nothing is measured cells are no finer than `most` points can tell: coarser ones come first.
-pub(super) fn lattices(bound: &Bound, most: usize) -> (Vec<Lattice>, Vec<usize>) {
+/// every coordinate in the given proportions. Where nothing is measured cells are no finer than `most` points can tell: coarser ones come first.
+pub(super) fn lattices(bound: &Bound, proportions: &Proportions, most: usize) -> (Vec<Lattice>, Vec<usize>) {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
     let degrees: Vec<usize> = (0..schema.heads.len()).map(|head| degree(schema, head).unwrap_or(0)).collect();
@@ -53,9 +54,9 @@ pub(super) fn lattices(bound: &Bound, most: usize) -> (Vec<Lattice>, Vec<usize>)
     let points = if is_measured { points } else { points.min(most) };
     let to_unknown = if is_measured || inputs > 2 { POINTS } else { DENSE };
     let functions = |lattice: &Lattice| lattice.cells.iter().map(|n| (n + highest) as f64).product::<f64>();
-    let meshes = (1..=MOST_CELLS).map(|cells| base(bound, cells, 0));
+    let meshes = (1..=MOST_CELLS).map(|cells| base(bound, &proportions.cells(cells), 0));
     let resolved = |mesh: &Lattice| to_unknown * functions(mesh) <= points as f64;
-    let base = meshes.take_while(resolved).last().unwrap_or_else(|| self::base(bound, 1, 0));
+    let base = meshes.take_while(resolved).last().unwrap_or_else(|| self::base(bound, &proportions.cells(1), 0));
     let lattice = |head: usize| {
         let mut lattice = base.refined(degrees[head], 1).along(schema.axes(head));
         let seen =

@@ -14,6 +14,7 @@ mod levels;
 mod meshes;
 mod places;
 mod prior;
+mod proportions;
 mod run;
 mod sampled;
 mod short;
@@ -31,6 +32,7 @@ use between::measurements;
 pub(crate) use between::others;
 use changes::Changes;
 use judged::{FAR, MISSED};
+use proportions::Proportions;
 
 use super::{KeptLattices, LocalError, LocalSolution, refuse};
 use crate::bounds;
@@ -98,12 +100,24 @@ pub(crate) fn solve(
     let clock = Clock { start: Instant::now(), limits };
     let mut points = from.map_or(Ok(between::first(bound)), saved_points).map_err(LocalError::Fault)?;
     let is_noisy = noise.is_there(bound.problem.scene().schema);
-    let mut solver = Solver::new(bound, points, noise, None)?;
+    let schema = bound.problem.scene().schema;
+    let even = Proportions::even(schema);
+    let mut proportions =
+        from.map_or(Ok(even), |saved| Proportions::restored(saved, schema)).map_err(LocalError::Fault)?;
+    let mut solver = Solver::new(bound, (points, &proportions), noise, None)?;
+    if from.is_none() {
+        let found = Proportions::of(&mut solver, noise);
+        if found != proportions {
+            points = (points as f64 * found.functions()) as usize;
+            proportions = found;
+            solver = Solver::new(bound, (points, &proportions), noise, None)?;
+        }
+    }
     let mut state = solver.first(noise);
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
     }
-    let mut run = Run::go(&mut solver, state, noise, points, &clock, 0.0, monitor)?;
+    let mut run = Run::go(&mut solver, state, noise, (points, &proportions), &clock, 0.0, monitor)?;
     let (mut strain, mut idle) = (f64::INFINITY, 0);
     let is_measured = solver.is_measured();
     let mut changes = Changes::default();
@@ -133,7 +147,7 @@ pub(crate) fn solve(
             break;
         };
         // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
-        let Ok(mut finer) = Solver::new(bound, more, noise, None) else { break };
+        let Ok(mut finer) = Solver::new(bound, (more, &proportions), noise, None) else { break };
         if finer.cells() <= solver.cells() {
             break;
         }
@@ -141,7 +155,7 @@ pub(crate) fn solve(
         // What was found of noise and roughness holds there too, unless it is cells that miss the measurements.
         let classes = if is_missed { first.classes } else { run.state.known() };
         let first = State { classes, ..first };
-        let Ok(found) = Run::go(&mut finer, first, noise, more, &clock, bars, monitor) else { break };
+        let Ok(found) = Run::go(&mut finer, first, noise, (more, &proportions), &clock, bars, monitor) else { break };
         // Steps on a finer lattice begin anew: where they agree with the coarser answer, that is no matter of where they began.
         changes.add(finer.apart(&found.state, &solver, &run.state), found.status == Status::Converged);
         match found.status {
@@ -156,7 +170,10 @@ pub(crate) fn solve(
         }
     }
     while solver.lacks && run.status == Status::Converged {
-        let Some((more, found)) = with_more(bound, (&solver, &run), noise, (points, &clock), monitor) else { break };
+        let Some((more, found)) = with_more(bound, (&solver, &run), noise, ((points, &proportions), &clock), monitor)
+        else {
+            break;
+        };
         match found.status {
             // Error bars matter more than that they are short.
             Status::Converged if clock.has_time(BARS * found.longest) => (solver, run) = (more, found),
@@ -176,7 +193,7 @@ fn with_more<'a>(
     bound: &'a Bound,
     (solver, run): (&Solver<'_>, &Run),
     noise: &Noise,
-    (points, clock): (usize, &Clock),
+    (points, clock): ((usize, &Proportions), &Clock),
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
 ) -> Option<(Solver<'a>, Run)> {
     let (all, used) = (measurements(bound), measurements(&solver.bound));

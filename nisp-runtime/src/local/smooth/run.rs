@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::proportions::Proportions;
 use super::solver::Solver;
 use super::state::{Phase, State};
 use crate::carrier::Progress;
@@ -12,7 +13,7 @@ use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::state::State as Saved;
 
 /// Steps that regress the data at most.
-const REGRESS: u64 = 6;
+pub(super) const REGRESS: u64 = 6;
 /// Steps that look for sources under the noise of the regressed data at most.
 const EXPLAIN: u64 = 12;
 /// Gain of the logarithm of the evidence that no longer matters.
@@ -67,13 +68,13 @@ impl Run {
         solver: &mut Solver<'_>,
         mut state: State,
         noise: &Noise,
-        points: usize,
+        (points, proportions): (usize, &Proportions),
         clock: &Clock,
         kept: f64,
         monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
     ) -> Result<Self, LocalError> {
         let began = clock.elapsed_s();
-        let save = |state: &State| state.save().with_counter("points", points as u64);
+        let save = |state: &State| proportions.save(state.save().with_counter("points", points as u64));
         let mut longest = 0.0_f64;
         let mut found = None;
         let mut status = loop {

@@ -6,6 +6,7 @@ use super::between::{enough, filled, others, thinned};
 use super::freedom::{Freedom, Unmeasured};
 use super::meshes::{lattices, together};
 use super::prior::Prior;
+use super::proportions::Proportions;
 use super::state::{Phase, State};
 use crate::local::LocalError;
 use crate::local::group::Group;
@@ -71,11 +72,11 @@ fn freedom(heads: &Heads, head: usize, prior: &Prior) -> Result<Freedom, LocalEr
 }
 
 impl<'a> Solver<'a> {
-    /// With equations asked at so many points at least, and with so many measurements of a group at most; with nothing said of these,
+    /// With equations asked at so many points at least, on lattices of such proportions, and with so many measurements of a group at most; with nothing said of these,
     /// with as many as choose a lattice. The scene must not be refused.
     pub(super) fn new(
         problem: &'a Bound,
-        points: usize,
+        (points, proportions): (usize, &Proportions),
         noise: &Noise,
         most: Option<usize>,
     ) -> Result<Self, LocalError> {
@@ -83,7 +84,7 @@ impl<'a> Solver<'a> {
         let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
         let enough = enough(points, is_noisy);
         let few = thinned(&bound, enough);
-        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), points);
+        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points);
         let few = most.map_or(few, |most| thinned(&bound, most));
         let lacks = few.is_some() && is_noisy;
         let bound = few.map_or(bound, Cow::Owned);
