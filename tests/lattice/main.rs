@@ -3,6 +3,7 @@
 
 mod bounded;
 mod clouds;
+mod edges;
 mod leaning;
 mod mixed;
 mod some;

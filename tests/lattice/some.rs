@@ -35,7 +35,7 @@ nisp::pde! {
 }
 
 /// A rod or a string of length 1 over two units of time, with noise of a share of how much its 600 values vary.
-fn rod(scene: SceneRef, share: f64, exact: impl Fn([f64; 2]) -> f64) -> Problem {
+pub(super) fn rod(scene: SceneRef, share: f64, exact: impl Fn([f64; 2]) -> f64) -> Problem {
     let mut normal = normals(21);
     let samples = scattered(600, [1.0, 2.0], 22);
     let values: Vec<f64> = pairs(&samples).map(exact).collect();

@@ -76,3 +76,16 @@ fn a_spring_of_a_run_that_ended_early_is_not_told() {
         assert!(open.contains(&"c") && open.contains(&"k"), "after {iterations} steps of {whole}: {open:?}");
     }
 }
+
+/// A network does not tell how far scalars move with larger sources. Its own bars tell.
+#[test]
+fn a_network_says_whether_a_spring_is_told() {
+    let is_known = |motion: &dyn Fn(f64) -> f64| {
+        let solution = solve(&measured(motion), Carrier::Network);
+        let mut checks = solution.verdict.checks.iter();
+        checks.find(|check| (check.check, check.term) == ("determined", "k")).map(|check| check.passed)
+    };
+    let frequency = (STIFFNESS - DAMPING * DAMPING / 4.0).sqrt();
+    assert_eq!(is_known(&|t| (-DAMPING * t / 2.0).exp() * (frequency * t).cos()), Some(true));
+    assert_eq!(is_known(&|t| (0.7 * t).sin() + 0.3 * (1.1 * t).cos()), Some(false));
+}

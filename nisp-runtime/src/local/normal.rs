@@ -283,6 +283,11 @@ impl Normal {
         Some(found)
     }
 
+    /// Logarithm of the matrix's determinant, its border apart.
+    pub(super) fn log_determinant(&self) -> Option<f64> {
+        self.pattern.log_determinant(&self.values)
+    }
+
     /// The step to the minimum of the quadratic model: of the coefficients, and of the learned scalars.
     pub(super) fn step(&self, factor: &Factor) -> Option<(Vec<f64>, Vec<f64>)> {
         self.step_with(factor, &vec![0.0; self.gradient.len()])

@@ -1,9 +1,12 @@
 //! Where a sparse symmetric matrix has entries, of all unknowns or of some, and its Cholesky factors.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::prelude::Solve;
+use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
+use faer::sparse::linalg::cholesky::{SymbolicCholeskyRaw, factorize_symbolic_cholesky};
 use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Mat, Side};
+use faer::{Mat, Side, get_global_parallelism};
 
 /// Entries of the lower triangle, and how factors fill it.
 pub(super) struct Pattern {
@@ -81,6 +84,32 @@ impl Pattern {
                 try_with(&values)
             })
         })
+    }
+
+    /// Logarithm of the determinant of a matrix with these entries; nothing where it is not positive definite.
+    pub(super) fn log_determinant(&self, values: &[f64]) -> Option<f64> {
+        let matrix = SparseColMatRef::new(self.entries.as_ref(), values);
+        let symbolic =
+            factorize_symbolic_cholesky(self.entries.as_ref(), Side::Lower, Default::default(), Default::default());
+        let symbolic = symbolic.ok()?;
+        let (mut lower, all) = (vec![0.0; symbolic.len_val()], get_global_parallelism());
+        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(all, Default::default());
+        let mut memory = MemBuffer::try_new(scratch).ok()?;
+        let stack = MemStack::new(&mut memory);
+        let (side, none) = (Side::Lower, Default::default());
+        symbolic.factorize_numeric_llt(&mut lower, matrix, side, none, all, stack, Default::default()).ok()?;
+        let diagonal: f64 = match symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(own) => (0..own.ncols()).map(|at| lower[own.col_ptr()[at]].ln()).sum(),
+            SymbolicCholeskyRaw::Supernodal(own) => {
+                let factor = SupernodalLltRef::new(own, &lower);
+                let block = |at: usize| {
+                    let block = factor.supernode(at).val();
+                    (0..block.ncols()).map(|at| block[(at, at)].ln()).sum::<f64>()
+                };
+                (0..own.n_supernodes()).map(block).sum()
+            }
+        };
+        Some(2.0 * diagonal)
     }
 
     /// The matrix with these entries times a vector.

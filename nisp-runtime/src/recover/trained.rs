@@ -4,7 +4,7 @@ use super::bars::Distrust;
 use super::carried::{Carried, Values, heads};
 use crate::carrier::Kept;
 use crate::engine::Engine;
-use crate::facts::Answer;
+use crate::facts::{Answer, Leaning};
 use crate::local::smooth;
 use crate::network::Architecture;
 use crate::problem::Bound;
@@ -25,6 +25,22 @@ pub(super) struct Trained {
     /// None where there are no error bars.
     pub(super) prior: Option<WeightPrior>,
     pub(super) distrust: Distrust,
+}
+
+impl Trained {
+    /// Standard deviations of the learned scalars' parameters.
+    fn deviations(&mut self) -> Vec<Option<f64>> {
+        let learned = self.engine.layout().learned.clone();
+        // The curvature takes memory for every row and parameter.
+        let prior = self.prior.as_ref().filter(|_| !learned.is_empty());
+        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
+        let deviation = |at: usize| {
+            let mut direction = vec![0.0; self.theta.len()];
+            direction[at] = 1.0;
+            self.distrust.bars(&posterior(curvature.as_ref()?, &direction)).deviations.first().copied()
+        };
+        learned.map(deviation).collect()
+    }
 }
 
 impl Carried for Trained {
@@ -61,18 +77,9 @@ impl Carried for Trained {
     }
 
     fn learned(&mut self, _: &Bound) -> Vec<(f64, Option<f64>)> {
-        let found = self.engine.learned_values(&self.theta);
-        // The curvature takes memory for every row and parameter.
-        let prior = self.prior.as_ref().filter(|_| !found.is_empty());
-        let curvature = prior.and_then(|prior| Curvature::at(&mut self.engine, &self.theta, prior).ok());
-        let first = self.engine.layout().learned.start;
-        let deviation = |i: usize, slope: f64| {
-            let curvature = curvature.as_ref()?;
-            let mut direction = vec![0.0; self.theta.len()];
-            direction[first + i] = slope;
-            self.distrust.bars(&posterior(curvature, &direction)).deviations.first().copied()
-        };
-        found.into_iter().enumerate().map(|(i, (value, slope))| (value, deviation(i, slope))).collect()
+        let deviations = self.deviations();
+        let found = self.engine.learned_values(&self.theta).into_iter().zip(deviations);
+        found.map(|((value, slope), deviation)| (value, deviation.map(|deviation| deviation * slope.abs()))).collect()
     }
 
     fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {
@@ -82,6 +89,11 @@ impl Carried for Trained {
 
     fn answer(&mut self, bound: &Bound) -> Answer {
         let mut answer = self.engine.answer(&self.theta, &bound.clouds);
+        // How far scalars move where sources may be larger is not known of a network; how sure they are is.
+        if bound.problem.scene().schema.heads.iter().any(|head| head.source) {
+            let known = |deviation| Leaning { moved: None, deviation, is_weighed: false };
+            answer.leaning = self.deviations().into_iter().map(known).collect();
+        }
         // Where nothing is measured, points of the equations are all that a network was shown.
         let others = bound.problem.scene().schema.observed().is_empty().then(|| smooth::others(bound)).flatten();
         answer.between = others.and_then(|(at, others)| {

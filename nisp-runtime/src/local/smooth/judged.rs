@@ -1,8 +1,9 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
-use super::short::unresolved;
+use super::belief::BorneOut;
 use super::solver::{Solver, groups};
 use super::state::{Phase, State};
+use super::{edges, short};
 use crate::correlation;
 use crate::facts::{Answer, OTHER_THAN_SPLINES};
 use crate::local::draws::{Deviations, Draws};
@@ -36,12 +37,29 @@ impl Solver<'_> {
     /// changes with what is believed of its sources is unknown as well: draws are from the posterior under another belief, about the
     /// answer under that one.
     pub(super) fn doubted(&mut self, state: &State) -> Option<(Deviations, Vec<f64>)> {
-        let beyond = self.beyond(state)?;
+        let mut beyond = vec![0.0; state.theta.len()];
         let mut other = state.clone();
         if !self.judged(Phase::Solve).is_empty() {
+            let bends = self.evidence_of_belief(state);
+            let draws = self.deviations(state)?.coefficients;
             self.doubt(&mut other).ok()?;
             for _ in 0..DOUBTS {
                 other = self.step(&other).ok()?.next;
+            }
+            let borne_out = BorneOut::by(bends, self.evidence_of_belief(&other));
+            for head in self.judged(Phase::Solve) {
+                let own = self.heads.first[head]..self.heads.first[head + 1];
+                let size = |state: &State| state.classes[self.roughness[head]].size;
+                let likely = |draw: &Vec<f64>| own.clone().map(|at| state.theta[at] + draw[at]).collect();
+                let short = match borne_out {
+                    BorneOut::Bends => 0.0,
+                    BorneOut::Edges => edges::unresolved(&self.heads, head, size(&other)),
+                    BorneOut::Neither => {
+                        let likely: Vec<Vec<f64>> = draws.iter().map(likely).collect();
+                        short::unresolved(&self.heads, head, &likely, size(state))
+                    }
+                };
+                beyond[own].fill(short);
             }
         }
         let mut deviations = self.deviations(&other)?;
@@ -56,24 +74,6 @@ impl Solver<'_> {
         add(&mut deviations.coefficients, &state.theta, &other.theta);
         add(&mut deviations.learned, &state.learned, &other.learned);
         Some((deviations, beyond))
-    }
-
-    /// By coefficient the deviation of what the cells cannot hold.
-    fn beyond(&mut self, state: &State) -> Option<Vec<f64>> {
-        let mut beyond = vec![0.0; state.theta.len()];
-        let judged = self.judged(Phase::Solve);
-        if judged.is_empty() {
-            return Some(beyond);
-        }
-        let deviations = self.deviations(state)?;
-        for head in judged {
-            let own = self.heads.first[head]..self.heads.first[head + 1];
-            let likely = |draw: &Vec<f64>| own.clone().map(|at| state.theta[at] + draw[at]).collect();
-            let likely: Vec<Vec<f64>> = deviations.coefficients.iter().map(likely).collect();
-            let roughness = state.classes[self.roughness[head]].size;
-            beyond[own].fill(unresolved(&self.heads, head, &likely, roughness));
-        }
-        Some(beyond)
     }
 
     /// Deviations of all unknowns, drawn from the posterior about a state.

@@ -4,9 +4,11 @@
 //! their points, to a tolerance that falls from step to step; all unknowns are found together by Gauss-Newton steps on sparse
 //! normal equations. The size of the noise, and how much every source bends, are those with the largest evidence (MacKay 1992).
 
+mod belief;
 mod between;
 mod bounded;
 mod changes;
+mod edges;
 mod freedom;
 mod judged;
 mod leaning;
@@ -54,7 +56,7 @@ use state::State;
 pub(crate) const METHOD: &str = "splines on a lattice";
 
 /// What error bars take, in steps.
-const BARS: f64 = 2.0 + judged::DOUBTS as f64;
+const BARS: f64 = 5.0 + judged::DOUBTS as f64;
 
 /// Points of the largest equation on a finer lattice, beside those on the one before.
 const MORE: usize = 2;

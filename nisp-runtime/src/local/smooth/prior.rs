@@ -74,6 +74,11 @@ pub(super) fn bends(lattice: &Lattice, roughness: f64) -> f64 {
     (roughness * spacing(lattice).powi(2) / root_of_cell(lattice)).powi(2)
 }
 
+/// Variance of differences of coefficients from a cell to the next, of a head of this roughness that changes little.
+pub(super) fn changes(lattice: &Lattice, roughness: f64) -> f64 {
+    (roughness * spacing(lattice) / root_of_cell(lattice)).powi(2)
+}
+
 /// A cell along any coordinate, over the longest side.
 fn spacing(lattice: &Lattice) -> f64 {
     1.0 / lattice.cells.iter().copied().max().unwrap_or(1) as f64

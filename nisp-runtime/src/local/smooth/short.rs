@@ -1,5 +1,5 @@
-//! What the cells of a lattice cannot hold of a source: waves shorter than four cells. A source has as much of them as the waves of about
-//! four cells let on.
+//! What the cells of a lattice cannot hold of a source of which it is not known whether it has edges: waves shorter than four cells. A source
+//! has as much of them as the waves of about four cells let on.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -24,9 +24,14 @@ pub(super) fn unresolved(heads: &Heads, head: usize, likely: &[Vec<f64>], roughn
     // Where nothing was seen coefficients may be anything.
     let bending = bending(lattice, likely).min(bends(lattice, roughness));
     let variance = bending * FRAC_PI_2.powi(dimensions as i32 - 4) * octaves;
+    (variance / squares(heads, head)).sqrt()
+}
+
+/// The variance of a head inside of its lattice, over that of coefficients that are independent.
+pub(super) fn squares(heads: &Heads, head: usize) -> f64 {
+    let lattice = &heads.lattices[head];
     let parts = heads.parts(head, &lattice.site(lattice.len() / 2));
-    let squares: f64 = parts.iter().map(|(_, part)| (part / heads.scale[head]).powi(2)).sum();
-    (variance / squares).sqrt()
+    parts.iter().map(|(_, part)| (part / heads.scale[head]).powi(2)).sum()
 }
 
 /// The variance of second differences of coefficients from a cell to the next, of a head that bends little and has as many waves of about

@@ -214,7 +214,7 @@ impl Solver<'_> {
     }
 
     /// The rows of all groups and clouds that take part about a state, whose feet are found.
-    fn rows(&self, state: &State, slopes: &[f64]) -> Result<Rows, LocalError> {
+    pub(super) fn rows(&self, state: &State, slopes: &[f64]) -> Result<Rows, LocalError> {
         let mut asked = Vec::new();
         for (at, group) in self.groups.iter().enumerate() {
             let counts = self.counts(at, state.phase);

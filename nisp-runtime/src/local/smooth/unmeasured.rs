@@ -42,7 +42,7 @@ impl Solver<'_> {
     }
 
     /// Rows of a group of which those do not count that measure something. A condition on a source alone does.
-    fn without(&self, asked: &Asked) -> Asked {
+    pub(super) fn without(&self, asked: &Asked) -> Asked {
         let (group, schema) = (&self.groups[asked.at], self.schema());
         let is_of_source = |&jet: &usize| schema.heads[group.schema.jets[jet].head].source;
         let measures = |term: &&schema::Term| term.kind == TermKind::Observation || term.jets.iter().all(is_of_source);

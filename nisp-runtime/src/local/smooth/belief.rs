@@ -1,0 +1,102 @@
+//! Which belief about sources the measurements bear out: that they bend little, or that they change little, as sources with edges do.
+//!
+//! The evidence of the measurements given the equations decides (MacKay 1992). It is the ratio of two integrals over all unknowns, with the
+//! measurements and without them, and each of these is a sum of squares and a determinant.
+
+use super::solver::Solver;
+use super::state::{Phase, State};
+use super::step::{Asked, Rows, is_any};
+use crate::local::block::Block;
+use crate::schema::TermKind;
+
+/// Difference of the logarithms of the evidence from which on one belief counts alone.
+const SURE: f64 = 1.0;
+
+/// What the measurements say of sources.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum BorneOut {
+    /// That they bend little.
+    Bends,
+    /// That they change little, as sources with edges do.
+    Edges,
+    /// Either, about as much.
+    Neither,
+}
+
+impl BorneOut {
+    /// By the logarithms of the evidence that sources bend little and that they change little.
+    pub(super) fn by(bends: Option<f64>, edges: Option<f64>) -> Self {
+        match bends.zip(edges).map_or(0.0, |(bends, edges)| edges - bends) {
+            more if more > SURE => Self::Edges,
+            more if more < -SURE => Self::Bends,
+            _ => Self::Neither,
+        }
+    }
+}
+
+impl Solver<'_> {
+    /// Logarithm of the evidence of the measurements about a state that has settled, but for what all beliefs about sources share.
+    pub(super) fn evidence_of_belief(&mut self, state: &State) -> Option<f64> {
+        let slopes = self.set_learned(&state.learned);
+        self.size(state);
+        self.set_sigmas(state);
+        self.find_feet(state);
+        let all = self.rows(state, &slopes).ok()?;
+        let asked = all.asked.iter().map(|asked| self.without(asked)).filter(|asked| is_any(&asked.counts)).collect();
+        let given = Rows { asked, clouds: Vec::new(), learned: slopes };
+        let evidence = self.integral(state, &all)? - self.integral(state, &given)? - self.noise_of(state, &all);
+        evidence.is_finite().then_some(evidence)
+    }
+
+    /// Logarithm of the integral of the probability of rows and beliefs over all unknowns.
+    fn integral(&mut self, state: &State, rows: &Rows) -> Option<f64> {
+        self.add_all(state, rows);
+        let judged = self.judged(Phase::Solve);
+        for &head in &judged {
+            // A belief says nothing of a level or a slope. Either is as large as the source.
+            let own = self.heads.first[head]..self.heads.first[head + 1];
+            let squares: f64 = state.theta[own.clone()].iter().map(|x| x * x).sum();
+            for at in own {
+                self.normal.add_stiffness(at, 1.0 / squares);
+                self.normal.gradient[at] += state.theta[at] / squares;
+            }
+        }
+        let factor = self.normal.factor()?;
+        let (step, shared) = self.normal.step(&factor)?;
+        let left =
+            |block: Block| (0..block.misfits.len()).map(|row| block.after(row, &step, &shared).powi(2)).sum::<f64>();
+        let asked = rows.asked.iter().flat_map(|asked| self.batches(rows, asked)).flatten().map(left).sum::<f64>();
+        let clouds = rows.clouds.iter().flatten().cloned().map(left).sum::<f64>();
+        let believed = judged.iter().flat_map(|&head| self.prior_rows(state, head)).map(left).sum::<f64>();
+        Some(-0.5 * (asked + clouds + believed + self.normal.log_determinant()?))
+    }
+
+    /// Sum of the logarithms of the noise of all measurements.
+    fn noise_of(&self, state: &State, rows: &Rows) -> f64 {
+        let of_group = |asked: &Asked| {
+            let terms = self.groups[asked.at].schema.terms.iter().zip(&self.classes[asked.at]);
+            let observed = terms.filter(|(term, _)| term.kind == TermKind::Observation);
+            let of_term = observed.map(|(term, &class)| {
+                let counts = asked.counts[term.first..term.first + term.rows].iter().flatten();
+                counts.filter(|counts| **counts).count() as f64 * state.classes[class].size.ln()
+            });
+            of_term.sum::<f64>()
+        };
+        let clouds = self.surfaces.iter().zip(&rows.clouds);
+        let of_clouds = clouds.map(|(surface, blocks)| blocks.len() as f64 * self.sigma(state, surface).ln());
+        rows.asked.iter().map(of_group).sum::<f64>() + of_clouds.sum::<f64>()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::BorneOut;
+
+    #[test]
+    fn evidence_decides_where_it_is_large() {
+        assert_eq!(BorneOut::by(Some(5.0), Some(2.0)), BorneOut::Bends);
+        assert_eq!(BorneOut::by(Some(2.0), Some(5.0)), BorneOut::Edges);
+        assert_eq!(BorneOut::by(Some(2.0), Some(2.5)), BorneOut::Neither);
+        assert_eq!(BorneOut::by(None, Some(2.5)), BorneOut::Neither);
+    }
+}
