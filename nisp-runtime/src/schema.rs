@@ -19,6 +19,11 @@ pub struct Unit {
 }
 
 impl Unit {
+    /// True for seconds, hours and the like.
+    pub(crate) fn is_time(&self) -> bool {
+        self.exponents == [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0]
+    }
+
     /// The unit as it stands behind a number, with a space; nothing if dimensionless.
     pub(crate) fn behind(&self) -> String {
         if self.text.is_empty() { String::new() } else { format!(" {}", self.text) }

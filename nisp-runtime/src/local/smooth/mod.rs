@@ -103,18 +103,14 @@ pub(crate) fn solve(
     let mut points = from.map_or(Ok(between::first(bound)), saved_points).map_err(LocalError::Fault)?;
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     let schema = bound.problem.scene().schema;
-    let even = Proportions::even(schema);
-    let mut proportions =
-        from.map_or(Ok(even), |saved| Proportions::restored(saved, schema)).map_err(LocalError::Fault)?;
-    let mut solver = Solver::new(bound, (points, &proportions), noise, None)?;
+    let proportions = match from {
+        Some(saved) => Proportions::restored(saved, schema).map_err(LocalError::Fault)?,
+        None => Proportions::of(bound, points, noise)?,
+    };
     if from.is_none() {
-        let found = Proportions::of(&mut solver, noise);
-        if found != proportions {
-            points = (points as f64 * found.functions()) as usize;
-            proportions = found;
-            solver = Solver::new(bound, (points, &proportions), noise, None)?;
-        }
+        points = (points as f64 * proportions.functions()) as usize;
     }
+    let mut solver = Solver::new(bound, (points, &proportions), noise, None)?;
     let mut state = solver.first(noise);
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
@@ -126,6 +122,12 @@ pub(crate) fn solve(
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
         let missed = solver.missed(&run.state, noise);
+        eprintln!(
+            "DBG points {points} strain {strain} missed {missed} alike {} cells {:?} t {:?}",
+            solver.alike(&run.state, noise),
+            solver.heads.lattices[0].cells,
+            clock.left()
+        );
         let is_missed = missed > MISSED || solver.alike(&run.state, noise) > 1.0;
         // Where cells miss measurements, which then count as noise, one finer lattice may be too coarse as well.
         let patience = if is_missed || !is_noisy { PATIENCE } else { 1 };

@@ -1,5 +1,5 @@
-//! How a lattice divides its cells among coordinates: a field that changes more along a record than along a length needs more of them
-//! there. A wave does that crosses its domain several times.
+//! How many more cells a lattice has along a record than along a length: a wave that crosses its domain several times changes as often
+//! along the time, and cells that do not follow it flatten its source.
 
 use rand::SeedableRng;
 use rand::rngs::StdRng;
@@ -8,7 +8,9 @@ use rand::seq::index::sample;
 use super::between::is_filled;
 use super::run::REGRESS;
 use super::solver::Solver;
+use crate::local::LocalError;
 use crate::noise::Noise;
+use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 use crate::solve::state::State as Saved;
@@ -16,11 +18,11 @@ use crate::solve::vector::root_mean_square;
 
 /// Measurements that are looked at of a group, at most.
 const MOST: usize = 500;
-/// Cells along one coordinate beside those along another: less than this is as good as even, and more is not asked for.
-const LEAST: f64 = 1.5;
-const FARTHEST: f64 = 16.0;
-/// Functions on a lattice beside those on an even one, at most, if it is no coarser than that along any coordinate.
-const LARGER: f64 = 2.0;
+/// Change along a time beside that along lengths up to which an even lattice follows it.
+const EVEN: f64 = 1.5;
+/// Times as many cells at most; and where a source of all coordinates may be anything between points.
+const MORE: f64 = 4.0;
+const MORE_FREE: f64 = 2.0;
 /// What a saved state calls it.
 const NAME: &str = "proportions";
 
@@ -34,46 +36,35 @@ impl Proportions {
         Self(vec![1.0; schema.coordinates.len()])
     }
 
-    /// What the measurements say of their fields, regressed on an even lattice; even if they say nothing.
-    pub(super) fn of(solver: &mut Solver<'_>, noise: &Noise) -> Self {
-        let even = Self::even(solver.schema());
-        if !solver.is_measured() || is_of_one_scale(solver.schema()) {
-            return even;
+    /// What the measurements say of their fields, regressed on an even lattice with equations at so many points; even if they say nothing.
+    pub(super) fn of(bound: &Bound, points: usize, noise: &Noise) -> Result<Self, LocalError> {
+        let schema = bound.problem.scene().schema;
+        let even = Self::even(schema);
+        let times = schema.coordinates.iter().filter(|axis| axis.unit.is_time()).count();
+        if schema.observed().is_empty() || times == 0 || times == schema.coordinates.len() {
+            return Ok(even);
         }
+        let mut solver = Solver::new(bound, (points, &even), noise, None)?;
         let mut state = solver.first(noise);
         for _ in 0..REGRESS {
-            let Ok(step) = solver.step(&state) else { return even };
+            let Ok(step) = solver.step(&state) else { return Ok(even) };
             state = step.next;
         }
-        let changes = solver.changes_of_measured(&state.theta);
-        let larger = if is_filled(solver.schema()) { LARGER } else { 1.0 };
-        Self::by(solver.schema(), &changes, larger).unwrap_or(even)
+        let most = if is_filled(schema) { MORE } else { MORE_FREE };
+        Ok(Self::by(schema, &solver.changes_of_measured(&state.theta), most))
     }
 
-    /// Cells in proportion to how much fields change along coordinates that share a scale, on so many times as many functions at most;
-    /// nothing if that is nearly even.
-    fn by(schema: &schema::Scene, changes: &[Vec<f64>], larger: f64) -> Option<Self> {
-        let axes = || schema.coordinates.iter();
-        let most = |own: &[f64], group: usize| {
-            let tied = axes().zip(own).filter(|(axis, _)| axis.scale_group == group);
-            tied.map(|(_, change)| *change).fold(0.0, f64::max)
+    /// As many more cells along times as fields change more along these, and so many times as many at most. There are no fewer where they
+    /// change less: what sets in at the start does so at once.
+    fn by(schema: &schema::Scene, changes: &[Vec<f64>], most: f64) -> Self {
+        let most_along = |own: &[f64], times: bool| {
+            let along = schema.coordinates.iter().zip(own).filter(|(axis, _)| axis.unit.is_time() == times);
+            along.map(|(_, change)| *change).fold(0.0, f64::max)
         };
-        // Fields of different sizes count alike: logarithms leave sizes out, since their mean is taken out.
-        let mean = |group: usize| changes.iter().map(|own| most(own, group).ln()).sum::<f64>() / changes.len() as f64;
-        let means: Vec<f64> = axes().map(|axis| mean(axis.scale_group)).collect();
-        let level = means.iter().sum::<f64>() / means.len() as f64;
-        let times = |mean: f64| (mean - level).exp();
-        let (low, high) = means
-            .iter()
-            .fold((f64::INFINITY, 0.0_f64), |(low, high), &mean| (low.min(times(mean)), high.max(times(mean))));
-        if !(high / low).is_finite() || high < LEAST * low {
-            return None;
-        }
-        let share = (FARTHEST.ln() / (high / low).ln()).min(1.0);
-        let times: Vec<f64> = means.iter().map(|mean| times(*mean).powf(share)).collect();
-        let as_even = low.powf(-share);
-        let as_large = (larger / times.iter().product::<f64>()).powf(1.0 / times.len() as f64);
-        Some(Self(times.iter().map(|times| times * as_even.min(as_large)).collect()))
+        let ratio = |own: &Vec<f64>| (most_along(own, true) / most_along(own, false)).ln();
+        let mean = (changes.iter().map(ratio).sum::<f64>() / changes.len() as f64).exp();
+        let times = if mean > EVEN && std::env::var("OFF").is_err() { mean.min(most) } else { 1.0 };
+        Self(schema.coordinates.iter().map(|axis| if axis.unit.is_time() { times } else { 1.0 }).collect())
     }
 
     /// How many times as many functions there are as on an even lattice.
@@ -95,11 +86,6 @@ impl Proportions {
         let is_one = times.iter().all(|times| times.is_finite() && *times > 0.0);
         if is_one { Ok(Self(times)) } else { Err(Fault::state(NAME)) }
     }
-}
-
-/// True where all coordinates share a scale: cells are cubes there.
-fn is_of_one_scale(schema: &schema::Scene) -> bool {
-    schema.coordinates.iter().all(|axis| axis.scale_group == schema.coordinates[0].scale_group)
 }
 
 impl Solver<'_> {
