@@ -13,6 +13,7 @@ mod few;
 mod free;
 mod gaps;
 mod leaning;
+mod levels;
 mod measured;
 mod oscillator;
 mod steps;

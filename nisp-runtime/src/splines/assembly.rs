@@ -41,7 +41,7 @@ impl Solver<'_> {
     /// not finite is a fault.
     pub(super) fn rows(&mut self, state: &State, phase: Phase) -> Result<(Rows, f64), Fault> {
         let slopes = self.set_learned(&state.learned);
-        let shared = slopes.len();
+        let shared = slopes.len() + state.means.len();
         let mut rows = Rows::new(shared);
         let mut cost = 0.0;
         for (at, group) in self.groups.iter().enumerate() {
@@ -49,7 +49,7 @@ impl Solver<'_> {
             if group.len() == 0 || !group.schema.terms.iter().any(takes_part) {
                 continue;
             }
-            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, Some(shared));
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, Some(slopes.len()));
             for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| takes_part(term)) {
                 let is_unmeasured = !self.is_measured && term.kind == TermKind::Observation;
                 if is_unmeasured || self.left_out == Some(self.classes[at][number]) {
@@ -99,10 +99,13 @@ impl Solver<'_> {
         }
         rows.sort();
         let deviation = if state.held { HELD } else { LEARNED };
-        for (at, parameter) in state.learned.iter().enumerate() {
+        let learned = state.learned.iter().map(|parameter| (deviation.recip(), parameter / deviation));
+        // Before sources are sought nothing else speaks of their means.
+        let unsought = state.means.iter().filter(|_| phase == Phase::Regress).map(|mean| (1.0, *mean));
+        for (at, (factor, value)) in learned.chain(unsought).enumerate() {
             let mut shared = none.clone();
-            shared[at] = deviation.recip();
-            rows.push(Row { first: 0, slopes: &[], shared: &shared, value: parameter / deviation }, known);
+            shared[at] = factor;
+            rows.push(Row { first: 0, slopes: &[], shared: &shared, value }, known);
         }
         Ok((rows, cost))
     }
@@ -127,26 +130,41 @@ impl Solver<'_> {
         self.believed(phase).into_iter().filter(|head| phase == Phase::Solve || observed.contains(head)).collect()
     }
 
-    /// Gives the rows that keep sources small and smooth, or fields smooth while only data are regressed, with their classes;
-    /// returns half the sum of their squares.
+    /// Gives the rows that keep sources near their means and smooth, or fields smooth while only data are regressed, with their
+    /// classes; returns half the sum of their squares.
     pub(super) fn add_priors(&self, state: &State, phase: Phase, take: &mut dyn FnMut(Row<'_>, usize)) -> f64 {
-        let none = vec![0.0; state.learned.len()];
+        let mut shared = vec![0.0; state.learned.len() + state.means.len()];
         let mut slopes = Vec::new();
         let mut cost = 0.0;
         for head in self.believed(phase) {
             let (prior, class) = (&self.priors[head], self.roughness[head]);
+            // A mean, and which of the shared unknowns it is.
+            let own = self.mean(head).map(|number| (state.means[number], state.learned.len() + number));
+            let mean = own.map_or(0.0, |(mean, _)| mean);
             for (first, factors) in prior.smooth(state.classes[class].size) {
-                let (number, value) =
-                    self.heads.row_of((head, first), &factors[..prior.width()], &state.theta, &mut slopes);
+                let factors = &factors[..prior.width()];
+                let (number, value) = self.heads.row_of((head, first), factors, &state.theta, &mut slopes);
+                let all: f64 = factors.iter().sum();
+                let value = value - all * mean;
                 cost += 0.5 * value * value;
-                take(Row { first: number, slopes: &slopes, shared: &none, value }, class);
+                own.iter().for_each(|&(_, at)| shared[at] = -all);
+                take(Row { first: number, slopes: &slopes, shared: &shared, value }, class);
             }
             let Some(class) = self.amplitude[head] else { continue };
-            for (&number, factor) in self.heads.numbers(head, 0).iter().zip(prior.small(state.classes[class].size)) {
-                let value = factor * state.theta[number];
+            let amplitude = state.classes[class].size;
+            for (&number, factor) in self.heads.numbers(head, 0).iter().zip(prior.small(amplitude)) {
+                let value = factor * (state.theta[number] - mean);
                 cost += 0.5 * value * value;
-                take(Row { first: number, slopes: &[factor], shared: &none, value }, class);
+                own.iter().for_each(|&(_, at)| shared[at] = -factor);
+                take(Row { first: number, slopes: &[factor], shared: &shared, value }, class);
             }
+            let Some((_, at)) = own else { continue };
+            let factor = prior.mean(state.classes[self.roughness[head]].size, amplitude).recip();
+            let value = factor * mean;
+            cost += 0.5 * value * value;
+            shared[at] = factor;
+            take(Row { first: 0, slopes: &[], shared: &shared, value }, state.classes.len());
+            shared[at] = 0.0;
         }
         cost
     }

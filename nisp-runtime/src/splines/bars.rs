@@ -44,6 +44,7 @@ impl Bars {
                 found.covariance.multiply(student::longer(rows).powi(2));
             }
             unresolved.push(solver.unresolved(&state, &found.covariance));
+            found.covariance.forget_shared(state.learned.len());
             for ((open, mean), left) in open.iter_mut().zip(&rows[count..]).zip(&own[count..]) {
                 *open += share * left / solver.beforehand(mean, &state);
             }

@@ -63,7 +63,7 @@ impl KeptSplines {
 
     /// A square root of the covariance of a head's values at places, row by row, where this is that of the coefficients.
     pub(crate) fn spread(&self, root: &Triangle, head: usize, places: &[f64]) -> Vec<f64> {
-        let shared = vec![0.0; self.learned.len()];
+        let shared = vec![0.0; root.shared()];
         let row = |&at: &f64| {
             let (first, slopes) = self.heads.value_row(head, at);
             root.root(first, &slopes, &shared)
@@ -74,7 +74,7 @@ impl KeptSplines {
     /// The same of the parameters of learned scalars.
     pub(crate) fn spread_of_learned(&self, root: &Triangle) -> Vec<f64> {
         let count = self.learned.len();
-        let unit = |at: usize| (0..count).map(|other| f64::from(at == other)).collect::<Vec<f64>>();
+        let unit = |at: usize| (0..root.shared()).map(|other| f64::from(at == other)).collect::<Vec<f64>>();
         (0..count).flat_map(|at| root.root(0, &[], &unit(at))).collect()
     }
 

@@ -7,7 +7,6 @@
 
 use super::iterate::{Phase, State};
 use super::solver::Solver;
-use super::triangle::Triangle;
 use crate::schema::{self, TermKind};
 use crate::solve::fault::Fault;
 use crate::weighed::Tally;
@@ -30,7 +29,7 @@ impl Solver<'_> {
         if phase == Phase::Regress || state.held || !self.is_beside_sources() {
             return Ok(None);
         }
-        let (all, unmeasured) = (self.triangle.log_determinant_of_band(), self.volume(state, false)?);
+        let (all, unmeasured) = (self.triangle.log_determinant_beside(state.learned.len()), self.volume(state, false)?);
         let mut slopes = Vec::with_capacity(state.learned.len());
         for at in 0..state.learned.len() {
             let mut other = state.clone();
@@ -59,16 +58,15 @@ impl Solver<'_> {
         self.is_measured = measured;
         let rows = self.rows(state, Phase::Solve);
         self.is_measured = true;
-        let mut triangle = Triangle::new(self.heads.len(), self.heads.band, state.learned.len());
+        let mut triangle = self.empty(state);
         triangle.add_all(rows?.0.walk());
-        Ok(triangle.log_determinant_of_band())
+        Ok(triangle.log_determinant_beside(state.learned.len()))
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use super::super::triangle::Row;
-    use super::*;
+    use super::super::triangle::{Row, Triangle};
 
     /// Half of `(x + y - 2)^2 + (2 y - 2)^2` less three times `y`: at `y` its slope is `4 y - 4 - 3` where `x = 2 - y`.
     #[test]

@@ -44,6 +44,8 @@ pub(super) struct Solver<'a> {
     /// By group and row, how far that puts equations off.
     pub(super) blurs: Vec<Vec<f64>>,
     pub(super) scalars: Vec<f64>,
+    /// Sources that have a mean: all or none.
+    pub(super) means: usize,
     /// Length of the domain.
     pub(super) length: f64,
     pub(super) triangle: Triangle,
@@ -75,7 +77,8 @@ impl<'a> Solver<'a> {
         let priors = heads.bases.iter().enumerate().map(|(head, basis)| Prior::new(basis, regressed(head))).collect();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let blurs = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
-        let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len());
+        let sources = schema.heads.iter().filter(|head| head.source).count();
+        let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len() + sources);
         let scalars = bound.scalars.clone();
         let length = breakpoints[breakpoints.len() - 1] - breakpoints[0];
         Self {
@@ -92,9 +95,16 @@ impl<'a> Solver<'a> {
             noise_of_columns: (0..bound.columns.len()).map(|group| of_given(bound, group)).collect(),
             blurs,
             scalars,
+            means: sources,
             length,
             triangle,
         }
+    }
+
+    /// The same where sources are small about zero: they have no mean.
+    pub(super) fn without_means(self) -> Self {
+        let triangle = Triangle::new(self.heads.len(), self.heads.band, self.bound.learned.len());
+        Self { means: 0, triangle, ..self }
     }
 
     /// Bytes that splines over these cells take, about: the triangle and its inverse, a row for every measurement and equation
@@ -102,7 +112,8 @@ impl<'a> Solver<'a> {
     pub(super) fn bytes(bound: &Bound, breakpoints: &[f64]) -> f64 {
         let schema = bound.problem.scene().schema;
         let degrees = cells::degrees(schema).unwrap_or_default();
-        let (cells, shared) = ((breakpoints.len() - 1) as f64, bound.learned.len() as f64);
+        let sources = schema.heads.iter().filter(|head| head.source).count();
+        let (cells, shared) = ((breakpoints.len() - 1) as f64, (bound.learned.len() + sources) as f64);
         // Of all heads on a cell: as many as rows and the band are wide.
         let functions = degrees.iter().map(|degree| (degree + 1) as f64).sum::<f64>();
         let triangles = 3.0 * cells * degrees.len() as f64 * (functions + shared);
@@ -197,9 +208,20 @@ impl<'a> Solver<'a> {
         self.left_out = without.map(|(group, term)| self.classes[group][term]);
         let rows = self.rows(state, Phase::Solve);
         self.left_out = None;
-        let mut triangle = Triangle::new(self.heads.len(), self.heads.band, state.learned.len());
+        let mut triangle = self.empty(state);
         triangle.add_all(rows?.0.walk());
         Ok(triangle.solve().map(|_| triangle))
+    }
+
+    /// A triangle of no rows.
+    pub(super) fn empty(&self, state: &State) -> Triangle {
+        Triangle::new(self.heads.len(), self.heads.band, state.learned.len() + state.means.len())
+    }
+
+    /// The number of a head's mean, if it has one.
+    pub(super) fn mean(&self, head: usize) -> Option<usize> {
+        let before = || self.amplitude[..head].iter().flatten().count();
+        self.amplitude[head].filter(|_| self.means > 0).map(|_| before())
     }
 
     /// How rough and how large a source is believed to be; nothing of fields.

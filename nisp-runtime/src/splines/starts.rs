@@ -36,6 +36,7 @@ impl Solver<'_> {
         let mut state = State {
             theta,
             learned,
+            means: vec![0.0; self.means],
             classes,
             uneven: Vec::new(),
             doubt: 0.0,

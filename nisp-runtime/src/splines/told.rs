@@ -51,7 +51,9 @@ impl Along {
     /// The variance along this row that a source of such sizes has beforehand.
     pub(super) fn beforehand(&self, heads: &Heads, prior: &Prior, (roughness, amplitude): (f64, f64)) -> f64 {
         let slopes: Vec<f64> = heads.numbers(self.head, 0).iter().map(|&number| self.slopes[number]).collect();
-        prior.triangle(roughness, amplitude).root(0, &slopes, &[]).iter().map(|x| x * x).sum()
+        let beside: f64 = prior.triangle(roughness, amplitude).root(0, &slopes, &[]).iter().map(|x| x * x).sum();
+        let all: f64 = slopes.iter().sum();
+        beside + (all * prior.mean(roughness, amplitude)).powi(2)
     }
 
     /// How far a source with other coefficients goes along this one beyond it.

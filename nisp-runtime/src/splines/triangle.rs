@@ -8,6 +8,8 @@
 pub(super) mod covariance;
 mod lag;
 
+use nalgebra::DMatrix;
+
 use crate::simd::{self, Isa, Kernel, Simd};
 
 /// A row: its first unknown, what the unknowns from there on are multiplied by, what the shared ones are, and its value.
@@ -213,17 +215,23 @@ impl Triangle {
             + (0..self.shared).map(|at| self.corner[at * (self.shared + 1)].abs().ln()).sum::<f64>()
     }
 
-    /// The same without the shared unknowns.
-    pub(super) fn log_determinant_of_band(&self) -> f64 {
+    /// The same where the first shared unknowns have a value.
+    pub(super) fn log_determinant_beside(&self, given: usize) -> f64 {
+        let (shared, open) = (self.shared, self.shared - given);
+        let rest = DMatrix::from_fn(shared, open, |i, j| self.corner[i * shared + given + j]).qr().unpack_r();
+        self.log_determinant_of_band() + (0..open).map(|at| rest[(at, at)].abs().ln()).sum::<f64>()
+    }
+
+    fn log_determinant_of_band(&self) -> f64 {
         self.rows.iter().step_by(self.band).map(|x| x.abs().ln()).sum()
     }
 
-    /// Draws the shared unknowns along slopes: what is made least is half the sum of squares less the slopes times the unknowns.
+    /// Draws the first shared unknowns along slopes: what is made least is half the sum of squares less the slopes times the unknowns.
     pub(super) fn draw(&mut self, slopes: &[f64]) {
         let mut drawn = vec![0.0; self.shared];
         for at in 0..self.shared {
             let before: f64 = (0..at).map(|row| self.corner[row * self.shared + at] * drawn[row]).sum();
-            drawn[at] = (slopes[at] - before) / self.corner[at * (self.shared + 1)];
+            drawn[at] = (slopes.get(at).unwrap_or(&0.0) - before) / self.corner[at * (self.shared + 1)];
         }
         self.corner_right.iter_mut().zip(&drawn).for_each(|(right, drawn)| *right += drawn);
     }
@@ -283,7 +291,7 @@ fn turn(cosine: f64, sine: f64, a: &mut [f64], b: &mut [f64]) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::{DMatrix, DVector};
+    use nalgebra::DVector;
 
     /// Rows over ten unknowns, three of them in each, and two shared ones.
     fn rows() -> Vec<(usize, [f64; 3], [f64; 2], f64)> {
@@ -316,6 +324,8 @@ mod tests {
         let normal = dense.transpose() * &dense;
         let right = -dense.transpose() * DVector::from_iterator(rows.len(), rows.iter().map(|row| row.value));
         let inverse = normal.clone().try_inverse().unwrap();
+        let given = normal.clone().remove_row(10).remove_column(10).determinant();
+        assert!((2.0 * triangle.log_determinant_beside(1) - given.ln()).abs() < 1e-9);
         let exact = &inverse * right;
         let (x, shared) = triangle.solve().unwrap();
         for (found, exact) in x.iter().chain(&shared).zip(exact.iter()) {
@@ -341,6 +351,12 @@ mod tests {
             let exact = dense.dot(&(&inverse * &dense));
             let found = covariance.of(row.first, row.slopes, row.shared);
             assert!((found - exact).abs() < 1e-9 * exact, "{found} {exact}");
+        }
+        let mut first = covariance.clone();
+        first.forget_shared(1);
+        for shared in [0.0, -1.3] {
+            let (found, exact) = (first.of(4, &[0.2], &[shared]), covariance.of(4, &[0.2], &[shared, 0.0]));
+            assert!((found - exact).abs() < 1e-14 * exact, "{found} {exact}");
         }
     }
 

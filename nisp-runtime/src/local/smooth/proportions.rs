@@ -19,7 +19,7 @@ use crate::solve::vector::root_mean_square;
 /// Measurements that are looked at of a group, at most.
 const MOST: usize = 500;
 /// Change along a time beside that along lengths up to which an even lattice follows it.
-const EVEN: f64 = 1.5;
+const EVEN: f64 = 2.0;
 /// Times as many cells at most; and where a source of all coordinates may be anything between points.
 const MORE: f64 = 4.0;
 const MORE_FREE: f64 = 2.0;
@@ -63,6 +63,7 @@ impl Proportions {
         };
         let ratio = |own: &Vec<f64>| (most_along(own, true) / most_along(own, false)).ln();
         let mean = (changes.iter().map(ratio).sum::<f64>() / changes.len() as f64).exp();
+        eprintln!("DBG ratio {mean}");
         let times = if mean > EVEN && std::env::var("OFF").is_err() { mean.min(most) } else { 1.0 };
         Self(schema.coordinates.iter().map(|axis| if axis.unit.is_time() { times } else { 1.0 }).collect())
     }
@@ -111,18 +112,27 @@ impl Solver<'_> {
         all.filter(|changes| changes.iter().all(|change| *change > 0.0 && change.is_finite())).collect()
     }
 
-    /// By coordinate, the change of a head from a place to the next cell, times the number of cells.
+    /// By coordinate, how much the change of a head from a time to the next cell's differs from a place to the next cell, times the
+    /// number of cells: what does not change along the time does not matter.
     fn changes(&self, head: usize, places: &[f64], theta: &[f64]) -> Vec<f64> {
         let lattice = &self.heads.lattices[head];
         let inputs = lattice.dimensions();
-        let here = self.heads.values(head, places, theta);
-        let along = |axis: usize| {
-            let step = lattice.spacing(axis);
-            let along = || places.iter().skip(axis).step_by(inputs);
+        let shifted = |places: &[f64], axis: usize| {
+            let (step, along) = (lattice.spacing(axis), || places.iter().skip(axis).step_by(inputs));
             let middle = along().sum::<f64>() / along().count() as f64;
             let mut there = places.to_vec();
             there.iter_mut().skip(axis).step_by(inputs).for_each(|x| *x += if *x < middle { step } else { -step });
-            let there = self.heads.values(head, &there, theta);
+            there
+        };
+        let values = |places: &[f64]| self.heads.values(head, places, theta);
+        let time = self.schema().coordinates.iter().position(|axis| axis.unit.is_time()).unwrap_or(0);
+        let change = |places: &[f64]| -> Vec<f64> {
+            let (here, there) = (values(places), values(&shifted(places, time)));
+            here.iter().zip(&there).map(|(here, there)| there - here).collect()
+        };
+        let here = change(places);
+        let along = |axis: usize| {
+            let there = change(&shifted(places, axis));
             lattice.cells[axis] as f64 * root_mean_square(here.iter().zip(&there).map(|(here, there)| there - here))
         };
         (0..inputs).map(along).collect()

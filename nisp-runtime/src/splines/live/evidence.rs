@@ -46,7 +46,8 @@ impl Stretch {
     pub(super) fn solve(bound: &Bound, from: Option<&Weights>) -> Result<Self, LiveError> {
         let noise = noise::estimate(bound);
         let breakpoints = cells::breakpoints(bound, &noise);
-        let mut solver = Solver::over(bound, &breakpoints);
+        // A window has no unknowns that all of its rows share.
+        let mut solver = Solver::over(bound, &breakpoints).without_means();
         let kinds = from.map_or_else(|| kinds(solver.has_sources(), false, false), |from| vec![from.kind]);
         let mut place = Place::first(solver.first(&noise), kinds);
         if let Some(from) = from {

@@ -99,6 +99,14 @@ impl Covariance {
         [&mut self.rows, &mut self.border, &mut self.corner].into_iter().flatten().for_each(|entry| *entry *= by);
     }
 
+    /// Forgets all shared unknowns but the first.
+    pub(in super::super) fn forget_shared(&mut self, but: usize) {
+        let all = self.shared.max(1);
+        let first = |numbers: &[f64]| numbers.chunks_exact(all).flat_map(|row| &row[..but]).copied().collect();
+        (self.border, self.corner) = (first(&self.border), first(&self.corner[..but * self.shared]));
+        self.shared = but;
+    }
+
     /// Adds to the variances of the unknowns.
     pub(in super::super) fn widen(&mut self, variances: &[f64]) {
         self.rows.chunks_exact_mut(self.band).zip(variances).for_each(|(row, variance)| row[0] += variance);
