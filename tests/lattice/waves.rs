@@ -64,7 +64,6 @@ fn a_press_is_found_from_waves_that_run_to_and_fro() {
     let within = |times: f64| off.iter().zip(&bars).filter(|(off, bar)| **off < times * **bar).count();
     let size = root_mean_square(pairs(&places).map(|[x, _]| press(x)));
     let error = root_mean_square(off.iter().copied());
-    println!("DBG {error} {size} {} {} of 55", within(2.0), within(4.0));
     assert!(error < 0.15 * size, "{error} of {size}");
     assert!(within(2.0) >= 44 && within(4.0) == 55, "{off:?} {bars:?}");
 }

@@ -122,12 +122,6 @@ pub(crate) fn solve(
     while run.status == Status::Converged {
         let before = std::mem::replace(&mut strain, solver.strain(&run.state, noise));
         let missed = solver.missed(&run.state, noise);
-        eprintln!(
-            "DBG points {points} strain {strain} missed {missed} alike {} cells {:?} t {:?}",
-            solver.alike(&run.state, noise),
-            solver.heads.lattices[0].cells,
-            clock.left()
-        );
         let is_missed = missed > MISSED || solver.alike(&run.state, noise) > 1.0;
         // Where cells miss measurements, which then count as noise, one finer lattice may be too coarse as well.
         let patience = if is_missed || !is_noisy { PATIENCE } else { 1 };

@@ -63,8 +63,7 @@ impl Proportions {
         };
         let ratio = |own: &Vec<f64>| (most_along(own, true) / most_along(own, false)).ln();
         let mean = (changes.iter().map(ratio).sum::<f64>() / changes.len() as f64).exp();
-        eprintln!("DBG ratio {mean}");
-        let times = if mean > EVEN && std::env::var("OFF").is_err() { mean.min(most) } else { 1.0 };
+        let times = if mean > EVEN { mean.min(most) } else { 1.0 };
         Self(schema.coordinates.iter().map(|axis| if axis.unit.is_time() { times } else { 1.0 }).collect())
     }
 
