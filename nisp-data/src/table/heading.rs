@@ -4,9 +4,10 @@ use csv::StringRecord;
 use nisp_units::is_unit;
 
 use super::Column;
+use super::cell::number;
 use super::dates::date;
 use super::headers::{claimed, in_brackets};
-use super::read::{number, reader};
+use super::separated::reader;
 
 /// No table has more lines above its rows.
 const MOST: usize = 64;

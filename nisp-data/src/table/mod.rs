@@ -1,11 +1,13 @@
 //! Tables of measurements: CSV in, CSV out, columns found by name and unit.
 
+mod cell;
 mod dates;
 mod headers;
 mod heading;
 mod lookup;
 mod read;
 mod rows;
+mod separated;
 mod thousands;
 mod wide;
 mod write;

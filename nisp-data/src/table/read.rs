@@ -4,23 +4,16 @@ use std::path::Path;
 
 use csv::StringRecord;
 
+use super::cell::{describe, number};
 use super::dates::date;
 use super::heading::Heading;
+use super::separated::{reader, separator, syntax};
 use super::{Column, Fault, Kind, Table};
 use crate::DataError;
 use crate::input::{MOST_BYTES, decode, read_bytes};
 
-/// What parts cells, and those first that are nothing else within them.
-const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
-
-/// So many lines at the end tell the separator.
-const LAST: usize = 3;
-
 /// Fewer rows than this carry no equation of motion.
 const MIN_ROWS: usize = 2;
-
-/// What loggers and spreadsheets write where nothing was measured.
-const NOT_MEASURED: [&str; 9] = ["na", "n/a", "n.a.", "#n/a", "null", "none", "missing", "-", "--"];
 
 impl Table {
     /// Reads a CSV file with one header line.
@@ -118,13 +111,6 @@ impl Place {
     }
 }
 
-/// How CSV with a separator is read.
-pub(super) fn reader(separator: u8) -> csv::ReaderBuilder {
-    let mut reader = csv::ReaderBuilder::new();
-    reader.delimiter(separator).comment(Some(b'#')).flexible(true).has_headers(false).trim(csv::Trim::All);
-    reader
-}
-
 impl Column {
     /// Adds a cell of a table with a separator.
     pub(super) fn push(&mut self, line: usize, cell: &str, mark: u8) {
@@ -157,65 +143,6 @@ impl Column {
     }
 }
 
-/// The number in a cell, NaN where it says that nothing was measured. Where cells are not parted by commas, one may stand for the
-/// decimal point.
-pub(super) fn number(cell: &str, mark: u8) -> Result<f64, std::num::ParseFloatError> {
-    if NOT_MEASURED.contains(&cell.to_lowercase().as_str()) {
-        return Ok(f64::NAN);
-    }
-    match mark {
-        b',' => cell.parse(),
-        _ => cell.replacen(',', ".", 1).parse(),
-    }
-}
-
-/// True of `1,234.5`, `1.234,5`, `1'234` and `1 234`.
-fn parts_thousands(cell: &str) -> bool {
-    let digits = cell.trim_start_matches(['-', '+']);
-    let mut parts = digits.split([',', '.', '\'', ' ', '\u{a0}', '\u{202f}']);
-    let is_digits = |part: &str| !part.is_empty() && part.bytes().all(|byte| byte.is_ascii_digit());
-    parts.next().is_some_and(|first| first.len() < 4 && is_digits(first))
-        && parts.next().is_some_and(|second| second.len() == 3 && is_digits(second))
-        && parts.all(is_digits)
-}
-
-/// True of a date or a time of day: digits with dashes, slashes or colons between them.
-fn is_date(cell: &str) -> bool {
-    let mut parts = cell.split(['-', '/', ':', '.', ' ', 'T', 'Z', '+']).filter(|part| !part.is_empty());
-    let are_digits = parts.clone().all(|part| part.bytes().all(|byte| byte.is_ascii_digit()));
-    are_digits && parts.nth(1).is_some() && cell.starts_with(|first: char| first.is_ascii_digit())
-}
-
-fn describe(cell: &str) -> String {
-    let shown: String = cell.chars().take(24).collect();
-    if cell.is_empty() {
-        "the cell is empty; fill it or remove the row".into()
-    } else if cell.parse::<f64>().is_ok() {
-        format!("`{shown}` is not a finite number; remove the row")
-    } else if cell.matches(',').count() == 1 && cell.replace(',', ".").parse::<f64>().is_ok() {
-        format!("`{shown}` is not a number; write the decimal comma as a point, or part cells by semicolons")
-    } else if parts_thousands(cell) {
-        format!("`{shown}` is not a number; write it without marks between thousands, with a point for decimals")
-    } else if is_date(cell) {
-        format!(
-            "`{shown}` is a date or a time of day; write seconds, or another unit, from a start of your choice, or dates like `2026-01-31 12:00:00` in \
-             every row"
-        )
-    } else {
-        format!("`{shown}` is not a number; correct it or remove the row")
-    }
-}
-
-/// The separator: what parts the last lines, since titles may stand above the header, or else the first line that has one.
-pub(super) fn separator(text: &str) -> u8 {
-    let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
-    let last: Vec<&str> = lines().rev().take(LAST).collect();
-    let parts = |mark: &u8, line: &str| line.as_bytes().contains(mark);
-    let of_last = SEPARATORS.into_iter().find(|mark| last.iter().all(|line| parts(mark, line)));
-    let of_first = || lines().find_map(|line| SEPARATORS.into_iter().find(|mark| parts(mark, line)));
-    of_last.or_else(of_first).unwrap_or(b',')
-}
-
 pub(super) fn check_headers(path: &Path, headers: &StringRecord) -> Result<Vec<Column>, DataError> {
     if headers.is_empty() {
         return Err(DataError::file(path, "only comments; a header line and rows of numbers are needed"));
@@ -225,11 +152,4 @@ pub(super) fn check_headers(path: &Path, headers: &StringRecord) -> Result<Vec<C
         return Err(DataError::file(path, what));
     }
     Ok(headers.iter().map(|header| Column { header: header.to_string(), ..Column::default() }).collect())
-}
-
-pub(super) fn syntax(path: &Path, error: &csv::Error) -> DataError {
-    match error.position() {
-        Some(at) => DataError::line(path, at.line() as usize, format!("not CSV: {error}")),
-        None => DataError::file(path, format!("not CSV: {error}")),
-    }
 }

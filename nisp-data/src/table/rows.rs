@@ -5,7 +5,8 @@ use std::path::Path;
 use std::time::SystemTime;
 
 use super::Table;
-use super::read::{check_headers, reader, separator, syntax};
+use super::read::check_headers;
+use super::separated::{reader, separator, syntax};
 use crate::DataError;
 
 /// Rows of a CSV that is still being written. Dates in them are counted from those of the first row.

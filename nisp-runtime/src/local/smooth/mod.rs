@@ -8,6 +8,7 @@ mod belief;
 mod between;
 mod bounded;
 mod changes;
+mod crossings;
 mod edges;
 mod freedom;
 mod judged;
@@ -105,7 +106,7 @@ pub(crate) fn solve(
     let schema = bound.problem.scene().schema;
     let proportions = match from {
         Some(saved) => Proportions::restored(saved, schema).map_err(LocalError::Fault)?,
-        None => Proportions::of(bound, points, noise)?,
+        None => crossings::proportions(bound, points, noise, &clock)?,
     };
     if from.is_none() {
         points = (points as f64 * proportions.functions()) as usize;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use super::proportions::Proportions;
 use super::solver::Solver;
-use super::state::{Phase, State};
+use super::state::{Phase, REGRESS, State};
 use crate::carrier::Progress;
 use crate::local::LocalError;
 use crate::local::normal::factor::Factor;
@@ -12,8 +12,6 @@ use crate::noise::Noise;
 use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::state::State as Saved;
 
-/// Steps that regress the data at most.
-pub(super) const REGRESS: u64 = 6;
 /// Steps that look for sources under the noise of the regressed data at most.
 const EXPLAIN: u64 = 12;
 /// Gain of the logarithm of the evidence that no longer matters.

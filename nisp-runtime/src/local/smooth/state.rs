@@ -5,6 +5,9 @@ use crate::solve::fault::Fault;
 use crate::solve::state;
 use crate::weighed::{Class, restore_classes, save_classes};
 
+/// Steps that regress the data at most.
+pub(super) const REGRESS: u64 = 6;
+
 /// What the rows of a step are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Phase {
