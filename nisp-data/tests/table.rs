@@ -254,6 +254,12 @@ fn titles_above_a_header_and_units_below_it_are_known() {
         (units.quantity("t", "s").unwrap(), units.quantity("q", "m").unwrap()),
         (vec![0.0, 1.0], vec![0.001, 0.002])
     );
+    assert_eq!(parse("t [s],q [mm]\ns,mm\n0,1\n1,2\n").quantity("q", "m").unwrap(), [0.001, 0.002]);
+    let two = parse("t [s],q [mm]\ns,m\n0,1\n1,2\n").quantity("q", "m").unwrap_err().to_string();
+    assert!(two.contains("its header says mm, and the line below m"), "{two}");
+    // Remarks make rows that are mostly words, and hold marks that part no cells.
+    let remarks = parse("t,q,who,what,why\n0,1,I,a; b,c\n1,2,I,a; b,c\n2,3,,; ,\n");
+    assert_eq!(remarks.quantity("q", "m").unwrap(), [1.0, 2.0, 3.0]);
     // Words that are no units are cells that cannot be read, as they always were.
     let longer = parse("Run 3, by me, in May\nt,q\n0,1\n1,2\n");
     assert_eq!(longer.quantity("q", "m").unwrap(), [1.0, 2.0]);

@@ -3,11 +3,11 @@
 use csv::StringRecord;
 use nisp_units::is_unit;
 
-use super::Column;
 use super::cell::number;
 use super::dates::date;
 use super::headers::{claimed, in_brackets};
 use super::separated::reader;
+use super::{Column, Fault, Kind};
 
 /// No table has more lines above its rows.
 const MOST: usize = 64;
@@ -40,19 +40,28 @@ impl Heading {
 }
 
 impl Column {
-    /// Says the unit of a column, if there is one, as its header may.
+    /// Says the unit of a column, if there is one, as its header may. A column of two units is refused where it is asked for.
     pub(super) fn add_unit(&mut self, unit: &str) {
-        if is_word(unit) {
-            self.header = format!("{} [{}]", self.header, in_brackets(unit).unwrap_or(unit));
+        if !is_word(unit) {
+            return;
+        }
+        let unit = in_brackets(unit).unwrap_or(unit);
+        match claimed(&self.header) {
+            None => self.header = format!("{} [{unit}]", self.header),
+            Some(own) if own == unit => {}
+            Some(own) => {
+                let what = format!("its header says {own}, and the line below {unit}; correct one of them");
+                self.fault = Some(Fault { line: 1, what, kind: Kind::Word });
+            }
         }
     }
 }
 
-/// True of cells of which more are numbers than words, or as many where the first is a number.
+/// True of cells that begin with a number, or are more numbers than words.
 fn is_row(line: &StringRecord) -> bool {
     let words = line.iter().filter(|cell| is_word(cell)).count();
     let numbers = line.iter().filter(|cell| !cell.is_empty()).count() - words;
-    numbers > words || numbers == words && !line.iter().next().is_some_and(is_word)
+    numbers > words || numbers > 0 && !line.iter().next().is_some_and(is_word)
 }
 
 /// True of a cell that is no number, no date, and not empty.
@@ -60,11 +69,8 @@ fn is_word(cell: &str) -> bool {
     !cell.is_empty() && number(cell, b';').is_err() && date(cell).is_none()
 }
 
-/// True if the line below a header without units says those of its columns: every word in it is one.
+/// True if the line below a header says the units of its columns: every word in it is one.
 fn are_units(header: &StringRecord, below: &StringRecord) -> bool {
     let words = || below.iter().filter(|cell| is_word(cell));
-    below.len() == header.len()
-        && header.iter().all(|header| claimed(header).is_none())
-        && words().count() > 0
-        && words().all(|word| is_unit(in_brackets(word).unwrap_or(word)))
+    below.len() == header.len() && words().count() > 0 && words().all(|word| is_unit(in_brackets(word).unwrap_or(word)))
 }

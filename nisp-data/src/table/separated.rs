@@ -2,21 +2,32 @@
 
 use std::path::Path;
 
+use super::cell::number;
+use super::dates::date;
 use crate::DataError;
 
 /// What parts cells, and those first that are nothing else within them.
 const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
 
-/// So many lines at the end tell the separator.
-const LAST: usize = 3;
+/// So many lines at the end tell the separator: titles may stand above the header.
+const LAST: usize = 8;
 
-/// The separator: what parts the last lines, since titles may stand above the header, or else the first line that has one.
+/// The separator: of those in the last line the one that parts the last lines into most numbers, as a share of all cells, or else the
+/// first that any line has.
 pub(super) fn separator(text: &str) -> u8 {
     let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
     let last: Vec<&str> = lines().rev().take(LAST).collect();
-    let parts = |mark: &u8, line: &str| line.as_bytes().contains(mark);
-    let of_last = SEPARATORS.into_iter().find(|mark| last.iter().all(|line| parts(mark, line)));
-    let of_first = || lines().find_map(|line| SEPARATORS.into_iter().find(|mark| parts(mark, line)));
+    let is_in = |mark: &u8, line: &str| line.as_bytes().contains(mark);
+    let numbers = |mark: u8| {
+        let cells =
+            || last.iter().flat_map(|line| line.split(char::from(mark))).map(|cell| cell.trim().trim_matches('"'));
+        let is_number = |cell: &&str| number(cell, mark).is_ok() || date(cell).is_some();
+        cells().filter(is_number).count() as f64 / cells().count() as f64
+    };
+    let there = SEPARATORS.into_iter().filter(|mark| last.first().is_some_and(|line| is_in(mark, line)));
+    let most = there.map(|mark| (numbers(mark), mark)).filter(|(share, _)| *share > 0.0);
+    let of_last = most.reduce(|best, other| if other.0 > best.0 { other } else { best }).map(|(_, mark)| mark);
+    let of_first = || lines().find_map(|line| SEPARATORS.into_iter().find(|mark| is_in(mark, line)));
     of_last.or_else(of_first).unwrap_or(b',')
 }
 
