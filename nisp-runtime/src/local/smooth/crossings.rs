@@ -31,8 +31,7 @@ pub(super) fn proportions(
 ) -> Result<Proportions, LocalError> {
     let schema = bound.problem.scene().schema;
     let even = Proportions::even(schema);
-    let times = schema.coordinates.iter().filter(|axis| axis.unit.is_time()).count();
-    if schema.observed().is_empty() || times == 0 || times == schema.coordinates.len() {
+    if schema.observed().is_empty() || !has_waves(schema) {
         return Ok(even);
     }
     let mut solver = Solver::new(bound, (points, &even), noise, None)?;
@@ -44,6 +43,19 @@ pub(super) fn proportions(
     }
     let most = if is_filled(schema) { MORE } else { MORE_FREE };
     Ok(Proportions::by(schema, &solver.changes_of_measured(&state.theta), most))
+}
+
+/// True where fields are differentiated as often along a time as along lengths: what is sent out then runs on. Where they are differentiated
+/// more often along lengths, as where something diffuses, it is smoothed away.
+fn has_waves(schema: &schema::Scene) -> bool {
+    let jets = || schema.groups.iter().flat_map(|group| group.jets);
+    let most = |is_time: bool| {
+        let of = |axis: usize| jets().map(move |jet| usize::from(jet.degree[axis])).max().unwrap_or(0);
+        let axes = schema.coordinates.iter().enumerate().filter(|(_, axis)| axis.unit.is_time() == is_time);
+        axes.map(|(axis, _)| of(axis)).max().unwrap_or(0)
+    };
+    let along_times = most(true);
+    along_times > 0 && along_times == most(false)
 }
 
 impl Solver<'_> {
