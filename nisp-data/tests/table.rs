@@ -150,6 +150,9 @@ fn dates_become_seconds_once_their_beginning_is_known() {
     assert_eq!(seconds("2026-01-02 03:04:05", "2026-01-03T03:04:05.25"), [0.0, 86_400.25]);
     assert_eq!(seconds("2024-02-28 12:00", "2024-03-01 12:00:00Z"), [0.0, 2.0 * 86_400.0]);
     assert_eq!(seconds("9:59:59", "10:00"), [0.0, 1.0]);
+    let mut split = parse("date,t,q\n31.12.2025,23:59:50,1\n01.01.2026,00:00:10,2\n");
+    split.count_from(split.begins().unwrap());
+    assert_eq!(split.quantity("t", "s").unwrap(), [0.0, 20.0]);
     let mut later = parse("t,q\n1970-01-03 00:00:00,1\n2024-01-01 00:00:00,2\n");
     later.count_from(std::time::SystemTime::UNIX_EPOCH);
     assert_eq!(later.quantity("t", "min").unwrap(), [2880.0, (54.0 * 365.0 + 13.0) * 1440.0]);
@@ -161,7 +164,17 @@ fn dates_become_seconds_once_their_beginning_is_known() {
     assert_eq!(seconds("02.01.2026 03:04", "3.1.2026 3:05:30"), [0.0, 86_490.0]);
     assert_eq!(seconds("2024/02/28", "2024-03-01"), [0.0, 2.0 * 86_400.0]);
     assert_eq!(seconds("2026-01-02T03:04:05+01:00", "2026-01-02T00:04:05-0230"), [0.0, 1800.0]);
-    for other in ["02/01/2026 03:04", "2.1.26", "2026-13-01 00:00:00", "31.02.2026", "2026-01-02 1:00+x", "soon"] {
+    for other in [
+        "02/01/2026 03:04",
+        "2.1.26",
+        "2026-13-01 00:00:00",
+        "31.02.2026",
+        "2026-01-02 1:00+x",
+        "2026-01-02 1:00+99:99",
+        "2026-01-02 1:00+992147483647",
+        "2026-01-02 1:00ZZ",
+        "soon",
+    ] {
         assert!(parse(&format!("t,q\n2026-01-01 00:00:00,1\n{other},2\n")).begins().is_none(), "{other}");
     }
 }
@@ -257,9 +270,18 @@ fn titles_above_a_header_and_units_below_it_are_known() {
     assert_eq!(parse("t [s],q [mm]\ns,mm\n0,1\n1,2\n").quantity("q", "m").unwrap(), [0.001, 0.002]);
     let two = parse("t [s],q [mm]\ns,m\n0,1\n1,2\n").quantity("q", "m").unwrap_err().to_string();
     assert!(two.contains("its header says mm, and the line below m"), "{two}");
+    assert!(two.contains("line 2"), "{two}");
     // Remarks make rows that are mostly words, and hold marks that part no cells.
     let remarks = parse("t,q,who,what,why\n0,1,I,a; b,c\n1,2,I,a; b,c\n2,3,,; ,\n");
     assert_eq!(remarks.quantity("q", "m").unwrap(), [1.0, 2.0, 3.0]);
+    let named = parse("name,t,q,remark\na,0,5,x\nb,1,6,\nc,2,7,\n");
+    assert_eq!(named.quantity("q", "m").unwrap(), [5.0, 6.0, 7.0]);
+    let phases = parse("who,phase,t,q\nA,A,0,5\nA,,1,6\nB,,3,8\n");
+    assert_eq!(phases.quantity("t", "s").unwrap(), [0.0, 1.0, 3.0]);
+    assert_eq!(parse("n,t,q\n-,s,mm\n1,0,5\n2,1,6\n").quantity("q", "m").unwrap(), [0.005, 0.006]);
+    assert_eq!(parse("t_s,q_mm\ns,mm\n0,5\n1,6\n").quantity("q", "m").unwrap(), [0.005, 0.006]);
+    let many = parse("t;q;a;b;c;e\n0,5;5,1;u;v;w;x\n1,5;6,1;u;v;w;x\n");
+    assert_eq!(many.quantity("q", "m").unwrap(), [5.1, 6.1]);
     // Words that are no units are cells that cannot be read, as they always were.
     let longer = parse("Run 3, by me, in May\nt,q\n0,1\n1,2\n");
     assert_eq!(longer.quantity("q", "m").unwrap(), [1.0, 2.0]);
@@ -271,23 +293,37 @@ fn titles_above_a_header_and_units_below_it_are_known() {
 
 #[test]
 fn a_column_for_each_gauge_becomes_a_row_for_each_measurement() {
-    let wide = parse("t [ms];T(x=10 mm) [K];T(x=25mm) [K];p(x=25 mm);out\n0;1;2;5;8\n1000;3;;6;9\n");
-    assert_eq!(wide.headers().collect::<Vec<_>>(), ["x [mm]", "t [ms]", "T [K]", "p", "out"]);
+    let unfolded = |text: &str| parse(text).with_rows_of_gauges(&["t", "x", "y"]);
+    let wide =
+        unfolded("t [ms];T(x=10 mm) [K];T(x=25mm) [K];p(x=25 mm);out;cal(L=1)\n0;1;2;5;8;1\n1000;3;;6;9;1\n").unwrap();
+    assert_eq!(wide.headers().collect::<Vec<_>>(), ["x [mm]", "t [ms]", "T [K]", "p", "out", "cal(L=1)"]);
     assert_eq!(wide.quantity("t", "s").unwrap(), [0.0, 1.0, 0.0, 1.0]);
     assert_eq!(wide.quantity("x", "m").unwrap(), [0.01, 0.01, 0.025, 0.025]);
-    let bits = |values: Vec<f64>| values.iter().map(|x| x.to_string()).collect::<Vec<_>>().join(" ");
-    assert_eq!(bits(wide.measured("T", "K").unwrap()), "1 3 2 NaN");
-    assert_eq!(bits(wide.measured("p", "1").unwrap()), "NaN NaN 5 6");
-    assert_eq!(bits(wide.quantity("out", "1").unwrap()), "8 9 8 9");
+    let text = |values: Vec<f64>| values.iter().map(f64::to_string).collect::<Vec<_>>().join(" ");
+    assert_eq!(text(wide.measured("T", "K").unwrap()), "1 3 2 NaN");
+    assert_eq!(text(wide.measured("p", "1").unwrap()), "NaN NaN 5 6");
+    assert_eq!(text(wide.quantity("out", "1").unwrap()), "8 9 8 9");
     assert!(wide.quantity("T", "K").unwrap_err().to_string().contains("line 3, column `T [K]`: the cell is empty"));
-    let plate = parse("t,\"w (x=0, y=1)\",w(x=2;y=3)\n0,1,2\n1,3,4\n");
-    assert_eq!(
-        (plate.column("x").unwrap(), plate.column("y").unwrap()),
-        (&[0.0, 0.0, 2.0, 2.0][..], &[1.0, 1.0, 3.0, 3.0][..])
-    );
+    let plate = unfolded("t,\"w (x=0, y=1)\",w(x=2;y=3)\n0,1,2\n1,3,4\n").unwrap();
+    let (x, y) = (plate.column("x").unwrap(), plate.column("y").unwrap());
+    assert_eq!((x, y), (&[0.0, 0.0, 2.0, 2.0][..], &[1.0, 1.0, 3.0, 3.0][..]));
     assert_eq!(plate.column("w").unwrap(), [1.0, 3.0, 2.0, 4.0]);
-    let said = refusal(b"t,T(x=1 m),T(x=20 mm)\n0,1,2\n1,3,4\n");
-    assert!(said.contains("`T(x=20 mm)` is not said along the same coordinates in the same units"), "{said}");
+    // Brackets that name no coordinate that is lacking are a matter of the header alone.
+    for table in ["t,q,q(t=0)\n0,5,1\n1,6,2\n", "t,q(gain=2)\n0,5\n1,6\n", "x,t,T,T(x=1)\n0,0,1,2\n1,1,1,2\n"] {
+        let kept = unfolded(table).unwrap();
+        assert!(kept.headers().eq(parse(table).headers()), "{table}");
+    }
+    let refused = |headers: &str| unfolded(&format!("{headers}\n0;1;2\n1;3;4\n")).unwrap_err().to_string();
+    for (headers, what) in [
+        ("t;T(x=1 m);T(x=20 mm)", "`T(x=1 m)` and `T(x=20 mm)` do not name the same coordinates in the same units"),
+        ("t;T(x=0);T(x=0,1)", "the place in `T(x=0,1)` cannot be read"),
+        ("t;T(x=1);T(x 2)", "the place in `T(x 2)` cannot be read"),
+        ("t;T(x=0.1);T(x=0.10)", "`T(x=0.1)` and `T(x=0.10)` are at the same place"),
+        ("t;T(x=1) [degC];T(x=2)", "are one quantity in two units"),
+        ("t;T [K];T(x=2) [K]", "`T [K]` says no place beside `T(x=2) [K]`, which does"),
+    ] {
+        assert!(refused(headers).contains(what), "{}", refused(headers));
+    }
 }
 
 proptest! {

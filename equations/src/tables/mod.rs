@@ -13,7 +13,7 @@ use std::path::Path;
 
 use nisp::schema::{Group, Portion, Scene};
 use nisp::{Problem, SceneRef};
-use nisp_data::Table;
+use nisp_data::{DataError, Table};
 
 use crate::entry::Entry;
 use crate::error::PrepareError;
@@ -84,7 +84,7 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
             Some(of) => clouds.push(CloudFile { of, path }),
             None => {
                 check::group(schema, group.as_deref(), path)?;
-                read.push((group.as_deref(), Table::read_places(path)?));
+                read.push((group.as_deref(), gauges(Table::read_places(path)?, schema, request)?));
             }
         }
     }
@@ -99,7 +99,8 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
     };
     let mut found = bind(scene, &tables, request)?;
     found.warnings.extend(read.iter().find_map(|(_, table)| clock.said(schema, table, request)));
-    let mut truth = request.truth.as_ref().map(Table::read).transpose()?;
+    let truth = request.truth.as_ref().map(Table::read).transpose()?;
+    let mut truth = truth.map(|table| gauges(table, schema, request)).transpose()?;
     truth.iter_mut().for_each(|table| clock.count(table));
     // A column may be chosen for what is measured, whose truth has another one.
     let (unmeasured, measured) = request.columns.iter().cloned().partition::<Vec<_>, _>(|(name, _)| {
@@ -126,6 +127,13 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
         references: None,
         frames: None,
     })
+}
+
+/// A table with a row for each measurement, where it has a column for each gauge along coordinates for which no column was chosen.
+fn gauges(table: Table, schema: &Scene, request: &Request) -> Result<Table, DataError> {
+    let names = schema.coordinates.iter().map(|axis| axis.name).filter(|name| header(request, name, &table).is_none());
+    let names: Vec<&str> = names.collect();
+    table.with_rows_of_gauges(&names)
 }
 
 /// Binds every group of a scene.

@@ -18,9 +18,11 @@ impl Table {
         self.find(name, None).is_ok_and(Column::is_dated)
     }
 
-    /// Makes its columns of dates columns of seconds since a moment. Until then they are no numbers.
+    /// Makes its columns of dates columns of seconds since a moment. Until then they are no numbers. Times of day stay none where the
+    /// moment has a date.
     pub fn count_from(&mut self, begin: SystemTime) {
-        for column in self.columns.iter_mut().filter(|column| column.is_dated()) {
+        let is_alike = |column: &Column| is_of_day(begin) || !is_of_day(column.dates[0]);
+        for column in self.columns.iter_mut().filter(|column| column.is_dated() && is_alike(column)) {
             column.values = column.dates.iter().map(|date| seconds(begin, *date)).collect();
             column.fault = None;
         }
@@ -36,6 +38,23 @@ impl Column {
     /// How its numbers become numbers in a unit where they are seconds since a moment.
     pub(super) fn dated(&self, unit: &str) -> Option<Conversion> {
         conversion("s", unit).filter(|_| self.is_dated())
+    }
+}
+
+/// Gives times of day the days of the column beside them, where one column holds days alone: that is no date of its own then.
+pub(super) fn join_days(columns: &mut [Column]) {
+    let is_day = |at: &SystemTime| !is_of_day(*at) && seconds(SystemTime::UNIX_EPOCH, *at) % 86_400.0 == 0.0;
+    let numbers = |of: &dyn Fn(&SystemTime) -> bool| -> Vec<usize> {
+        let all = |at: &usize| columns[*at].is_dated() && columns[*at].dates.iter().all(of);
+        (0..columns.len()).filter(all).collect()
+    };
+    let (days, of_day) = (numbers(&is_day), numbers(&|at| is_of_day(*at)));
+    let ([of_days], false) = (&days[..], of_day.is_empty()) else { return };
+    let days = std::mem::take(&mut columns[*of_days].dates);
+    for at in of_day {
+        for (at, day) in columns[at].dates.iter_mut().zip(&days) {
+            *at = *day + at.duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
+        }
     }
 }
 
@@ -73,13 +92,15 @@ fn year_first(day: &str) -> Option<String> {
 
 /// A moment without its zone, and how many minutes its clock is ahead of that of `Z`: `+01:00` and `+0100` are 60.
 fn zone(cell: &str) -> Option<(&str, i32)> {
-    let cell = cell.trim_end_matches('Z');
+    let cell = cell.strip_suffix('Z').unwrap_or(cell);
     let sign = cell.rfind(['+', '-']).filter(|sign| cell[..*sign].contains(':'));
     let Some(sign) = sign else { return Some((cell, 0)) };
-    let digits = cell[sign + 1..].replace(':', "");
+    let digits = cell[sign + 1..].replacen(':', "", 1);
+    let are_digits = matches!(digits.len(), 2 | 4) && digits.bytes().all(|digit| digit.is_ascii_digit());
+    let (hours, minutes) = are_digits.then(|| digits.split_at(2))?;
     let (hours, minutes): (i32, i32) =
-        (digits.get(..2)?.parse().ok()?, digits.get(2..).filter(|m| !m.is_empty()).unwrap_or("0").parse().ok()?);
-    let ahead = 60 * hours + minutes;
+        (hours.parse().ok()?, if minutes.is_empty() { 0 } else { minutes.parse().ok()? });
+    let ahead = Some(60 * hours + minutes).filter(|_| hours < 24 && minutes < 60)?;
     Some((cell[..sign].trim_end(), if cell[sign..].starts_with('-') { -ahead } else { ahead }))
 }
 

@@ -9,7 +9,7 @@ use super::headers::{claimed, in_brackets};
 use super::separated::reader;
 use super::{Column, Fault, Kind};
 
-/// No table has more lines above its rows.
+/// Lines that are searched for the first row, at most.
 const MOST: usize = 64;
 
 /// Where the header of a table is.
@@ -34,34 +34,48 @@ impl Heading {
         let row = (1..lines.len()).find(|at| lines[*at].len() == width && is_row(&lines[*at]));
         // Without any the first line is the header, and what is wrong with the others is told.
         let Some(row) = row.filter(|row| lines[row - 1].len() == width) else { return Self::default() };
-        let has_units = row > 1 && are_units(&lines[row - 2], &lines[row - 1]);
-        Self { titles: if has_units { row - 2 } else { row - 1 }, has_units }
+        if row > 1 && are_units(&lines[row - 2], &lines[row - 1]) {
+            return Self { titles: row - 2, has_units: true };
+        }
+        // Rows that are mostly words may stand between.
+        let is_header = |at: &usize| {
+            let mut cells = lines[*at].iter().filter(|cell| !cell.is_empty()).peekable();
+            lines[*at].len() == width && cells.peek().is_some() && cells.all(is_word)
+        };
+        Self { titles: (0..row).rev().find(is_header).unwrap_or(row - 1), has_units: false }
     }
 }
 
 impl Column {
     /// Says the unit of a column, if there is one, as its header may. A column of two units is refused where it is asked for.
-    pub(super) fn add_unit(&mut self, unit: &str) {
+    pub(super) fn add_unit(&mut self, line: usize, unit: &str) {
         if !is_word(unit) {
             return;
         }
         let unit = in_brackets(unit).unwrap_or(unit);
-        match claimed(&self.header) {
+        let behind = self.header.rsplit_once('_').map(|(_, own)| own).filter(|own| *own == unit);
+        match claimed(&self.header).or(behind) {
             None => self.header = format!("{} [{unit}]", self.header),
             Some(own) if own == unit => {}
             Some(own) => {
                 let what = format!("its header says {own}, and the line below {unit}; correct one of them");
-                self.fault = Some(Fault { line: 1, what, kind: Kind::Word });
+                self.fault = Some(Fault { line, what, kind: Kind::Word });
             }
         }
     }
 }
 
-/// True of cells that begin with a number, or are more numbers than words.
+/// True of cells without words, or that begin with none and hold a number, or are more numbers than words.
 fn is_row(line: &StringRecord) -> bool {
     let words = line.iter().filter(|cell| is_word(cell)).count();
-    let numbers = line.iter().filter(|cell| !cell.is_empty()).count() - words;
-    numbers > words || numbers > 0 && !line.iter().next().is_some_and(is_word)
+    let numbers = line.iter().filter(|cell| is_number(cell)).count();
+    let is_empty = line.iter().all(str::is_empty);
+    words == 0 && !is_empty || numbers > words || numbers > 0 && !line.iter().next().is_some_and(is_word)
+}
+
+/// True of a number or a date.
+fn is_number(cell: &str) -> bool {
+    number(cell, b';').is_ok_and(f64::is_finite) || date(cell).is_some()
 }
 
 /// True of a cell that is no number, no date, and not empty.
@@ -69,8 +83,11 @@ fn is_word(cell: &str) -> bool {
     !cell.is_empty() && number(cell, b';').is_err() && date(cell).is_none()
 }
 
-/// True if the line below a header says the units of its columns: every word in it is one.
+/// True if the line below a header says the units of its columns: every word in it is one, and it holds no number.
 fn are_units(header: &StringRecord, below: &StringRecord) -> bool {
     let words = || below.iter().filter(|cell| is_word(cell));
-    below.len() == header.len() && words().count() > 0 && words().all(|word| is_unit(in_brackets(word).unwrap_or(word)))
+    below.len() == header.len()
+        && words().count() > 0
+        && !below.iter().any(is_number)
+        && words().all(|word| is_unit(in_brackets(word).unwrap_or(word)))
 }

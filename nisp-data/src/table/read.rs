@@ -5,7 +5,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::cell::{describe, number};
-use super::dates::date;
+use super::dates::{date, join_days};
 use super::heading::Heading;
 use super::separated::{reader, separator, syntax};
 use super::{Column, Fault, Kind, Table};
@@ -48,12 +48,15 @@ impl Table {
         let mut next = || Ok(records.next().transpose().map_err(|error| syntax(path, &error))?.unwrap_or_default());
         let (headers, units) = (next()?, if heading.has_units { next()? } else { StringRecord::new() });
         let mut columns = check_headers(path, &headers)?;
-        columns.iter_mut().zip(&units).for_each(|(column, unit)| column.add_unit(unit));
-        let mut lines = Vec::new();
         let mut place = Place { at: 0, line: 1 };
+        let mut line_of =
+            |record: &StringRecord| place.of_record(text, record.position().map_or(0, |at| at.byte() as usize));
+        let below = line_of(&units);
+        columns.iter_mut().zip(&units).for_each(|(column, unit)| column.add_unit(below, unit));
+        let mut lines = Vec::new();
         for record in records {
             let record = record.map_err(|error| syntax(path, &error))?;
-            let line = place.of_record(text, record.position().map_or(0, |at| at.byte() as usize));
+            let line = line_of(&record);
             // Spreadsheets write rows of nothing but separators below their table.
             if record.iter().all(str::is_empty) {
                 continue;
@@ -85,7 +88,8 @@ impl Table {
             return Err(DataError::file(path, what));
         }
         columns.iter_mut().for_each(Column::doubt_thousands);
-        Table { path: path.to_path_buf(), columns, lines }.with_rows_of_gauges()
+        join_days(&mut columns);
+        Ok(Table { path: path.to_path_buf(), columns, lines })
     }
 }
 

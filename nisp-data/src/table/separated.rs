@@ -12,8 +12,8 @@ const SEPARATORS: [u8; 3] = [b'\t', b';', b','];
 /// So many lines at the end tell the separator: titles may stand above the header.
 const LAST: usize = 8;
 
-/// The separator: of those in the last line the one that parts the last lines into most numbers, as a share of all cells, or else the
-/// first that any line has.
+/// The separator. Candidates are the marks in all of the last lines, or else those in the last one. The one that gives the largest share of
+/// numbers among the cells of the last lines is taken, or else the first that any line has.
 pub(super) fn separator(text: &str) -> u8 {
     let lines = || text.lines().filter(|line| !line.trim().is_empty() && !line.starts_with('#'));
     let last: Vec<&str> = lines().rev().take(LAST).collect();
@@ -24,8 +24,12 @@ pub(super) fn separator(text: &str) -> u8 {
         let is_number = |cell: &&str| number(cell, mark).is_ok() || date(cell).is_some();
         cells().filter(is_number).count() as f64 / cells().count() as f64
     };
-    let there = SEPARATORS.into_iter().filter(|mark| last.first().is_some_and(|line| is_in(mark, line)));
-    let most = there.map(|mark| (numbers(mark), mark)).filter(|(share, _)| *share > 0.0);
+    let in_first = |count: usize| -> Vec<u8> {
+        SEPARATORS.into_iter().filter(|mark| last.iter().take(count).all(|line| is_in(mark, line))).collect()
+    };
+    let in_all = in_first(LAST);
+    let there = if in_all.is_empty() { in_first(1) } else { in_all };
+    let most = there.into_iter().map(|mark| (numbers(mark), mark)).filter(|(share, _)| *share > 0.0);
     let of_last = most.reduce(|best, other| if other.0 > best.0 { other } else { best }).map(|(_, mark)| mark);
     let of_first = || lines().find_map(|line| SEPARATORS.into_iter().find(|mark| is_in(mark, line)));
     of_last.or_else(of_first).unwrap_or(b',')

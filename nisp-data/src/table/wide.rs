@@ -1,12 +1,13 @@
 //! Tables with a column for each gauge, `T(x=0.1) [K],T(x=0.3) [K]`: they become tables with a row for each measurement.
 
-use super::headers::in_brackets;
+use super::headers::{base, in_brackets};
 use super::{Column, Fault, Kind, Table};
 use crate::DataError;
 
-/// What the header of a gauge says: a quantity with its unit, and where along some coordinates it was measured.
+/// What the header of a gauge says: a quantity, with its unit if one is said, and where along some coordinates it was measured.
 struct Gauge {
-    quantity: String,
+    name: String,
+    header: String,
     place: Vec<Position>,
 }
 
@@ -19,23 +20,21 @@ struct Position {
 }
 
 impl Table {
-    /// The rows of each place below each other, with columns of the places' coordinates, if its headers name places.
+    /// The rows of each place below each other, with columns of the places' coordinates, if headers name places along coordinates of
+    /// which the table has no columns. Other headers with brackets are left as they are.
     ///
     /// # Errors
-    /// Gauges that do not name the same coordinates in the same units.
-    pub(super) fn with_rows_of_gauges(self) -> Result<Table, DataError> {
-        let gauges: Vec<Option<Gauge>> = self.columns.iter().map(|column| Gauge::read(&column.header)).collect();
-        let Some(first) = gauges.iter().flatten().next() else { return Ok(self) };
-        let axes = |gauge: &Gauge| -> Vec<(String, String)> {
-            gauge.place.iter().map(|at| (at.coordinate.clone(), at.unit.clone())).collect()
+    /// A place that cannot be read, two gauges at one place, and gauges that do not say their places or their quantity alike.
+    pub fn with_rows_of_gauges(self, coordinates: &[&str]) -> Result<Table, DataError> {
+        let lacking: Vec<&str> = coordinates.iter().copied().filter(|name| !self.has(name)).collect();
+        let read = |column: &Column| Gauge::read(&column.header, &lacking);
+        let gauges: Vec<Option<Gauge>> = match self.columns.iter().map(read).collect() {
+            Ok(gauges) => gauges,
+            Err(what) => return Err(self.refused(what)),
         };
-        let named = axes(first);
-        if let Some(at) = gauges.iter().position(|gauge| gauge.as_ref().is_some_and(|gauge| axes(gauge) != named)) {
-            let what = format!(
-                "`{}` is not said along the same coordinates in the same units as the gauge before; write all alike",
-                self.columns[at].header
-            );
-            return Err(DataError::Column { path: self.path, what });
+        let Some(first) = gauges.iter().flatten().next() else { return Ok(self) };
+        if let Some(what) = self.unlike(&gauges) {
+            return Err(self.refused(what));
         }
         let mut places: Vec<&[Position]> = Vec::new();
         for gauge in gauges.iter().flatten() {
@@ -43,33 +42,66 @@ impl Table {
                 places.push(&gauge.place);
             }
         }
-        let rows = self.rows();
-        let mut columns: Vec<Column> = Vec::new();
-        for (axis, (coordinate, unit)) in named.iter().enumerate() {
-            let header = if unit.is_empty() { coordinate.clone() } else { format!("{coordinate} [{unit}]") };
-            let values = places.iter().flat_map(|place| std::iter::repeat_n(place[axis].value, rows)).collect();
-            columns.push(Column { header, values, ..Column::default() });
-        }
+        let along = |(axis, at): (usize, &Position)| {
+            let header =
+                if at.unit.is_empty() { at.coordinate.clone() } else { format!("{} [{}]", at.coordinate, at.unit) };
+            let values = places.iter().flat_map(|place| std::iter::repeat_n(place[axis].value, self.rows())).collect();
+            Column { header, values, ..Column::default() }
+        };
+        let mut columns: Vec<Column> = first.place.iter().enumerate().map(along).collect();
         for (column, gauge) in self.columns.iter().zip(&gauges) {
             match gauge {
                 None => columns.push(column.repeated(places.len())),
-                Some(gauge) if columns.iter().any(|known| known.header == gauge.quantity) => {}
+                Some(gauge) if columns.iter().any(|known| known.header == gauge.header) => {}
                 Some(gauge) => {
                     let of = |place: &&[Position]| {
-                        let mut all = self.columns.iter().zip(&gauges);
-                        let is_here = |other: &Gauge| other.quantity == gauge.quantity && other.place == **place;
-                        all.find(|(_, other)| other.as_ref().is_some_and(is_here)).map(|(column, _)| column)
+                        let is_here = |other: &Gauge| other.name == gauge.name && other.place == **place;
+                        let at = gauges.iter().position(|other| other.as_ref().is_some_and(is_here))?;
+                        Some(&self.columns[at])
                     };
-                    columns.push(Column::joined(
-                        &gauge.quantity,
-                        &places.iter().map(of).collect::<Vec<_>>(),
-                        &self.lines,
-                    ));
+                    let all: Vec<Option<&Column>> = places.iter().map(of).collect();
+                    columns.push(Column::joined(&gauge.header, &all, &self.lines));
                 }
             }
         }
         let lines = self.lines.repeat(places.len());
         Ok(Table { path: self.path, columns, lines })
+    }
+
+    fn refused(self, what: String) -> DataError {
+        DataError::Column { path: self.path, what }
+    }
+
+    /// What is wrong with gauges that are not said alike, or beside columns that are said like them.
+    fn unlike(&self, gauges: &[Option<Gauge>]) -> Option<String> {
+        let axes = |gauge: &Gauge| -> Vec<(String, String)> {
+            gauge.place.iter().map(|at| (at.coordinate.clone(), at.unit.clone())).collect()
+        };
+        let mut before: Vec<(&Gauge, &str)> = Vec::new();
+        for (gauge, column) in gauges.iter().zip(&self.columns) {
+            let Some(gauge) = gauge else { continue };
+            let own = &column.header;
+            let same = || before.iter().filter(|(other, _)| other.name == gauge.name);
+            if let Some((_, first)) = before.first().filter(|(first, _)| axes(first) != axes(gauge)) {
+                return Some(format!(
+                    "`{first}` and `{own}` do not name the same coordinates in the same units; write all alike"
+                ));
+            }
+            if let Some((_, other)) = same().find(|(other, _)| other.header != gauge.header) {
+                return Some(format!("`{other}` and `{own}` are one quantity in two units; write it in one"));
+            }
+            if let Some((_, other)) = same().find(|(other, _)| other.place == gauge.place) {
+                return Some(format!("`{other}` and `{own}` are at the same place; keep one of them"));
+            }
+            before.push((gauge, own));
+        }
+        let is_plain = |header: &&str| before.iter().any(|(gauge, _)| base(header) == gauge.name);
+        let plain = self.columns.iter().zip(gauges).filter(|(_, gauge)| gauge.is_none());
+        let plain = plain.map(|(column, _)| column.header.as_str()).find(is_plain)?;
+        Some(format!(
+            "`{plain}` says no place beside `{}`, which does; write it into its header, or remove it",
+            before[0].1
+        ))
     }
 }
 
@@ -82,7 +114,8 @@ impl Column {
     fn joined(header: &str, gauges: &[Option<&Column>], lines: &[usize]) -> Column {
         let values =
             |gauge: &Option<&Column>| gauge.map_or_else(|| vec![f64::NAN; lines.len()], |own| own.values.clone());
-        let lacking = Fault { line: lines[0], what: "no gauge of this quantity is there".into(), kind: Kind::Empty };
+        let line = lines.first().copied().unwrap_or(1);
+        let lacking = Fault { line, what: "no gauge of this quantity is there".into(), kind: Kind::Empty };
         let faults = gauges.iter().filter_map(|gauge| gauge.map_or(Some(&lacking), |own| own.fault.as_ref()));
         let fault = faults.max_by_key(|fault| fault.kind).cloned();
         Column { header: header.into(), values: gauges.iter().flat_map(values).collect(), fault, ..Column::default() }
@@ -90,16 +123,37 @@ impl Column {
 }
 
 impl Gauge {
-    /// The gauge that a header names: `T(x=0.1)`, `w (x = 10 mm, y = 20 mm) [um]`.
-    fn read(header: &str) -> Option<Self> {
-        let (name, rest) = header.split_once('(')?;
-        let (place, unit) = rest.split_once(')')?;
-        let place: Vec<Position> = place.split([',', ';']).map(Position::read).collect::<Option<_>>()?;
-        let quantity = match in_brackets(unit) {
-            Some(unit) => format!("{} [{unit}]", name.trim()),
-            None => format!("{}{}", name.trim(), unit.trim_end()),
+    /// The gauge that a header names: `T(x=0.1)`, `w (x = 10 mm, y = 20 mm) [um]`; nothing where no coordinate begins what stands in
+    /// brackets, or nothing follows it.
+    ///
+    /// # Errors
+    /// A place that cannot be read.
+    fn read(header: &str, coordinates: &[&str]) -> Result<Option<Self>, String> {
+        let Some((name, (place, unit))) =
+            header.split_once('(').and_then(|(name, rest)| Some((name, rest.split_once(')')?)))
+        else {
+            return Ok(None);
         };
-        Some(Self { quantity, place })
+        let is_of = |name: &&&str| {
+            let rest = place.trim_start().strip_prefix(**name).map(str::trim_start);
+            rest.is_some_and(|rest| rest.starts_with(|mark: char| mark == '=' || mark.is_ascii_digit()))
+        };
+        if !coordinates.iter().any(|name| is_of(&name)) {
+            return Ok(None);
+        }
+        let read: Option<Vec<Position>> = place.split([',', ';']).map(Position::read).collect();
+        let is_known = |at: &Position| coordinates.contains(&at.coordinate.as_str());
+        let Some(place) = read.filter(|place| place.iter().all(is_known)) else {
+            return Err(format!(
+                "the place in `{header}` cannot be read; write it as in `T(x=0.1)` or `T(x=10 mm, y=20 mm)`"
+            ));
+        };
+        let name = name.trim().to_string();
+        let header = match in_brackets(unit) {
+            Some(unit) => format!("{name} [{unit}]"),
+            None => format!("{name}{}", unit.trim_end()),
+        };
+        Ok(Some(Self { name, header, place }))
     }
 }
 
