@@ -1,7 +1,7 @@
 //! Sources with edges and smooth ones: the measurements say which of them a source is, and bars are as long as that asks for.
 
 use super::some::{pressed, rod};
-use super::sources::{edge, scattered};
+use super::sources::{bulge, bulged};
 use super::*;
 
 /// A string of which a part is pressed evenly: the load is a sum of waves, each of which lifts the string by one that swings.
@@ -26,15 +26,7 @@ fn bars_hold_at_the_edges_of_a_load() {
 /// A load of `5 pi^2 sin(pi x) sin(2 pi y)` has no edges, and no bars of one that has.
 #[test]
 fn bars_of_a_smooth_load_are_those_of_one() {
-    let bulge = |[x, y]: [f64; 2]| (PI * x).sin() * (2.0 * PI * y).sin();
-    let mut normal = normals(31);
-    let samples = scattered(600, [1.0, 1.0], 32);
-    let measured = pairs(&samples).map(|place| bulge(place) + 0.0015 * normal()).collect();
-    let mut problem = Problem::new(scene::<skin::recover::Scene>());
-    problem.set_group("inside", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
-    problem.set_group("edge", edge(40).into(), Vec::new()).unwrap();
-    problem.set_group("samples", samples.into(), vec![measured]).unwrap();
-    let mut solution = solve(&problem);
+    let mut solution = solve(&bulged(600, 0.0015, [31, 32]));
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
     let places = grid([20, 20], [1.0, 1.0], false);
     let (found, deviations) = values(&mut solution, "f", &places);

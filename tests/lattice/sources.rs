@@ -10,6 +10,23 @@ pub(super) fn scattered(count: usize, sides: [f64; 2], seed: u64) -> Vec<f64> {
     (0..count).flat_map(|_| sides.map(|side| side * (0.02 + 0.96 * uniform()))).collect()
 }
 
+/// The deflection of a skin under a load of `5 pi^2` times it.
+pub(super) fn bulge([x, y]: [f64; 2]) -> f64 {
+    (PI * x).sin() * (2.0 * PI * y).sin()
+}
+
+/// So many values of that skin, with noise and places of two seeds.
+pub(super) fn bulged(count: usize, noise: f64, [of_noise, of_places]: [u64; 2]) -> Problem {
+    let mut normal = normals(of_noise);
+    let samples = scattered(count, [1.0, 1.0], of_places);
+    let measured = pairs(&samples).map(|place| bulge(place) + noise * normal()).collect();
+    let mut problem = Problem::new(scene::<skin::recover::Scene>());
+    problem.set_group("inside", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
+    problem.set_group("edge", edge(40).into(), Vec::new()).unwrap();
+    problem.set_group("samples", samples.into(), vec![measured]).unwrap();
+    problem
+}
+
 /// Points of the edge of the unit square.
 pub(super) fn edge(count: usize) -> Vec<f64> {
     (0..count).map(|i| i as f64 / (count - 1) as f64).flat_map(|s| [s, 0.0, s, 1.0, 0.0, s, 1.0, s]).collect()
@@ -34,16 +51,8 @@ pub(super) fn judged(
 /// makes a skin of a fifth of that over `pi^2`.
 #[test]
 fn a_load_from_thirty_values_is_no_noise() {
-    let bulge = |[x, y]: [f64; 2]| (PI * x).sin() * (2.0 * PI * y).sin();
     for seed in 1..=4 {
-        let mut normal = normals(10 + seed);
-        let samples = scattered(30, [1.0, 1.0], seed);
-        let measured = pairs(&samples).map(|place| bulge(place) + 0.01 * normal()).collect();
-        let mut problem = Problem::new(scene::<skin::recover::Scene>());
-        problem.set_group("inside", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
-        problem.set_group("edge", edge(40).into(), Vec::new()).unwrap();
-        problem.set_group("samples", samples.into(), vec![measured]).unwrap();
-        let mut solution = solve(&problem);
+        let mut solution = solve(&bulged(30, 0.01, [10 + seed, seed]));
         let places = grid([15, 15], [1.0, 1.0], false);
         let (off, within) = judged(&mut solution, "f", &places, &|place| 5.0 * PI * PI * bulge(place));
         assert!(off < 0.4 && within > 0.8, "seed {seed}: {off} off, {within} within");

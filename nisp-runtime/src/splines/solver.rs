@@ -44,11 +44,15 @@ pub(super) struct Solver<'a> {
     /// By group and row, how far that puts equations off.
     pub(super) blurs: Vec<Vec<f64>>,
     pub(super) scalars: Vec<f64>,
-    /// Sources that have a mean: all or none.
+    /// How many sources have a mean: all of them, or none.
     pub(super) means: usize,
     /// Length of the domain.
     pub(super) length: f64,
     pub(super) triangle: Triangle,
+}
+
+fn sources(schema: &crate::schema::Scene) -> usize {
+    schema.heads.iter().filter(|head| head.source).count()
 }
 
 impl<'a> Solver<'a> {
@@ -77,7 +81,7 @@ impl<'a> Solver<'a> {
         let priors = heads.bases.iter().enumerate().map(|(head, basis)| Prior::new(basis, regressed(head))).collect();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let blurs = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
-        let sources = schema.heads.iter().filter(|head| head.source).count();
+        let sources = sources(schema);
         let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len() + sources);
         let scalars = bound.scalars.clone();
         let length = breakpoints[breakpoints.len() - 1] - breakpoints[0];
@@ -112,8 +116,7 @@ impl<'a> Solver<'a> {
     pub(super) fn bytes(bound: &Bound, breakpoints: &[f64]) -> f64 {
         let schema = bound.problem.scene().schema;
         let degrees = cells::degrees(schema).unwrap_or_default();
-        let sources = schema.heads.iter().filter(|head| head.source).count();
-        let (cells, shared) = ((breakpoints.len() - 1) as f64, (bound.learned.len() + sources) as f64);
+        let (cells, shared) = ((breakpoints.len() - 1) as f64, (bound.learned.len() + sources(schema)) as f64);
         // Of all heads on a cell: as many as rows and the band are wide.
         let functions = degrees.iter().map(|degree| (degree + 1) as f64).sum::<f64>();
         let triangles = 3.0 * cells * degrees.len() as f64 * (functions + shared);

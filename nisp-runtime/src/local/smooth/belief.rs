@@ -35,8 +35,12 @@ impl BorneOut {
 }
 
 impl Solver<'_> {
-    /// Logarithm of the evidence of the measurements about a state that has settled, but for what all beliefs about sources share.
+    /// Logarithm of the evidence of the measurements about a state that has settled. Terms that are equal for all beliefs about sources are
+    /// left out. Nothing where scalars are learned: the determinant does not know them.
     pub(super) fn evidence_of_belief(&mut self, state: &State) -> Option<f64> {
+        if !self.bound.learned.is_empty() {
+            return None;
+        }
         let slopes = self.set_learned(&state.learned);
         self.size(state);
         self.set_sigmas(state);
@@ -48,7 +52,7 @@ impl Solver<'_> {
         evidence.is_finite().then_some(evidence)
     }
 
-    /// Logarithm of the integral of the probability of rows and beliefs over all unknowns.
+    /// Logarithm of the integral of the probability of rows and beliefs over all coefficients.
     fn integral(&mut self, state: &State, rows: &Rows) -> Option<f64> {
         self.add_all(state, rows);
         let judged = self.judged(Phase::Solve);
@@ -56,6 +60,9 @@ impl Solver<'_> {
             // A belief says nothing of a level or a slope. Either is as large as the source.
             let own = self.heads.first[head]..self.heads.first[head + 1];
             let squares: f64 = state.theta[own.clone()].iter().map(|x| x * x).sum();
+            if squares <= 0.0 {
+                return None;
+            }
             for at in own {
                 self.normal.add_stiffness(at, 1.0 / squares);
                 self.normal.gradient[at] += state.theta[at] / squares;

@@ -17,9 +17,6 @@ use crate::solve::vector::root_mean_square;
 
 /// Measurements that are looked at of a group, at most.
 const MOST: usize = 500;
-/// Times as many cells at most; and where a source of all coordinates may be anything between points.
-const MORE: f64 = 4.0;
-const MORE_FREE: f64 = 2.0;
 
 /// The proportions of lattices by what the measurements say of their fields, regressed on the even lattice for so many points; even if they
 /// say nothing, or if there is no time to ask them.
@@ -41,26 +38,23 @@ pub(super) fn proportions(
         let Some(step) = step else { return Ok(even) };
         state = step.next;
     }
-    let most = if is_filled(schema) { MORE } else { MORE_FREE };
-    Ok(Proportions::by(schema, &solver.changes_of_measured(&state.theta), most))
+    Ok(Proportions::by(schema, &solver.changes_of_measured(&state.theta), is_filled(schema)))
 }
 
-/// True where fields are differentiated as often along a time as along lengths: what is sent out then runs on. Where they are differentiated
-/// more often along lengths, as where something diffuses, it is smoothed away.
+/// True where there is one time, and fields are differentiated as often along it as along lengths: what is sent out then runs on. Where they are
+/// differentiated more often along lengths, as where something diffuses, it is smoothed away.
 fn has_waves(schema: &schema::Scene) -> bool {
     let jets = || schema.groups.iter().flat_map(|group| group.jets);
-    let most = |is_time: bool| {
-        let of = |axis: usize| jets().map(move |jet| usize::from(jet.degree[axis])).max().unwrap_or(0);
-        let axes = schema.coordinates.iter().enumerate().filter(|(_, axis)| axis.unit.is_time() == is_time);
-        axes.map(|(axis, _)| of(axis)).max().unwrap_or(0)
-    };
-    let along_times = most(true);
-    along_times > 0 && along_times == most(false)
+    let order = |axis: usize| jets().map(|jet| usize::from(jet.degree[axis])).max().unwrap_or(0);
+    let (times, lengths): (Vec<usize>, Vec<usize>) =
+        (0..schema.coordinates.len()).partition(|&axis| schema.coordinates[axis].unit.is_time());
+    let along_lengths = lengths.into_iter().map(order).max();
+    matches!(times[..], [time] if order(time) > 0 && Some(order(time)) == along_lengths)
 }
 
 impl Solver<'_> {
-    /// By measured field and coordinate, how much its change along the time varies over the whole of the coordinate, at the rate at which it
-    /// does where the field was measured. Fields that are not of all coordinates, or do not change, are left out.
+    /// By measured field and coordinate, [`Solver::changes`] where the field was measured. Fields that are not of all coordinates, or do not
+    /// change, are left out.
     fn changes_of_measured(&self, theta: &[f64]) -> Vec<Vec<f64>> {
         let schema = self.schema();
         let inputs = schema.coordinates.len();
@@ -81,8 +75,8 @@ impl Solver<'_> {
         all.filter(|changes| changes.iter().all(|change| *change > 0.0 && change.is_finite())).collect()
     }
 
-    /// By coordinate, how much the change of a head along the time varies: from a place to the next cell's, times the number of cells. What
-    /// stands still, as the mean deflection of a string does, tells nothing of waves.
+    /// By coordinate: the difference of a head between two neighbouring times, and how much that difference changes from one cell to the next,
+    /// times the number of cells. What stands still, as the mean deflection of a string does, tells nothing of waves.
     fn changes(&self, head: usize, places: &[f64], theta: &[f64]) -> Vec<f64> {
         let lattice = &self.heads.lattices[head];
         let inputs = lattice.dimensions();

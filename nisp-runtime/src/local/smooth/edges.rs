@@ -6,7 +6,8 @@ use super::prior::changes;
 use super::short::squares;
 use crate::local::heads::Heads;
 
-/// The deviation of a head's coefficients that stands for waves shorter than four cells, of a head of this roughness that changes little.
+/// Standard deviation to add to each coefficient of a head of this roughness that changes little. It covers the waves shorter than four cells
+/// of a source with edges.
 pub(super) fn unresolved(heads: &Heads, head: usize, roughness: f64) -> f64 {
     let lattice = &heads.lattices[head];
     (changes(lattice, roughness) * shorter(lattice.dimensions()) / squares(heads, head)).sqrt()

@@ -7,6 +7,10 @@ use crate::solve::state::State as Saved;
 
 /// Change along a time beside that along lengths up to which an even lattice follows it.
 const EVEN: f64 = 2.0;
+/// Times as many cells at most.
+const MORE: f64 = 4.0;
+/// The same where a source depends on all coordinates: equations say nothing of it between their points.
+const MORE_FREE: f64 = 2.0;
 /// What a saved state calls it.
 const NAME: &str = "proportions";
 
@@ -20,9 +24,13 @@ impl Proportions {
         Self(vec![1.0; schema.coordinates.len()])
     }
 
-    /// As many more cells along times as fields change more along these, and so many times as many at most. There are no fewer where they
-    /// change less: what sets in at the start does so at once.
-    pub(super) fn by(schema: &schema::Scene, changes: &[Vec<f64>], most: f64) -> Self {
+    /// Cells along the time in the ratio of how often fields change along it and along lengths; `is_filled` says whether equations are asked
+    /// between their points. There are no fewer where fields change less: what sets in at the start does so at once.
+    pub(super) fn by(schema: &schema::Scene, changes: &[Vec<f64>], is_filled: bool) -> Self {
+        if changes.is_empty() {
+            return Self::even(schema);
+        }
+        let most = if is_filled { MORE } else { MORE_FREE };
         let most_along = |own: &[f64], times: bool| {
             let along = schema.coordinates.iter().zip(own).filter(|(axis, _)| axis.unit.is_time() == times);
             along.map(|(_, change)| *change).fold(0.0, f64::max)
@@ -38,7 +46,7 @@ impl Proportions {
         self.0.iter().product()
     }
 
-    /// By coordinate, cells along the longest of those that share a scale with it, where an even lattice has so many.
+    /// By coordinate, cells along the longest coordinate of its scale, if an even lattice has so many there.
     pub(super) fn cells(&self, even: usize) -> Vec<f64> {
         self.0.iter().map(|times| (times * even as f64).max(1.0)).collect()
     }
@@ -49,7 +57,7 @@ impl Proportions {
 
     pub(super) fn restored(saved: &Saved, schema: &schema::Scene) -> Result<Self, Fault> {
         let times: Vec<f64> = saved.sized(NAME, schema.coordinates.len())?;
-        let is_one = times.iter().all(|times| times.is_finite() && *times > 0.0);
-        if is_one { Ok(Self(times)) } else { Err(Fault::state(NAME)) }
+        let is_valid = times.iter().all(|times| (1.0..=MORE).contains(times));
+        if is_valid { Ok(Self(times)) } else { Err(Fault::state(NAME)) }
     }
 }
