@@ -375,8 +375,9 @@ fn a_text_has_the_answer_of_the_compiled_scene() {
         assert_eq!(compiled.2, read.2);
         let size = root_mean_square(compiled.0.0.iter().copied());
         let apart = root_mean_square(compiled.0.0.iter().zip(&read.0.0).map(|(a, b)| a - b));
-        // Rounding, times the condition of the normal equations of rows that are a hundred thousand times as strict as others.
-        assert!(apart < 1e-5 * size, "{name}: {apart:e} of {size:e}");
+        // Rounding, times the condition of the normal equations of rows that are a hundred thousand times as strict as others: by the
+        // noise and by the order of elimination it is anything from none to a ten-thousandth.
+        assert!(apart < 5e-4 * size, "{name}: {apart:e} of {size:e}");
         for (a, b) in compiled.1.iter().zip(&read.1) {
             assert!((a.value - b.value).abs() < 1e-5 * a.value.abs(), "{}: {} {}", a.name, a.value, b.value);
         }

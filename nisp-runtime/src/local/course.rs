@@ -17,8 +17,8 @@ use crate::solve::state;
 const FARTHEST: f64 = 5.0;
 /// Time of the error bars, in steps.
 pub(super) const BARS: f64 = 2.0;
-/// Time of the score tests of what is given (`scores.rs`), in steps.
-pub(super) const ASKED: f64 = 2.0;
+/// The same of the score tests of what is given (`scores.rs`).
+pub(super) const ASKED: f64 = 1.0;
 /// Largest change of a learned scalar's parameter in one step.
 const BOLDEST: f64 = 0.5;
 /// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
@@ -57,7 +57,9 @@ pub(super) struct End {
     pub(super) moved: f64,
     /// What the last step left open; empty if nothing.
     pub(super) warnings: Vec<Warning>,
+    /// The last step's factorised matrix, and the state that it is about.
     pub(super) factor: Option<Factor>,
+    pub(super) linearised: State,
     /// Seconds of the longest step.
     pub(super) longest: f64,
     /// The state before the last step, which whoever goes on from it repeats.
@@ -157,6 +159,7 @@ impl Solver {
         let fault = faults.pop().filter(|_| status == Status::NotConverged);
         warnings.extend(fault.map(|fault| Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) }));
         let checkpoint = good.save(stage.before, stage.lattice);
+        let linearised = State { noise: state.noise, ..good.state };
         Ok(End {
             state,
             status,
@@ -165,6 +168,7 @@ impl Solver {
             moved,
             warnings,
             factor,
+            linearised,
             longest,
             checkpoint,
         })
@@ -198,7 +202,10 @@ impl Solver {
             fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
             damping = wanted;
             let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
-            let used = if self.knows_noise() { 0.0 } else { mean(&factor.inner(&probes)) };
+            let used = match self.knows_noise() {
+                true => 0.0,
+                false => mean(&factor.inner(&probes).ok_or(LocalError::Memory)?),
+            };
             let (step, shared) = self.normal.step_with(&factor, &held).ok_or(LocalError::Factorisation)?;
             // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
             let largest = fields.iter().map(|&at| step[at].abs()).fold(0.0, f64::max);

@@ -11,6 +11,7 @@
 mod assembly;
 mod block;
 mod bspline;
+mod cholesky;
 mod counting;
 mod course;
 mod draws;
@@ -26,6 +27,7 @@ mod meshes;
 mod misfits;
 mod noise;
 mod normal;
+mod ordering;
 mod pattern;
 mod phase;
 mod place;
@@ -62,7 +64,6 @@ pub(crate) use live::Live;
 pub use prior::Patches;
 
 use course::End;
-use draws::Deviations;
 use normal::factor::Factor;
 use solver::Solver;
 
@@ -168,26 +169,21 @@ pub(crate) fn solve(
     let solved = matches!(end.status, Status::Converged | Status::Budget);
     let has_time_for = |steps: f64| end.status == Status::Converged || stage.has_time(steps * end.longest);
     // What an answer rests on matters more than its error bars.
-    let (has_time, is_asked) = (has_time_for(course::BARS + course::ASKED), solved && has_time_for(course::ASKED));
-    let deviations =
-        if solved && has_time { solver.deviations(&end.state).unwrap_or_default() } else { Deviations::default() };
-    if end.status == Status::Converged && stage.has_time(resolved::COST * end.longest) {
-        end.warnings.extend(solver.unresolved(&end.state, settings.cells));
-    }
+    let scores = if solved && has_time_for(course::ASKED) { solver.scores(&end) } else { Vec::new() };
+    let has_time = has_time_for(course::BARS);
+    let heads = solver.heads.clone();
+    let is_resolvable = end.status == Status::Converged && stage.has_time(resolved::COST * end.longest);
+    let bars = || (solved && has_time).then(|| solver.deviations(&end.state)).flatten().unwrap_or_default();
+    let resolve = || is_resolvable.then(|| resolved::unresolved(bound, settings, &heads, &end.state)).flatten();
+    let (deviations, unresolved) = rayon::join(bars, resolve);
+    end.warnings.extend(unresolved);
     end.warnings.extend(solver.rests_on_the_prior());
     let mut answer = solver.answer(&end.state);
     answer.moved = (end.status != Status::Converged).then_some(end.moved);
-    // An answer that nothing says against is asked what it rests on.
-    let scores = if is_asked { solver.scores(&end.state).unwrap_or_default() } else { Vec::new() };
     answer.scores = scores.iter().copied().flatten().collect();
     let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
-    let kept = KeptLattices {
-        heads: solver.heads.clone(),
-        theta: state.theta.clone(),
-        learned: state.learned.clone(),
-        draws: deviations,
-    };
+    let kept = KeptLattices { heads, theta: state.theta.clone(), learned: state.learned.clone(), draws: deviations };
     let solution = LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits };
     Ok((solution, Live::new(solver, state, scores)))
 }

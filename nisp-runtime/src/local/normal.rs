@@ -274,18 +274,13 @@ impl Normal {
             schur: self.corner.clone(),
             learned: self.learned,
         };
-        found.solved = self.border.iter().map(|column| found.solve_free(column)).collect();
+        found.solved = self.border.iter().map(|column| found.solve_free(column)).collect::<Option<_>>()?;
         for i in 0..self.border.len() {
             for j in 0..self.border.len() {
                 found.schur[(i, j)] -= vector::dot(&self.border[i], &found.solved[j]);
             }
         }
         Some(found)
-    }
-
-    /// Logarithm of the matrix's determinant, its border apart.
-    pub(super) fn log_determinant(&self) -> Option<f64> {
-        self.pattern.log_determinant(&self.values)
     }
 
     /// The step to the minimum of the quadratic model: of the coefficients, and of the learned scalars.

@@ -1,17 +1,14 @@
 //! Where a sparse symmetric matrix has entries, of all unknowns or of some, and its Cholesky factors.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::prelude::Solve;
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
-use faer::sparse::linalg::cholesky::{SymbolicCholeskyRaw, factorize_symbolic_cholesky};
-use faer::sparse::linalg::solvers::{Llt, SymbolicLlt};
+use faer::Mat;
 use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
-use faer::{Mat, Side, get_global_parallelism};
+
+use super::cholesky::{Cholesky, Fill};
 
 /// Entries of the lower triangle, and how factors fill it.
 pub(super) struct Pattern {
     entries: SymbolicSparseColMat<usize>,
-    symbolic: SymbolicLlt<usize>,
+    fill: Fill,
 }
 
 /// The unknowns that are free, while the others stay where they are.
@@ -35,8 +32,8 @@ impl Pattern {
             Some(*end)
         }));
         let entries = SymbolicSparseColMat::new_checked(columns.len(), columns.len(), starts, None, columns.concat());
-        let symbolic = SymbolicLlt::try_new(entries.as_ref(), Side::Lower).ok()?;
-        Some(Self { entries, symbolic })
+        let fill = Fill::of(entries.as_ref())?;
+        Some(Self { entries, fill })
     }
 
     /// Where every column begins, and the end of the last.
@@ -67,11 +64,8 @@ impl Pattern {
 
     /// Cholesky factors of a matrix with these entries; where rounding spoils that it is positive definite, of one with some more
     /// on its diagonal.
-    pub(super) fn factor(&self, values: &[f64]) -> Option<Llt<usize, f64>> {
-        let try_with = |values: &[f64]| {
-            let matrix = SparseColMatRef::new(self.entries.as_ref(), values);
-            Llt::try_new_with_symbolic(self.symbolic.clone(), matrix, Side::Lower).ok()
-        };
+    pub(super) fn factor(&self, values: &[f64]) -> Option<Cholesky> {
+        let try_with = |values: &[f64]| self.fill.factor(SparseColMatRef::new(self.entries.as_ref(), values));
         if !values.iter().all(|value| value.is_finite()) {
             return None;
         }
@@ -84,32 +78,6 @@ impl Pattern {
                 try_with(&values)
             })
         })
-    }
-
-    /// Logarithm of the determinant of a matrix with these entries; nothing where it is not positive definite.
-    pub(super) fn log_determinant(&self, values: &[f64]) -> Option<f64> {
-        let matrix = SparseColMatRef::new(self.entries.as_ref(), values);
-        let symbolic =
-            factorize_symbolic_cholesky(self.entries.as_ref(), Side::Lower, Default::default(), Default::default());
-        let symbolic = symbolic.ok()?;
-        let (mut lower, all) = (vec![0.0; symbolic.len_val()], get_global_parallelism());
-        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(all, Default::default());
-        let mut memory = MemBuffer::try_new(scratch).ok()?;
-        let stack = MemStack::new(&mut memory);
-        let (side, none) = (Side::Lower, Default::default());
-        symbolic.factorize_numeric_llt(&mut lower, matrix, side, none, all, stack, Default::default()).ok()?;
-        let diagonal: f64 = match symbolic.raw() {
-            SymbolicCholeskyRaw::Simplicial(own) => (0..own.ncols()).map(|at| lower[own.col_ptr()[at]].ln()).sum(),
-            SymbolicCholeskyRaw::Supernodal(own) => {
-                let factor = SupernodalLltRef::new(own, &lower);
-                let block = |at: usize| {
-                    let block = factor.supernode(at).val();
-                    (0..block.ncols()).map(|at| block[(at, at)].ln()).sum::<f64>()
-                };
-                (0..own.n_supernodes()).map(block).sum()
-            }
-        };
-        Some(2.0 * diagonal)
     }
 
     /// The matrix with these entries times a vector.
@@ -130,22 +98,22 @@ impl Pattern {
 
 impl Part {
     /// Cholesky factors of its part of the whole matrix.
-    pub(super) fn factor(&self, values: &[f64]) -> Option<Llt<usize, f64>> {
+    pub(super) fn factor(&self, values: &[f64]) -> Option<Cholesky> {
         let own: Vec<f64> = self.places.iter().map(|&place| values[place]).collect();
         self.pattern.factor(&own)
     }
 
     /// Solutions by its factors for the columns of a matrix of all unknowns; zero for those that are not free.
-    pub(super) fn solve(&self, factor: &Llt<usize, f64>, right: &Mat<f64>) -> Mat<f64> {
+    pub(super) fn solve(&self, factor: &Cholesky, right: &Mat<f64>) -> Option<Mat<f64>> {
         let own = Mat::from_fn(self.numbers.len(), right.ncols(), |row, column| right[(self.numbers[row], column)]);
-        let own = factor.solve(&own);
+        let own = factor.solve(&own)?;
         let mut all = Mat::zeros(right.nrows(), right.ncols());
         for column in 0..right.ncols() {
             for (row, &number) in self.numbers.iter().enumerate() {
                 all[(number, column)] = own[(row, column)];
             }
         }
-        all
+        Some(all)
     }
 }
 
@@ -161,7 +129,7 @@ mod tests {
         assert_eq!(pattern.times(&values, &[1.0, 2.0, 3.0]), [6.0, 10.0, 8.0]);
         let part = pattern.part(&[true, false, true]).unwrap();
         let right = Mat::from_fn(3, 1, |row, _| [8.0, 5.0, 3.0][row]);
-        let solution = part.solve(&part.factor(&values).unwrap(), &right);
+        let solution = part.solve(&part.factor(&values).unwrap(), &right).unwrap();
         for (row, expected) in [2.0, 0.0, 1.5].into_iter().enumerate() {
             assert!((solution[(row, 0)] - expected).abs() < 1e-15, "{row}: {}", solution[(row, 0)]);
         }

@@ -9,8 +9,8 @@ use nalgebra::Vector3;
 use rayon::prelude::*;
 
 use super::block::Block;
+use super::course::End;
 use super::normal::factor::Factor;
-use super::phase::Phase;
 use super::place::State;
 use super::solver::Solver;
 use super::surface::Surface;
@@ -50,13 +50,11 @@ impl Sums {
 }
 
 impl Solver {
-    /// Scores of all that is [known](Solver::known); none where the matrix cannot be factorised.
-    pub(super) fn scores(&mut self, state: &State) -> Option<Vec<Option<Score>>> {
-        self.find_feet(state);
-        self.assemble(state, state.noise, Phase::Concave).ok()?;
-        self.normal.set_free(Some(&state.free))?;
-        let factor = self.normal.factor()?;
-        Some(self.scores_of(&self.known(), state, &factor))
+    /// Scores of all that is [known](Solver::known), from the last step's equations.
+    pub(super) fn scores(&mut self, end: &End) -> Vec<Option<Score>> {
+        self.find_feet(&end.linearised);
+        let known = self.known();
+        end.factor.as_ref().map(|factor| self.scores_of(&known, &end.linearised, factor)).unwrap_or_default()
     }
 
     /// Scores of some of what is known, from the normal equations as they are assembled about a state and factorised: they are

@@ -3,17 +3,16 @@
 use std::sync::Arc;
 
 use faer::Mat;
-use faer::prelude::Solve;
-use faer::sparse::linalg::solvers::Llt;
 use nalgebra::{DMatrix, DVector};
 
+use super::super::cholesky::Cholesky;
 use super::super::draws::{Deviations, Draws};
 use super::super::pattern::Part;
 use crate::solve::vector;
 
 /// The factorised normal matrix.
 pub(in super::super) struct Factor {
-    pub(super) factor: Llt<usize, f64>,
+    pub(super) factor: Cholesky,
     pub(super) part: Option<Arc<Part>>,
     /// `H^-1` times the border.
     pub(super) solved: Vec<Vec<f64>>,
@@ -25,7 +24,7 @@ pub(in super::super) struct Factor {
 impl Factor {
     /// Solves the bordered system: the coefficients, then the learned scalars and the multipliers of integrals.
     pub(in super::super) fn solve(&self, right: &[f64], below: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let mut step = self.solve_free(right);
+        let mut step = self.solve_free(right)?;
         let shared = self.share(&mut step, below)?;
         Some((step, shared))
     }
@@ -45,7 +44,7 @@ impl Factor {
 
     /// Solutions for all right-hand sides, drawn from the posterior.
     pub(in super::super) fn deviations(&self, draws: &Draws) -> Option<Deviations> {
-        let solutions = self.solutions(&draws.matrix());
+        let solutions = self.solutions(&draws.matrix())?;
         let mut deviations = Deviations::default();
         for draw in 0..solutions.ncols() {
             let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
@@ -60,18 +59,18 @@ impl Factor {
     }
 
     /// `vector . H^-1 vector` of several vectors, of the coefficients alone.
-    pub(in super::super) fn inner(&self, vectors: &[Vec<f64>]) -> Vec<f64> {
+    pub(in super::super) fn inner(&self, vectors: &[Vec<f64>]) -> Option<Vec<f64>> {
         let len = vectors.first().map_or(0, Vec::len);
-        let solutions = self.solutions(&Mat::from_fn(len, vectors.len(), |row, column| vectors[column][row]));
+        let solutions = self.solutions(&Mat::from_fn(len, vectors.len(), |row, column| vectors[column][row]))?;
         let inner = |(column, vector): (usize, &Vec<f64>)| {
             vector.iter().enumerate().map(|(row, x)| x * solutions[(row, column)]).sum::<f64>()
         };
-        vectors.iter().enumerate().map(inner).collect()
+        Some(vectors.iter().enumerate().map(inner).collect())
     }
 
     /// The products of right-hand sides with their solutions: the columns of a matrix, and what is on the right of the border.
     pub(in super::super) fn products(&self, right: &Mat<f64>, below: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let solutions = self.solutions(right);
+        let solutions = self.solutions(right)?;
         let product = |(column, below): (usize, &Vec<f64>)| {
             let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
             let shared = self.share(&mut own, below)?;
@@ -79,6 +78,11 @@ impl Factor {
             Some(along + vector::dot(&shared, below))
         };
         below.iter().enumerate().map(product).collect()
+    }
+
+    /// Logarithm of the matrix's determinant, its border apart.
+    pub(in super::super) fn log_determinant(&self) -> f64 {
+        self.factor.log_determinant()
     }
 
     /// Unknowns of the border.
@@ -99,7 +103,7 @@ impl Factor {
     }
 
     /// Solutions without the border, for the columns of a matrix.
-    fn solutions(&self, right: &Mat<f64>) -> Mat<f64> {
+    fn solutions(&self, right: &Mat<f64>) -> Option<Mat<f64>> {
         match &self.part {
             Some(part) => part.solve(&self.factor, right),
             None => self.factor.solve(right),
@@ -107,8 +111,8 @@ impl Factor {
     }
 
     /// The solution without the border.
-    pub(super) fn solve_free(&self, right: &[f64]) -> Vec<f64> {
-        let solution = self.solutions(&Mat::from_fn(right.len(), 1, |i, _| right[i]));
-        (0..solution.nrows()).map(|i| solution[(i, 0)]).collect()
+    pub(super) fn solve_free(&self, right: &[f64]) -> Option<Vec<f64>> {
+        let solution = self.solutions(&Mat::from_fn(right.len(), 1, |i, _| right[i]))?;
+        Some((0..solution.nrows()).map(|i| solution[(i, 0)]).collect())
     }
 }
