@@ -4,7 +4,7 @@ use std::time::{Duration, SystemTime};
 
 use nisp_units::{Conversion, conversion};
 
-use super::{Column, Table};
+use super::{Column, Fault, Kind, Table};
 
 impl Table {
     /// The earliest first cell of its columns of dates, or else of times of day; none where no column holds any.
@@ -33,6 +33,34 @@ impl Column {
     /// True if every cell is a date or a time of day.
     pub(super) fn is_dated(&self) -> bool {
         !self.dates.is_empty() && self.dates.len() == self.values.len()
+    }
+
+    /// Takes a date, as long as all cells before are some.
+    pub(super) fn see_date(&mut self, cell: &str) {
+        for (dates, order) in [(&mut self.dates, Order::DayFirst), (&mut self.month_first, Order::MonthFirst)] {
+            if dates.len() == self.values.len() {
+                dates.extend(date(cell, order));
+            }
+        }
+    }
+
+    /// Decides whether days parted by slashes have the month first, once all cells are seen: where one order makes them all dates, or
+    /// where all are as long after the first in both.
+    pub(super) fn choose_days(&mut self) {
+        let month_first = std::mem::take(&mut self.month_first);
+        let is_whole = |dates: &[SystemTime]| !dates.is_empty() && dates.len() == self.values.len();
+        if !is_whole(&month_first) || month_first == self.dates {
+            return;
+        }
+        let after = |dates: &[SystemTime]| dates.iter().map(|date| seconds(dates[0], *date)).collect::<Vec<f64>>();
+        if is_whole(&self.dates) && after(&self.dates) != after(&month_first) {
+            let what =
+                "its days may have the day of the month first, or the month; write them like `2026-01-31`".into();
+            let line = self.fault.as_ref().map_or(0, |fault| fault.line);
+            (self.dates, self.fault) = (Vec::new(), Some(Fault { line, what, kind: Kind::Word }));
+        } else {
+            self.dates = month_first;
+        }
     }
 
     /// How its numbers become numbers in a unit where they are seconds since a moment.
@@ -65,29 +93,59 @@ pub fn moment(at: SystemTime) -> String {
     text.strip_prefix("1970-01-01 ").unwrap_or(text).to_string()
 }
 
-/// A day, a time of day, or both with a space or a `T` between them: `2026-01-02 03:04:05`, `02.01.2026 03:04`, `03:04:05.6`.
-pub(super) fn date(cell: &str) -> Option<SystemTime> {
+/// What comes first in a day parted by slashes whose year comes last.
+#[derive(Clone, Copy, PartialEq)]
+enum Order {
+    DayFirst,
+    MonthFirst,
+}
+
+/// True of a date or a time of day.
+pub(super) fn is_date(cell: &str) -> bool {
+    date(cell, Order::DayFirst).or_else(|| date(cell, Order::MonthFirst)).is_some()
+}
+
+/// A day, a time of day, or both with a space or a `T` between them: `2026-01-02 03:04:05`, `02.01.2026 03:04`, `03:04:05.6`,
+/// `01/02/2026 3:04 PM`.
+fn date(cell: &str, order: Order) -> Option<SystemTime> {
     let (cell, zone) = zone(cell)?;
     let (day, time) = match cell.split_once([' ', 'T']) {
-        Some((day, time)) => (year_first(day)?, time.trim()),
-        None if cell.contains(':') => ("1970-01-01".to_string(), cell),
-        None => (year_first(cell)?, "00:00"),
+        Some((day, time)) if !day.contains(':') => (year_first(day, order)?, time.trim()),
+        _ if cell.contains(':') => ("1970-01-01".to_string(), cell),
+        _ => (year_first(cell, order)?, "00:00"),
     };
+    let (time, later) = half_of_day(time)?;
     let hour = if time.find(':')? == 1 { format!("0{time}") } else { time.to_string() };
     let time = if hour.len() == 5 { format!("{hour}:00") } else { hour };
     let there = humantime::parse_rfc3339_weak(&format!("{day} {time}")).ok()?;
-    if zone < 0 { there.checked_add(minutes(-zone)) } else { there.checked_sub(minutes(zone)) }
+    let shift = Duration::from_secs(60 * u64::from((later - zone).unsigned_abs()));
+    if later < zone { there.checked_sub(shift) } else { there.checked_add(shift) }
 }
 
-/// A day with its year first. Parted by points, the day of the month comes first; parted by slashes, it may be either.
-fn year_first(day: &str) -> Option<String> {
+/// A time of day without `AM` or `PM`, and by how many minutes it is later than the clock of 24 hours would say.
+fn half_of_day(time: &str) -> Option<(&str, i32)> {
+    let Some(at) = time.len().checked_sub(2).filter(|&at| time.is_char_boundary(at)) else { return Some((time, 0)) };
+    let (clock, half) = (time[..at].trim_end(), time[at..].to_ascii_uppercase());
+    if half != "AM" && half != "PM" {
+        return Some((time, 0));
+    }
+    let hour: i32 = clock.split(':').next()?.parse().ok()?;
+    let first = if half == "PM" { 12 } else { 0 };
+    (1..=12).contains(&hour).then(|| (clock, 60 * (first + hour % 12 - hour)))
+}
+
+/// A day with its year first. Parted by points, the day of the month comes first; parted by slashes, what `order` says.
+fn year_first(day: &str, order: Order) -> Option<String> {
     let mark = day.chars().find(|mark| !mark.is_ascii_digit())?;
     let parts: Vec<&str> = day.split(mark).collect();
-    match (mark, &parts[..]) {
-        ('-' | '/', [year, month, date]) if year.len() == 4 => Some(format!("{year}-{month:0>2}-{date:0>2}")),
-        ('.', [date, month, year]) if year.len() == 4 => Some(format!("{year}-{month:0>2}-{date:0>2}")),
-        _ => None,
-    }
+    let (year, month, date) = match (mark, &parts[..]) {
+        ('-' | '/', [year, month, date]) if year.len() == 4 => (year, month, date),
+        ('.', [date, month, year]) => (year, month, date),
+        ('/', [date, month, year]) if order == Order::DayFirst => (year, month, date),
+        ('/', [month, date, year]) => (year, month, date),
+        _ => return None,
+    };
+    (year.len() == 4).then(|| format!("{year}-{month:0>2}-{date:0>2}"))
 }
 
 /// A moment without its zone, and how many minutes its clock is ahead of that of `Z`: `+01:00` and `+0100` are 60.
@@ -102,10 +160,6 @@ fn zone(cell: &str) -> Option<(&str, i32)> {
         (hours.parse().ok()?, if minutes.is_empty() { 0 } else { minutes.parse().ok()? });
     let ahead = Some(60 * hours + minutes).filter(|_| hours < 24 && minutes < 60)?;
     Some((cell[..sign].trim_end(), if cell[sign..].starts_with('-') { -ahead } else { ahead }))
-}
-
-fn minutes(count: i32) -> Duration {
-    Duration::from_secs(60 * u64::from(count.unsigned_abs()))
 }
 
 /// True of a time of day without a date.

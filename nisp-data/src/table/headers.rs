@@ -50,7 +50,7 @@ pub(super) fn in_brackets(header: &str) -> Option<&str> {
     bracketed(&header[header.find(open)?..])
 }
 
-fn bracketed(text: &str) -> Option<&str> {
+pub(super) fn bracketed(text: &str) -> Option<&str> {
     let text = text.trim_start();
     let within = |open, close| text.strip_prefix(open).and_then(|rest| rest.strip_suffix(close));
     within('[', ']').or_else(|| within('(', ')'))

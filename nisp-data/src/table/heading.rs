@@ -4,13 +4,13 @@ use csv::StringRecord;
 use nisp_units::is_unit;
 
 use super::cell::number;
-use super::dates::date;
-use super::headers::{claimed, in_brackets};
+use super::dates::is_date;
+use super::headers::{bracketed, claimed};
 use super::separated::reader;
 use super::{Column, Fault, Kind};
 
 /// Lines that are searched for the first row, at most.
-const MOST: usize = 64;
+const MOST: usize = 512;
 
 /// Where the header of a table is.
 #[derive(Default)]
@@ -22,12 +22,12 @@ pub(super) struct Heading {
 }
 
 impl Heading {
-    /// Looks for the first row of numbers with as many cells as most lines have: the header is the line above it, or the one above
+    /// Looks for the first row of numbers with as many cells as most of them have: the header is the line above it, or the one above
     /// that if the units of its columns stand between.
     pub(super) fn of(text: &str, mark: u8) -> Self {
         let records = reader(mark).from_reader(text.as_bytes()).into_records();
         let lines: Vec<StringRecord> = records.map_while(Result::ok).take(MOST).collect();
-        let widths = || lines.iter().filter(|line| line.iter().any(|cell| !cell.is_empty())).map(StringRecord::len);
+        let widths = || lines.iter().filter(|line| is_row(line)).map(StringRecord::len);
         let Some(width) = widths().max_by_key(|width| (widths().filter(|other| other == width).count(), *width)) else {
             return Self::default();
         };
@@ -37,12 +37,15 @@ impl Heading {
         if row > 1 && are_units(&lines[row - 2], &lines[row - 1]) {
             return Self { titles: row - 2, has_units: true };
         }
-        // Rows that are mostly words may stand between.
+        // Titles may have as many words, and rows that are mostly words may stand between: the last line with units in brackets is the header.
         let is_header = |at: &usize| {
             let mut cells = lines[*at].iter().filter(|cell| !cell.is_empty()).peekable();
             lines[*at].len() == width && cells.peek().is_some() && cells.all(is_word)
         };
-        Self { titles: (0..row).rev().find(is_header).unwrap_or(row - 1), has_units: false }
+        let says_units = |at: &usize| lines[*at].iter().any(|cell| claimed(cell).is_some());
+        let candidates = || (0..row).rev().filter(is_header);
+        let header = candidates().find(says_units).or_else(|| candidates().next());
+        Self { titles: header.unwrap_or(row - 1), has_units: false }
     }
 }
 
@@ -52,7 +55,7 @@ impl Column {
         if !is_word(unit) {
             return;
         }
-        let unit = in_brackets(unit).unwrap_or(unit);
+        let unit = bracketed(unit).unwrap_or(unit);
         let behind = self.header.rsplit_once('_').map(|(_, own)| own).filter(|own| *own == unit);
         match claimed(&self.header).or(behind) {
             None => self.header = format!("{} [{unit}]", self.header),
@@ -75,12 +78,12 @@ fn is_row(line: &StringRecord) -> bool {
 
 /// True of a number or a date.
 fn is_number(cell: &str) -> bool {
-    number(cell, b';').is_ok_and(f64::is_finite) || date(cell).is_some()
+    number(cell, b';').is_ok_and(f64::is_finite) || is_date(cell)
 }
 
 /// True of a cell that is no number, no date, and not empty.
 fn is_word(cell: &str) -> bool {
-    !cell.is_empty() && number(cell, b';').is_err() && date(cell).is_none()
+    !cell.is_empty() && number(cell, b';').is_err() && !is_date(cell)
 }
 
 /// True if the line below a header says the units of its columns: every word in it is one, and it holds no number.
@@ -89,5 +92,5 @@ fn are_units(header: &StringRecord, below: &StringRecord) -> bool {
     below.len() == header.len()
         && words().count() > 0
         && !below.iter().any(is_number)
-        && words().all(|word| is_unit(in_brackets(word).unwrap_or(word)))
+        && words().all(|word| is_unit(bracketed(word).unwrap_or(word)))
 }

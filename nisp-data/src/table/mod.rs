@@ -37,8 +37,10 @@ struct Column {
     /// The first cell that is no finite number. It only matters where this column is asked for.
     fault: Option<Fault>,
     thousands: Thousands,
-    /// What the cells say where every one so far is a date or a time of day.
+    /// What the cells say where every one so far is a date or a time of day, days parted by slashes with the day of the month first.
     dates: Vec<SystemTime>,
+    /// The same with the month first, until all cells have been seen.
+    month_first: Vec<SystemTime>,
 }
 
 #[derive(Debug, Clone)]

@@ -5,7 +5,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::cell::{describe, number};
-use super::dates::{date, join_days};
+use super::dates::join_days;
 use super::heading::Heading;
 use super::separated::{reader, separator, syntax};
 use super::{Column, Fault, Kind, Table};
@@ -88,6 +88,7 @@ impl Table {
             return Err(DataError::file(path, what));
         }
         columns.iter_mut().for_each(Column::doubt_thousands);
+        columns.iter_mut().for_each(Column::choose_days);
         join_days(&mut columns);
         Ok(Table { path: path.to_path_buf(), columns, lines })
     }
@@ -128,8 +129,8 @@ impl Column {
         let value = parsed.unwrap_or(f64::NAN);
         if value.is_finite() {
             self.thousands.see(line, cell, value);
-        } else if self.dates.len() == self.values.len() {
-            self.dates.extend(date(cell));
+        } else {
+            self.see_date(cell);
         }
         // The worst is what must be told.
         let worse = self.fault.as_ref().is_none_or(|fault| fault.kind < kind);

@@ -74,6 +74,7 @@ impl<R: BufRead> Rows<R> {
             column.fault = None;
             column.dates.clear();
             column.push(line, cell, self.separator);
+            column.choose_days();
         }
         self.begin = self.begin.or_else(|| self.row.begins());
         if let Some(begin) = self.begin {

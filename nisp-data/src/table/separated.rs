@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use super::cell::number;
-use super::dates::date;
+use super::dates::is_date;
 use crate::DataError;
 
 /// What parts cells, and those first that are nothing else within them.
@@ -21,7 +21,7 @@ pub(super) fn separator(text: &str) -> u8 {
     let numbers = |mark: u8| {
         let cells =
             || last.iter().flat_map(|line| line.split(char::from(mark))).map(|cell| cell.trim().trim_matches('"'));
-        let is_number = |cell: &&str| number(cell, mark).is_ok() || date(cell).is_some();
+        let is_number = |cell: &&str| number(cell, mark).is_ok() || is_date(cell);
         cells().filter(is_number).count() as f64 / cells().count() as f64
     };
     let in_first = |count: usize| -> Vec<u8> {
