@@ -92,6 +92,7 @@ fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, PrepareError> {
         measured: Vec::new(),
         truth,
         source,
+        begin: None,
         warnings: Vec::new(),
         assumed: Vec::new(),
         rival: None,

@@ -1,5 +1,7 @@
 //! An equation bound to data, with what scores and draws its answer.
 
+use std::time::SystemTime;
+
 use nisp::local::Local;
 use nisp::{Carrier, Problem, Settings};
 
@@ -27,6 +29,8 @@ pub struct Prepared {
     pub truth: Option<Truth>,
     /// Where the data came from.
     pub source: String,
+    /// From when the dates of the data are counted; none where they hold none.
+    pub begin: Option<SystemTime>,
     /// What the user should know of the data. One line each.
     pub warnings: Vec<String>,
     /// What was taken as declared beside data of the user's own.

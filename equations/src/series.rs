@@ -61,6 +61,7 @@ impl Series {
             request.columns.splice(0..0, own);
         }
         let mut prepared = self.bind(entry, &request, &table, truth.as_ref())?;
+        prepared.begin = clock.begin;
         prepared.warnings.extend(clock.said(prepared.problem.scene().schema, &table, &request));
         Ok(prepared)
     }
@@ -96,6 +97,7 @@ impl Series {
             measured: found.measured,
             truth,
             source: table.path().display().to_string(),
+            begin: None,
             warnings: found.warnings,
             assumed: tables::assumed(schema, request),
             rival,

@@ -174,6 +174,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         measured: Vec::new(),
         truth,
         source: observed.source.display().to_string(),
+        begin: None,
         warnings: observed.cloud.warnings,
         assumed,
         rival: None,

@@ -176,6 +176,7 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
         measured: Vec::new(),
         truth,
         source: observed.source.display().to_string(),
+        begin: None,
         warnings: observed.cloud.warnings,
         assumed,
         rival: None,

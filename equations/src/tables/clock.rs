@@ -11,7 +11,7 @@ use crate::request::Request;
 /// From when dates and times of day are counted: the earliest beginning of the tables of measurements, if any has dates.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Clock {
-    begin: Option<SystemTime>,
+    pub(crate) begin: Option<SystemTime>,
 }
 
 impl Clock {

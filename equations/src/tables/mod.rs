@@ -118,6 +118,7 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
         measured: found.measured,
         truth,
         source: if files.is_empty() { "no data".into() } else { files.join(", ") },
+        begin: clock.begin,
         warnings: found.warnings,
         assumed: assumed(schema, request),
         problem: found.problem,

@@ -44,7 +44,7 @@ pub(crate) fn eval(program: &Program, options: &EvalOptions) -> Result<ExitCode,
     if names.is_empty() {
         return Err("--of: nothing is asked for; name fields, sources, definitions or expressions of them".into());
     }
-    let points = points::wanted(&answer, options)?;
+    let points = points::wanted(&answer, saved.begin(), options)?;
     let mut evaluated = evaluated(saved, answer, points, &names)?;
     evaluated.warnings.extend(changed(program, &evaluated.saved));
     for warning in &evaluated.warnings {

@@ -1,25 +1,33 @@
 //! Where a saved answer is wanted.
 
+use std::time::SystemTime;
+
 use nisp::OpenAnswer;
 use nisp_data::Table;
 
 use crate::args::EvalOptions;
 
-/// The points of a table, or of a grid as far as the answer holds there; point by point, in declared units.
-pub(super) fn wanted(answer: &OpenAnswer, options: &EvalOptions) -> Result<Vec<f64>, String> {
+/// The points of a table, whose dates are counted from `begin`, or of a grid as far as the answer holds there; point by point, in
+/// declared units.
+pub(super) fn wanted(
+    answer: &OpenAnswer,
+    begin: Option<SystemTime>,
+    options: &EvalOptions,
+) -> Result<Vec<f64>, String> {
     let coordinates = answer.scene().coordinates;
     if let Some((name, _)) = options.column.iter().find(|(name, _)| coordinates.iter().all(|c| c.name != name)) {
         return Err(format!("--column: there is no coordinate `{name}`; there are: {}", names(answer)));
     }
     if let Some(path) = &options.place.at {
-        let table = Table::read_places(path).map_err(|error| error.to_string())?;
+        let mut table = Table::read_places(path).map_err(|error| error.to_string())?;
         let header =
             |name: &str| options.column.iter().rev().find(|(own, _)| own == name).map(|(_, header)| header.as_str());
-        if let Some(axis) = coordinates.iter().find(|axis| table.is_dated(header(axis.name).unwrap_or(axis.name))) {
+        begin.into_iter().for_each(|begin| table.count_from(begin));
+        let is_dated = |name: &str| table.is_dated(header(name).unwrap_or(name));
+        if let Some(axis) = coordinates.iter().find(|axis| begin.is_none() && is_dated(axis.name)) {
             let (path, name, unit) = (path.display(), axis.name, axis.unit.text);
             return Err(format!(
-                "{path}: `{name}` is given by dates, and an answer does not know from when it was counted: write {unit} from the moment that \
-                 `nisp solve` named"
+                "{path}: `{name}` is given by dates, and the answer was found from data without any: write {unit} as in its data"
             ));
         }
         let axis = |name: &str, unit: &str| match header(name) {

@@ -12,7 +12,7 @@ use std::path::Path;
 use crate::interrupt;
 use nisp::schema::Scene;
 use nisp::solve::driver::Status;
-use nisp::{Estimate, Solution};
+use nisp::{Estimate, SavedAnswer, Solution};
 use nisp_data::export::Mesh;
 use nisp_data::out_dir::Content;
 use nisp_data::{DataError, Table};
@@ -53,9 +53,12 @@ impl Answer {
     }
 
     /// Adds the answer itself: that it cannot be kept is no reason to lose the tables.
-    fn keep(&mut self, solution: &mut Solution) {
+    fn keep(&mut self, prepared: &Prepared, solution: &mut Solution) {
         match solution.saved() {
-            Ok(saved) => self.files.push((SAVED, saved.to_bytes())),
+            Ok(saved) => {
+                let saved = prepared.begin.into_iter().fold(saved, SavedAnswer::counted_from);
+                self.files.push((SAVED, saved.to_bytes()));
+            }
             Err(error) => self.warnings.push(format!("{SAVED} is not written: {error}")),
         }
     }
@@ -78,7 +81,7 @@ pub(crate) fn answer(prepared: &Prepared, solution: &mut Solution, asked: Option
     if prepared.contact.is_none() && solution.status == Status::Inconsistent {
         misfits::show(&mut answer, solution);
     }
-    answer.keep(solution);
+    answer.keep(prepared, solution);
     Ok(answer)
 }
 

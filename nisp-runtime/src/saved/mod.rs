@@ -9,6 +9,8 @@ mod kept;
 mod network;
 mod open;
 
+use std::time::{Duration, SystemTime};
+
 use thiserror::Error;
 
 use crate::bytes::{Fnv, Reader, Writer};
@@ -158,6 +160,21 @@ impl SavedAnswer {
         let mut reader = Reader::of(bytes, MAGIC).ok_or(SavedError::Damaged)?;
         let read = |reader: &mut Reader<'_>| Some(Self { texts: reader.texts()?, state: reader.state()? });
         read(&mut reader).filter(|_| reader.is_at_end()).ok_or(SavedError::Damaged)
+    }
+
+    /// With the moment from which its time is counted. None is kept of moments before 1970.
+    pub fn counted_from(mut self, begin: SystemTime) -> Self {
+        if let Ok(since) = begin.duration_since(SystemTime::UNIX_EPOCH) {
+            self.texts.push(("begin".into(), format!("{}.{:09}", since.as_secs(), since.subsec_nanos())));
+        }
+        self
+    }
+
+    /// The moment from which its time is counted, where its data were given by dates.
+    pub fn begin(&self) -> Option<SystemTime> {
+        let (seconds, nanoseconds) = self.text("begin").split_once('.')?;
+        let seconds = SystemTime::UNIX_EPOCH.checked_add(Duration::from_secs(seconds.parse().ok()?))?;
+        seconds.checked_add(Duration::from_nanos(nanoseconds.parse().ok()?))
     }
 
     /// The text of the equation, as [`crate::kernel::SceneRef::text`].
