@@ -274,7 +274,7 @@ impl Normal {
             schur: self.corner.clone(),
             learned: self.learned,
         };
-        found.solved = self.border.iter().map(|column| found.solve_free(column)).collect::<Option<_>>()?;
+        found.solved = found.solve_free(&self.border)?;
         for i in 0..self.border.len() {
             for j in 0..self.border.len() {
                 found.schur[(i, j)] -= vector::dot(&self.border[i], &found.solved[j]);

@@ -24,7 +24,7 @@ pub(in super::super) struct Factor {
 impl Factor {
     /// Solves the bordered system: the coefficients, then the learned scalars and the multipliers of integrals.
     pub(in super::super) fn solve(&self, right: &[f64], below: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let mut step = self.solve_free(right)?;
+        let mut step = self.solve_free(&[right])?.pop()?;
         let shared = self.share(&mut step, below)?;
         Some((step, shared))
     }
@@ -60,12 +60,8 @@ impl Factor {
 
     /// `vector . H^-1 vector` of several vectors, of the coefficients alone.
     pub(in super::super) fn inner(&self, vectors: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let len = vectors.first().map_or(0, Vec::len);
-        let solutions = self.solutions(&Mat::from_fn(len, vectors.len(), |row, column| vectors[column][row]))?;
-        let inner = |(column, vector): (usize, &Vec<f64>)| {
-            vector.iter().enumerate().map(|(row, x)| x * solutions[(row, column)]).sum::<f64>()
-        };
-        Some(vectors.iter().enumerate().map(inner).collect())
+        let solutions = self.solve_free(vectors)?;
+        Some(vectors.iter().zip(&solutions).map(|(vector, solution)| vector::dot(vector, solution)).collect())
     }
 
     /// The products of right-hand sides with their solutions: the columns of a matrix, and what is on the right of the border.
@@ -110,9 +106,11 @@ impl Factor {
         }
     }
 
-    /// The solution without the border.
-    pub(super) fn solve_free(&self, right: &[f64]) -> Option<Vec<f64>> {
-        let solution = self.solutions(&Mat::from_fn(right.len(), 1, |i, _| right[i]))?;
-        Some((0..solution.nrows()).map(|i| solution[(i, 0)]).collect())
+    /// Solutions without the border, for several right-hand sides: the factors are read once for all.
+    pub(super) fn solve_free(&self, right: &[impl AsRef<[f64]>]) -> Option<Vec<Vec<f64>>> {
+        let Some(len) = right.first().map(|first| first.as_ref().len()) else { return Some(Vec::new()) };
+        let solutions = self.solutions(&Mat::from_fn(len, right.len(), |row, column| right[column].as_ref()[row]))?;
+        let column = |column: usize| (0..len).map(|row| solutions[(row, column)]).collect();
+        Some((0..right.len()).map(column).collect())
     }
 }
