@@ -35,8 +35,8 @@ pub(super) struct Solver<'a> {
     /// Measurements of a group at most, and whether it does without some of the noisy ones.
     pub(super) most: usize,
     pub(super) lacks: bool,
-    /// A group of equations at other places than it is asked at, and its number.
-    pub(super) others: Option<(usize, Bound)>,
+    /// Groups of equations at other places than they are asked at, and their numbers.
+    pub(super) others: Option<(Vec<usize>, Bound)>,
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
     pub(super) surfaces: Vec<Surface>,
