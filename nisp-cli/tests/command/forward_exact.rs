@@ -103,25 +103,6 @@ on edge boundary of plate { held: T == 293 [K]; }
     assert!(code == Some(3) && open, "{}", report["verdict"]);
 }
 
-/// Nothing happens in a plate that rests at its walls' temperature; whether it did at first nobody said. A coarse lattice was not asked, so
-/// that a run that ended on it was right, or a network after it.
-#[test]
-fn a_plate_at_rest_without_a_beginning_is_open_on_every_lattice() {
-    let place = Place::new();
-    let text = "coordinates: x [m], y [m], t [s];
-fields: T [K];
-parameters: a [m^2/s] = 2e-5;
-domains: plate = box(0 .. 0.2, 0 .. 0.1) times 0 .. 60;
-on inside in plate { conduction: d(T, t) == a * laplacian(T); }
-on edge boundary of plate { held: T == 293 [K]; }
-";
-    for iterations in [8, 12, 16] {
-        let (code, report) = solved(&place, text, iterations);
-        let open = report["verdict"].as_array().unwrap().iter().any(|check| check["check"] == "determined");
-        assert!(code == Some(3) && open, "{iterations}: {}", report["verdict"]);
-    }
-}
-
 /// Two materials are two fields, which meet where one ends. The mode of a wall of two layers that dies out as exp(-t), and the one of
 /// its other layer by the conditions between them. What a field would be beyond its layer was compared from lattice to lattice.
 #[test]

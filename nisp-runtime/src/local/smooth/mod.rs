@@ -47,6 +47,7 @@ use crate::schema::{self, TermKind};
 use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::state::State as Saved;
+use crate::verdict::settled::HELD_BACK;
 
 use run::{Clock, Run};
 use solver::{Solver, groups};
@@ -251,7 +252,10 @@ fn finish(
     let heads = schema.heads.iter().enumerate();
     warnings.extend(heads.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
     if !solver.is_measured() {
-        warnings.extend(solver.undetermined(&state));
+        // What finer cells hardly change is as good as resolved.
+        let is_resolved = solver.strain(&state, noise) < 1.0 || changes.off() < HELD_BACK;
+        let is_resolved = status != Status::NotConverged && is_resolved;
+        warnings.extend(solver.undetermined(&state, is_resolved));
     }
     // What a finer lattice has hardly changed, another one will not. Where nothing is measured such a change tells all.
     let is_early = status == Status::Budget && changes.least() > SAME;

@@ -18,13 +18,13 @@ const LIFTS: [f64; 2] = [1e-13, 1e-12];
 const FALL: f64 = 2.2;
 /// Size of an equation's terms over the natural one up to which it is zero.
 const ZERO: f64 = 1e-4;
-/// Deviation of a field over how much it varies from which on it is open too, where equations are off by [`LOOSE`]: on the first
-/// lattice of problems that are determined it was .15 at most, of open ones .42 at least.
-const OPEN: f64 = 0.25;
+/// Deviation of a field over how much it varies from which on it is open too, where equations are off by [`LOOSE`].
+const OPEN: f64 = 0.5;
 
 impl Solver<'_> {
-    /// The fields of an answer that may be otherwise, and where most of all.
-    pub(super) fn undetermined(&mut self, state: &State) -> Vec<Warning> {
+    /// The fields of an answer that may be otherwise, and where most of all. Cells that are too coarse for it leave more open than the
+    /// problem does.
+    pub(super) fn undetermined(&mut self, state: &State, is_resolved: bool) -> Vec<Warning> {
         // Beside strict equations rounding would be stiffer than that.
         let loose = State { tolerance: LOOSE, ..state.clone() };
         self.set_sizes_at_rest(state);
@@ -40,7 +40,7 @@ impl Solver<'_> {
             };
             let [deviations, stiffer] = [of(&deviations), of(&stiffer)];
             let [soft, stiff] = [&deviations, &stiffer].map(|all| root_mean_square(all.iter().copied()));
-            let is_large = soft > OPEN * self.variation(state, head, &points.concat());
+            let is_large = is_resolved && soft > OPEN * self.variation(state, head, &points.concat());
             if !is_large && soft <= FALL * stiff {
                 return None;
             }
