@@ -242,8 +242,9 @@ pub(crate) struct Leaning {
 pub(crate) struct Answer {
     /// By group.
     pub(crate) facts: Vec<Facts>,
-    /// The number of an equation's group, and its facts at places where the solver did not ask it. Lattices alone have them.
-    pub(crate) between: Option<(usize, Facts)>,
+    /// Numbers of groups of equations, and their facts at places where the solver did not ask them: of lattices, and of networks where
+    /// nothing is measured.
+    pub(crate) between: Vec<(usize, Facts)>,
     pub(crate) clouds: Vec<CloudFacts>,
     /// Scalars that programs read, learned ones at their found values.
     pub(crate) scalars: Vec<f64>,

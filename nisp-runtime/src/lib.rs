@@ -24,6 +24,7 @@ pub mod network;
 pub mod noise;
 pub mod peak;
 pub mod problem;
+mod reads;
 pub mod real;
 pub mod recover;
 pub mod residual;

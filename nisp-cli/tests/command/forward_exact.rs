@@ -102,3 +102,43 @@ on edge boundary of plate { held: T == 293 [K]; }
     let open = report["verdict"].as_array().unwrap().iter().any(|check| check["check"] == "determined");
     assert!(code == Some(3) && open, "{}", report["verdict"]);
 }
+
+/// Two materials are two fields, which meet where one ends. The mode of a wall of two layers that dies out as exp(-t), and the one of
+/// its other layer by the conditions between them. What a field would be beyond its layer was compared from lattice to lattice.
+#[test]
+fn a_wall_of_two_materials_is_two_fields() {
+    let place = Place::new();
+    let (left, right, joint) = (5.0_f64, 2.0_f64, 0.45);
+    let (at_joint, beyond) = (left * joint, right * (1.0 - joint));
+    // Of equal temperature at the joint, and of equal flux by the heat that the second holds.
+    let holds = -right / left * beyond.tan() / at_joint.tan();
+    let (first, second) = (1.0 / (left * left), holds / (right * right));
+    let (high, low) = (beyond.sin(), at_joint.sin());
+    let text = format!(
+        "units: off;
+coordinates: x, t: time;
+fields: u, v;
+domains: a = 0 .. {joint} times 0 .. 1, b = {joint} .. 1 times 0 .. 1;
+on left in a {{ eu: d(u, t) == {first} * d(u, x, 2); }}
+on right in b {{ ev: {holds} * d(v, t) == {second} * d(v, x, 2); }}
+on sides_of_a boundary of a {{
+    columns: normal: vector;
+    cold: (1 - normal[0]) * u == 0;
+    same: (1 + normal[0]) * (u - v) == 0;
+    flux: (1 + normal[0]) * ({first} * d(u, x) - {second} * d(v, x)) == 0;
+}}
+on sides_of_b boundary of b {{ columns: normal: vector; outer: (1 + normal[0]) * v == 0; }}
+on begin_of_a start of a {{ fu: u == {high} * sin({left} * x); }}
+on begin_of_b start of b {{ fv: v == {low} * sin({right} * (1 - x)); }}
+"
+    );
+    let (code, report) = solved(&place, &text, 60);
+    assert_eq!((code, report["status"].as_str()), (Some(0), Some("converged")), "{}", report["verdict"]);
+    let exact =
+        |x: f64, t: f64| (-t).exp() * if x < joint { high * (left * x).sin() } else { low * (right * (1.0 - x)).sin() };
+    for row in place.rows("out/state.csv") {
+        let [x, t, u, v] = row[..4] else { panic!("{row:?}") };
+        let own = if x < joint { u } else { v };
+        assert!((own - exact(x, t)).abs() < 1e-4, "{own} for {} at {x}, {t}", exact(x, t));
+    }
+}

@@ -5,6 +5,7 @@ mod bad_input;
 mod beliefs;
 mod bubble;
 mod check;
+mod coarse_cells;
 mod common;
 mod contact;
 mod contract;

@@ -24,7 +24,7 @@ impl Engine<f64> {
         }
         Answer {
             facts,
-            between: None,
+            between: Vec::new(),
             clouds: seen,
             scalars: self.scalars.clone(),
             scores: Vec::new(),

@@ -15,7 +15,7 @@ impl Solver {
         let clouds = self.surfaces.iter().map(|surface| surface.facts(UNRESOLVED * self.cell));
         Answer {
             facts: facts.collect(),
-            between: None,
+            between: Vec::new(),
             clouds: clouds.collect(),
             scalars: self.scalars.clone(),
             scores: Vec::new(),

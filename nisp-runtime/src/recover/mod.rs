@@ -15,6 +15,7 @@ mod network;
 mod on_lattice;
 mod on_splines;
 mod open;
+mod over_domain;
 mod promotion;
 mod resolution;
 mod session;

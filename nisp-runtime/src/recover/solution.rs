@@ -114,8 +114,8 @@ impl Solution {
         /// Size of a source in its deviations above which exact data leave nothing open of it.
         const PLAIN: f64 = 100.0;
         let noise = noise::estimate(&self.bound);
-        let values = self.values_over_domain();
         let answer = self.carried.answer(&self.bound);
+        let values = self.where_read(self.values_over_domain(), &answer);
         self.verdict = judge(&self.bound, &answer, &values, &noise);
         if let Some(prior) = self.settings.carrier.patches_everywhere(self.scene()) {
             for (head, values) in self.scene().heads.iter().zip(&values).filter(|(head, _)| head.source) {
@@ -172,26 +172,6 @@ impl Solution {
         }
         let warning = self.warnings.iter().find(|warning| warning.kind == WarningKind::Undetermined)?;
         Some(determined(self.scene().heads[0].name, warning.message.clone()))
-    }
-
-    /// Values of all heads at points of all groups, `[head][point]` in the engine's units.
-    pub(super) fn values_over_domain(&self) -> Vec<Vec<f64>> {
-        /// Points of a group that say how large a head is, at most.
-        const MOST: usize = 2000;
-        let inputs = self.scene().coordinates.len();
-        let outward: Vec<_> = self.scene().coordinates.iter().map(|c| self.bound.system.outward(&c.unit)).collect();
-        let some = |group: &Vec<f64>| {
-            let points = group.chunks_exact(inputs);
-            let step = points.len().div_ceil(MOST).max(1);
-            let along = points.step_by(step).flatten().zip(outward.iter().cycle());
-            along.map(|(&x, outward)| outward.of(Number::engine(x)).as_declared()).collect::<Vec<f64>>()
-        };
-        let points: Vec<f64> = self.bound.coordinates.iter().flat_map(some).collect();
-        let inward = |estimate: Estimate| {
-            let inward = self.bound.system.inward(&estimate.unit);
-            estimate.values.into_iter().map(|x| inward.of(Number::declared(x)).as_engine()).collect()
-        };
-        self.evaluate(&points).into_iter().map(inward).collect()
     }
 
     /// True where rows are met to the root of the precision: their squares drown in rounding.

@@ -96,10 +96,11 @@ impl Carried for Trained {
         }
         // Where nothing is measured, points of the equations are all that a network was shown.
         let others = bound.problem.scene().schema.observed().is_empty().then(|| smooth::others(bound)).flatten();
-        answer.between = others.and_then(|(at, others)| {
-            let mut engine: Engine<f64> = others.engine(self.architecture).ok()?;
-            Some((at, engine.facts(at, &self.theta)))
-        });
+        if let Some((groups, others)) = others
+            && let Ok(mut engine) = others.engine(self.architecture) as Result<Engine<f64>, _>
+        {
+            answer.between = groups.into_iter().map(|at| (at, engine.facts(at, &self.theta))).collect();
+        }
         answer
     }
 

@@ -248,7 +248,7 @@ pub(crate) fn solve(
         .collect();
     let answer = Answer {
         facts,
-        between: None,
+        between: Vec::new(),
         clouds: Vec::new(),
         scalars,
         scores: Vec::new(),

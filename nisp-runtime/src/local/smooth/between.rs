@@ -47,15 +47,18 @@ pub(super) fn is_filled(schema: &schema::Scene) -> bool {
     !(0..schema.heads.len()).any(is_of_all)
 }
 
-/// The problem with an equation asked at so many points, between those that it has; nothing where it has as many, or reads what is
-/// known at its points alone.
+/// The problem with the largest equation asked at so many points, between those that it has, and those of other fields at as many times
+/// more; nothing where it has as many, or reads what is known at its points alone.
 pub(super) fn filled(bound: &Bound, points: usize) -> Option<Bound> {
-    let at = largest(bound)?;
-    if count(bound, at) >= points {
+    let given = count(bound, largest(bound)?);
+    if given >= points {
         return None;
     }
     let mut filled = bound.clone();
-    filled.coordinates[at].extend(between(bound, at, points - count(bound, at), ASKED));
+    for at in stating(bound) {
+        let more = count(bound, at) * (points - given) / given;
+        filled.coordinates[at].extend(between(bound, at, more, ASKED));
+    }
     Some(filled)
 }
 
@@ -81,21 +84,45 @@ pub(super) fn thinned(bound: &Bound, most: usize) -> Option<Bound> {
     Some(thinned)
 }
 
-/// The problem with the equation of [`filled`] at other places, and which group that is.
-pub(crate) fn others(bound: &Bound) -> Option<(usize, Bound)> {
-    let at = largest(bound)?;
+/// The problem with the equations of [`filled`] at other places, and which groups these are; nothing where there are none.
+pub(crate) fn others(bound: &Bound) -> Option<(Vec<usize>, Bound)> {
+    let groups = stating(bound);
     let mut others = bound.clone();
-    let many = count(bound, at).clamp(FEWEST_OTHERS, MOST_OTHERS);
-    others.coordinates[at] = between(bound, at, many, OTHERS);
-    Some((at, others))
+    for &at in &groups {
+        let many = count(bound, at).clamp(FEWEST_OTHERS, MOST_OTHERS);
+        others.coordinates[at] = between(bound, at, many, OTHERS);
+    }
+    (!groups.is_empty()).then_some((groups, others))
+}
+
+/// Groups that state what fields obey: of those that may have more points the largest that differentiates a field, for each. There is
+/// one for fields that live together, and one for each part of a domain whose fields end where another's begin.
+fn stating(bound: &Bound) -> Vec<usize> {
+    let schema = bound.problem.scene().schema;
+    let fields = (0..schema.heads.len()).filter(|&head| !schema.heads[head].source);
+    let mut groups: Vec<usize> = fields.filter_map(|field| of_most_points(bound, Some(field))).collect();
+    groups.extend(largest(bound));
+    groups.sort_unstable();
+    groups.dedup();
+    groups
 }
 
 /// The group of equations with most points that may have more.
 fn largest(bound: &Bound) -> Option<usize> {
+    of_most_points(bound, None)
+}
+
+/// The same among those that differentiate a field.
+fn of_most_points(bound: &Bound, field: Option<usize>) -> Option<usize> {
     let schema = bound.problem.scene().schema;
     let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
     let is_free = |group: &schema::Group| group.columns.is_empty() && group.order > 0 && is_equation(group);
-    let free = (0..schema.groups.len()).filter(|&at| is_free(&schema.groups[at]) && count(bound, at) > 1);
+    let differentiates = |group: &schema::Group| {
+        let jets = || group.jets.iter().filter(|jet| jet.degree.iter().any(|&degree| degree > 0));
+        field.is_none_or(|field| jets().any(|jet| jet.head == field))
+    };
+    let groups = (0..schema.groups.len()).filter(|&at| count(bound, at) > 1);
+    let free = groups.filter(|&at| is_free(&schema.groups[at]) && differentiates(&schema.groups[at]));
     free.max_by_key(|&at| count(bound, at))
 }
 

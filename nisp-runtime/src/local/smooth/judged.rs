@@ -11,6 +11,7 @@ use crate::local::group::Group;
 use crate::local::misfits::Misfits;
 use crate::noise::{Noise, ObservationNoise};
 use crate::problem::Bound;
+use crate::reads::where_read;
 use crate::schema::{self, TermKind};
 use crate::solve::vector::{farthest, root_mean_square};
 
@@ -106,8 +107,11 @@ impl Solver<'_> {
         };
         let asked = self.groups.iter().map(|group| left(group, &|row| TENSE * group.sigma[row]));
         let share = if noise.is_there(self.schema()) { BETWEEN } else { EXACT };
-        let of_others =
-            |(at, bound): &(usize, Bound)| left(&groups(bound, &self.heads)[*at], &|row| share * self.sizes[*at][row]);
+        let of_others = |(of, bound): &(Vec<usize>, Bound)| {
+            let groups = groups(bound, &self.heads);
+            let left = of.iter().map(|&at| left(&groups[at], &|row| share * self.sizes[at][row]));
+            left.fold(0.0, f64::max)
+        };
         let between = self.others.as_ref().map_or(0.0, of_others);
         asked.chain([between, self.missed(state, noise) / MISSED, self.alike(state, noise)]).fold(0.0, f64::max)
     }
@@ -142,12 +146,22 @@ impl Solver<'_> {
     /// at.
     pub(super) fn apart(&self, state: &State, other: &Solver<'_>, before: &State) -> f64 {
         let schema = self.schema();
+        // Points with what is read there, `[head][point]`.
+        let at_points = |(at, groups, bound): (usize, &[Group], &Bound)| {
+            let facts = groups[at].facts(&self.heads, &state.theta);
+            let known = (schema.heads.len(), &*self.scalars);
+            (bound.coordinates[at].clone(), where_read(&facts, groups[at].kernel.programs, &schema.groups[at], known))
+        };
+        let mut points: Vec<_> = (0..self.groups.len()).map(|at| at_points((at, &self.groups, &self.bound))).collect();
+        if let Some((of, others)) = self.others.as_ref().filter(|_| !self.is_measured()) {
+            let groups = groups(others, &self.heads);
+            points.extend(of.iter().map(|&at| at_points((at, &groups, others))));
+        }
         let of = |head: usize| {
-            let seen = schema.groups.iter().zip(&self.bound.coordinates);
-            let points = seen.filter(|(group, _)| group.jets.iter().any(|jet| jet.head == head));
-            let between =
-                self.others.iter().filter(|_| !self.is_measured()).map(|(at, others)| &others.coordinates[*at]);
-            let points: Vec<f64> = points.map(|(_, points)| points).chain(between).flatten().copied().collect();
+            let own = points.iter().flat_map(|(points, read)| {
+                points.chunks_exact(schema.coordinates.len()).zip(&read[head]).filter(|(_, read)| **read)
+            });
+            let points: Vec<f64> = own.flat_map(|(point, _)| point).copied().collect();
             let (own, others) =
                 (self.heads.values(head, &points, &state.theta), other.heads.values(head, &points, &before.theta));
             if !self.is_measured() {
@@ -178,9 +192,11 @@ impl Solver<'_> {
         self.set_learned(&state.learned);
         self.find_feet(state);
         let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta)).collect();
-        let of_others =
-            |(at, bound): &(usize, Bound)| (*at, groups(bound, &self.heads)[*at].facts(&self.heads, &state.theta));
-        let between = self.others.as_ref().map(of_others);
+        let of_others = |(of, bound): &(Vec<usize>, Bound)| {
+            let groups = groups(bound, &self.heads);
+            of.iter().map(|&at| (at, groups[at].facts(&self.heads, &state.theta))).collect()
+        };
+        let between = self.others.as_ref().map_or_else(Vec::new, of_others);
         Answer {
             facts,
             between,

@@ -21,8 +21,8 @@ const REST: f64 = 1e-5;
 impl Solver<'_> {
     /// Takes the level of fields out of the sizes of conditions on their values: these hold as firmly in kelvins as in degrees Celsius.
     pub(super) fn leave_out_levels(&mut self, state: &State) {
-        let points = self.some_points();
         let share = |head: usize| {
+            let points = self.some_points(head);
             let size = root_mean_square(self.heads.values(head, &points, &state.theta));
             (self.variation(state, head, &points) / size.max(f64::MIN_POSITIVE)).clamp(LEAST, 1.0)
         };
@@ -38,11 +38,13 @@ impl Solver<'_> {
         }
     }
 
-    /// Some points of the largest group, flat. Every so many of points that fill a domain evenly may all lie in one corner of it: they
-    /// are picked at random.
-    pub(super) fn some_points(&self) -> Vec<f64> {
+    /// Some points of the largest group that reads a head, flat: elsewhere the head may be anything. Every so many of points that fill a
+    /// domain evenly may all lie in one corner of it: they are picked at random.
+    pub(super) fn some_points(&self, head: usize) -> Vec<f64> {
         let inputs = self.schema().coordinates.len();
-        let largest = self.bound.coordinates.iter().max_by_key(|points| points.len());
+        let groups = self.schema().groups.iter().zip(&self.bound.coordinates);
+        let reading = groups.filter(|(group, _)| group.jets.iter().any(|jet| jet.head == head));
+        let largest = reading.map(|(_, points)| points).max_by_key(|points| points.len());
         let points = largest.map_or(&[][..], |points| points.as_slice());
         let count = points.len() / inputs;
         let chosen = sample(&mut StdRng::seed_from_u64(0), count, count.min(MOST));

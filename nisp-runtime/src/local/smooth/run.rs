@@ -11,9 +11,12 @@ use crate::local::normal::factor::Factor;
 use crate::noise::Noise;
 use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::state::State as Saved;
+use crate::tolerance::LOOSE;
 
 /// Steps that look for sources under the noise of the regressed data at most.
 const EXPLAIN: u64 = 12;
+/// What is left of all rows when sources were looked for, over what noise leaves, from which on equations are too strict for the cells.
+const UNEXPLAINED: f64 = 4.0;
 /// Gain of the logarithm of the evidence that no longer matters.
 const RESTING: f64 = 0.05;
 /// Change of a coefficient, in natural sizes, that no longer matters.
@@ -83,7 +86,7 @@ impl Run {
             let step = solver.step(&state)?;
             let elapsed_s = clock.elapsed_s();
             longest = longest.max(elapsed_s - before_s);
-            let (before, is_tight) = (state.phase, state.tolerance <= solver.tolerance);
+            let (before, is_tight) = (state.phase, state.tolerance <= state.strictest);
             state = step.next;
             let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
             let is_resting = gain < RESTING && state.since > 1;
@@ -92,7 +95,9 @@ impl Run {
                 Phase::Explain => (is_tight && is_resting) || state.since >= EXPLAIN,
                 Phase::Solve => false,
             };
-            if is_ready {
+            if is_ready && before == Phase::Explain && step.strained > UNEXPLAINED && state.strictest < LOOSE {
+                solver.loosen(&mut state);
+            } else if is_ready {
                 (state.phase, state.since) = (before.next(), 0);
                 solver.come_back(&mut state);
             }

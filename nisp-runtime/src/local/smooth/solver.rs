@@ -35,8 +35,8 @@ pub(super) struct Solver<'a> {
     /// Measurements of a group at most, and whether it does without some of the noisy ones.
     pub(super) most: usize,
     pub(super) lacks: bool,
-    /// A group of equations at other places than it is asked at, and its number.
-    pub(super) others: Option<(usize, Bound)>,
+    /// Groups of equations at other places than they are asked at, and their numbers.
+    pub(super) others: Option<(Vec<usize>, Bound)>,
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
     pub(super) surfaces: Vec<Surface>,
@@ -149,6 +149,7 @@ impl<'a> Solver<'a> {
             learned,
             classes,
             tolerance,
+            strictest: self.tolerance,
             convex,
             phase,
             step: 0,
@@ -190,6 +191,15 @@ impl<'a> Solver<'a> {
         }
         state.unmeasured = Unmeasured::default();
         Ok(())
+    }
+
+    /// Looks for sources once more, with equations as loose as they were at first, and from then on: cells that are too coarse for strict
+    /// ones miss the measurements, which then count as noise, beside which no source is left.
+    pub(super) fn loosen(&self, state: &mut State) {
+        (state.phase, state.since, state.tolerance, state.strictest) = (Phase::Explain, 0, LOOSE, LOOSE);
+        for head in self.judged(Phase::Explain) {
+            state.classes[self.roughness[head]].restart(self.priors[head].natural);
+        }
     }
 
     /// How the misfits of a group's terms count at a state.

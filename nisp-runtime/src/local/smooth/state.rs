@@ -42,6 +42,8 @@ pub(super) struct State {
     pub(super) classes: Vec<Class>,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,
+    /// What it falls to.
+    pub(super) strictest: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
     pub(super) convex: bool,
     pub(super) phase: Phase,
@@ -87,7 +89,7 @@ impl State {
             .with(&name("theta"), &self.theta)
             .with(&name("learned"), &self.learned)
             .with(&name("unmeasured"), &self.unmeasured.numbers())
-            .with(&name("tolerance"), &[self.tolerance])
+            .with(&name("tolerance"), &[self.tolerance, self.strictest])
             .with_counter(&name("convex"), u64::from(self.convex))
             .with_counter(&name("phase"), self.phase as u64)
             .with_counter(&name("iterations"), self.step)
@@ -112,7 +114,7 @@ impl State {
         self.theta = saved.sized(&name("theta"), self.theta.len())?;
         self.learned = saved.sized(&name("learned"), self.learned.len())?;
         self.unmeasured = Unmeasured::from_numbers(saved.vector(&name("unmeasured"))?);
-        [self.tolerance] = saved.scalars(&name("tolerance"))?;
+        [self.tolerance, self.strictest] = saved.scalars(&name("tolerance"))?;
         self.convex = saved.counter(&name("convex"))? == 1;
         let number = saved.counter(&name("phase"))?;
         let phase = Phase::ALL.into_iter().find(|&phase| phase as u64 == number);

@@ -49,6 +49,8 @@ pub(super) struct Found {
     pub(super) ahead: f64,
     /// How far it moved a source, over its size, at most.
     pub(super) moved: f64,
+    /// The loss before the step over what noise of inexact measurements leaves of it; nothing where all are exact.
+    pub(super) strained: f64,
     /// What the loss is less after the whole step; infinite if only a part of it was taken.
     pub(super) gain: f64,
     pub(super) factor: Factor,
@@ -149,7 +151,7 @@ impl Solver<'_> {
         let loss = self.loss(state);
         let rows = self.rows(state, &slopes)?;
         // While equations are loose, they need no source.
-        let is_loose = state.phase.has_equations() && state.tolerance > self.tolerance;
+        let is_loose = state.phase.has_equations() && state.tolerance > state.strictest;
         let counts = state.phase.has_equations() && !is_loose;
         let unmeasured = if counts { self.count_unmeasured(state, &rows) } else { Unmeasured::default() };
         self.add_all(state, &rows);
@@ -178,6 +180,10 @@ impl Solver<'_> {
         let change = step.iter().chain(&shared).fold(0.0, |most: f64, x| most.max((share * x).abs()));
         let ahead = shared.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let judged: Vec<usize> = self.judged(state.phase).into_iter().map(|head| self.roughness[head]).collect();
+        let measured = (0..tallies.len()).filter(|class| !self.roughness.contains(class));
+        let measured = measured.filter(|&class| state.classes[class].open.is_some()).map(|class| tallies[class].count);
+        let measured: f64 = measured.sum();
+        let strained = if measured > 0.0 { loss / (0.5 * measured) } else { 0.0 };
         let is_held = |class| match self.roughness.contains(&class) {
             true => is_loose || !judged.contains(&class),
             // A second start keeps to its noise until sources had a chance.
@@ -185,11 +191,11 @@ impl Solver<'_> {
         };
         renew(&mut next.classes, &tallies, is_held);
         if state.phase.has_equations() {
-            next.tolerance = tolerance::after(state.tolerance, share, self.tolerance);
+            next.tolerance = tolerance::after(state.tolerance, share, state.strictest);
         }
         (next.step, next.since) = (state.step + 1, state.since + 1);
         let moved = self.heads.moved(self.schema(), &state.theta, &next.theta);
-        Ok(Found { next, loss, change, ahead, moved, gain, factor })
+        Ok(Found { next, loss, change, ahead, moved, strained, gain, factor })
     }
 
     /// The normal equations about a state; returns the rows of all groups that take part, with the group's number.

@@ -31,9 +31,9 @@ impl Solver<'_> {
         self.set_sigmas(&loose);
         let Some([deviations, stiffer]) = self.lifted(&loose) else { return Vec::new() };
         let (schema, inputs) = (self.schema(), self.schema().coordinates.len());
-        let points = self.some_points();
-        let points: Vec<&[f64]> = points.chunks_exact(inputs).collect();
         let open = |(head, declared): (usize, &schema::Head)| {
+            let points = self.some_points(head);
+            let points: Vec<&[f64]> = points.chunks_exact(inputs).collect();
             let of = |draws: &Deviations| -> Vec<f64> {
                 let of = |point: &&[f64]| root_mean_square(self.heads.drawn(head, point, &draws.coefficients));
                 points.iter().map(of).collect()
@@ -60,8 +60,7 @@ impl Solver<'_> {
 
     /// Gives terms of what is at rest a size: their natural one, which is smaller where all fields vary little.
     fn set_sizes_at_rest(&mut self, state: &State) {
-        let points = self.some_points();
-        let share = |head: usize| self.variation(state, head, &points) / self.heads.scale[head];
+        let share = |head: usize| self.variation(state, head, &self.some_points(head)) / self.heads.scale[head];
         let share = (0..self.schema().heads.len()).map(share).fold(0.0, f64::max).min(1.0);
         let terms = self.schema().groups.iter().zip(&self.bound.sizes);
         for (own, (term, natural)) in self.sizes.iter_mut().zip(terms.map(|(group, natural)| (group.terms, natural))) {
