@@ -32,6 +32,19 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// A mass on a spring, moved by what nobody measures.
+    mod swing {
+        units: off;
+        coordinates: t;
+        fields: x;
+        sources: f;
+        on motion { balance: 1.5 * d(x, t, 2) + 0.8 * d(x, t) + 4 * x == f; }
+        on samples { observe x; }
+        scene loaded { }
+    }
+}
+
 /// When the valve opens and closes, and how much comes through it.
 const OPEN: [(f64, f64, f64); 2] = [(2.0, 3.5, 1.0), (6.0, 6.4, 0.6)];
 
@@ -115,4 +128,29 @@ fn a_measured_force_may_step_between_two_rows() {
         let rows = (0..ROWS).filter(|&row| (found.values[row] - force(times[row])).abs() > 2.0 * bars[row]);
         assert!(rows.count() < ROWS / 10);
     }
+}
+
+/// A load that switches to and fro, seen through what it moves. As far as the motion tells it may be smooth, but steps are in its bars: those
+/// of smooth loads had up to a fourteenth of it beyond four deviations.
+#[test]
+fn a_load_that_switches_is_within_its_bars() {
+    let load = |t: f64| if (1.9 * t + 0.4).sin() > 0.2 { 1.2 } else { -0.8 };
+    let times: Vec<f64> = (0..300).map(|row| 20.0 * f64::from(row) / 299.0).collect();
+    let states = simulated(&times, [0.0; 2], |t, [x, v]| [v, (load(t) - 0.8 * v - 4.0 * x) / 1.5]);
+    let mut off = Vec::new();
+    for seed in 1..6 {
+        let mut normal = normals(seed);
+        let measured = states.iter().map(|[x, _]| x + 0.025 * normal()).collect();
+        let mut problem = Problem::new(scene::<swing::loaded::Scene>());
+        problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+        problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
+        let mut solution = solve(&problem, Carrier::Splines);
+        assert_eq!(solution.status, Status::Converged, "{seed}: {:?}", solution.verdict);
+        let estimates = solution.evaluate_with_errors(&times);
+        let found = of(&estimates, "f");
+        let bars = found.deviations.as_ref().expect("a sound answer has error bars");
+        off.extend((0..times.len()).map(|row| (found.values[row] - load(times[row])).abs() / bars[row]));
+    }
+    let beyond = |most: f64| off.iter().filter(|off| **off > most).count() as f64 / off.len() as f64;
+    assert!(beyond(2.0) < 0.15 && beyond(4.0) < 0.01, "{} {}", beyond(2.0), beyond(4.0));
 }

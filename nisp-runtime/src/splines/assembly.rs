@@ -41,7 +41,7 @@ impl Solver<'_> {
     /// not finite is a fault.
     pub(super) fn rows(&mut self, state: &State, phase: Phase) -> Result<(Rows, f64), Fault> {
         let slopes = self.set_learned(&state.learned);
-        let shared = slopes.len() + state.means.len();
+        let shared = slopes.len() + state.lines.len();
         let mut rows = Rows::new(shared);
         let mut cost = 0.0;
         for (at, group) in self.groups.iter().enumerate() {
@@ -100,8 +100,8 @@ impl Solver<'_> {
         rows.sort();
         let deviation = if state.held { HELD } else { LEARNED };
         let learned = state.learned.iter().map(|parameter| (deviation.recip(), parameter / deviation));
-        // Before sources are sought nothing else speaks of their means.
-        let unsought = state.means.iter().filter(|_| phase == Phase::Regress).map(|mean| (1.0, *mean));
+        // Before sources are sought nothing else speaks of their lines.
+        let unsought = state.lines.iter().filter(|_| phase == Phase::Regress).map(|own| (1.0, *own));
         for (at, (factor, value)) in learned.chain(unsought).enumerate() {
             let mut shared = none.clone();
             shared[at] = factor;
@@ -130,41 +130,47 @@ impl Solver<'_> {
         self.believed(phase).into_iter().filter(|head| phase == Phase::Solve || observed.contains(head)).collect()
     }
 
-    /// Gives the rows that keep sources near their means and smooth, or fields smooth while only data are regressed, with their
+    /// Gives the rows that keep sources near their lines and smooth, or fields smooth while only data are regressed, with their
     /// classes; returns half the sum of their squares.
     pub(super) fn add_priors(&self, state: &State, phase: Phase, take: &mut dyn FnMut(Row<'_>, usize)) -> f64 {
-        let mut shared = vec![0.0; state.learned.len() + state.means.len()];
+        let mut shared = vec![0.0; state.learned.len() + state.lines.len()];
         let mut slopes = Vec::new();
         let mut cost = 0.0;
         for head in self.believed(phase) {
             let (prior, class) = (&self.priors[head], self.roughness[head]);
-            // A mean, and which of the shared unknowns it is.
-            let own = self.mean(head).map(|number| (state.means[number], state.learned.len() + number));
-            let mean = own.map_or(0.0, |(mean, _)| mean);
+            // A line, and which of the shared unknowns it is.
+            let own = if phase == Phase::Solve { self.line(head) } else { 0..0 };
+            let (line, at) = (&state.lines[own.clone()], state.learned.len() + own.start);
+            // What of a row is the line's, and its slopes by it.
+            let beside = |first: usize, factors: &[f64], slopes: &mut [f64]| {
+                let along = prior.straight.along(first, factors);
+                slopes[at..].iter_mut().zip(along).take(line.len()).for_each(|(slope, along)| *slope = -along);
+                line.iter().zip(along).map(|(own, along)| own * along).sum::<f64>()
+            };
             for (first, factors) in prior.smooth(state.classes[class].size) {
                 let factors = &factors[..prior.width()];
                 let (number, value) = self.heads.row_of((head, first), factors, &state.theta, &mut slopes);
-                let all: f64 = factors.iter().sum();
-                let value = value - all * mean;
+                let value = value - beside(first, factors, &mut shared);
                 cost += 0.5 * value * value;
-                own.iter().for_each(|&(_, at)| shared[at] = -all);
                 take(Row { first: number, slopes: &slopes, shared: &shared, value }, class);
             }
             let Some(class) = self.amplitude[head] else { continue };
             let amplitude = state.classes[class].size;
-            for (&number, factor) in self.heads.numbers(head, 0).iter().zip(prior.small(amplitude)) {
-                let value = factor * (state.theta[number] - mean);
+            let numbers = self.heads.numbers(head, 0);
+            for (first, (&number, factor)) in numbers.iter().zip(prior.small(amplitude)).enumerate() {
+                let value = factor * state.theta[number] - beside(first, &[factor], &mut shared);
                 cost += 0.5 * value * value;
-                own.iter().for_each(|&(_, at)| shared[at] = -factor);
                 take(Row { first: number, slopes: &[factor], shared: &shared, value }, class);
             }
-            let Some((_, at)) = own else { continue };
-            let factor = prior.mean(state.classes[self.roughness[head]].size, amplitude).recip();
-            let value = factor * mean;
-            cost += 0.5 * value * value;
-            shared[at] = factor;
-            take(Row { first: 0, slopes: &[], shared: &shared, value }, state.classes.len());
-            shared[at] = 0.0;
+            let factor = self.line_deviation(head, (state.classes[self.roughness[head]].size, amplitude)).recip();
+            shared.fill(0.0);
+            for (number, own) in line.iter().enumerate() {
+                let value = factor * own;
+                cost += 0.5 * value * value;
+                shared[at + number] = factor;
+                take(Row { first: 0, slopes: &[], shared: &shared, value }, state.classes.len());
+                shared[at + number] = 0.0;
+            }
         }
         cost
     }

@@ -9,8 +9,8 @@ use crate::weighed::{Class, restore_classes, save_classes};
 pub(super) struct State {
     pub(super) theta: Vec<f64>,
     pub(super) learned: Vec<f64>,
-    /// By source, its mean.
-    pub(super) means: Vec<f64>,
+    /// By source, the line that it keeps near to.
+    pub(super) lines: Vec<f64>,
     pub(super) classes: Vec<Class>,
     /// By source and function, how rough the source is there beside its mean; empty where it is as rough all along.
     pub(super) uneven: Vec<f64>,
@@ -41,7 +41,7 @@ impl State {
         save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)
             .with(&format!("{prefix}learned"), &self.learned)
-            .with(&format!("{prefix}means"), &self.means)
+            .with(&format!("{prefix}lines"), &self.lines)
             .with(&format!("{prefix}uneven"), &self.uneven)
             .with(&format!("{prefix}doubt"), &[self.doubt])
             .with(&format!("{prefix}tolerance"), &[self.tolerance])
@@ -56,7 +56,7 @@ impl State {
         restore_classes(&mut self.classes, saved, prefix)?;
         self.theta = saved.sized(&format!("{prefix}theta"), self.theta.len())?;
         self.learned = saved.sized(&format!("{prefix}learned"), self.learned.len())?;
-        self.means = saved.sized(&format!("{prefix}means"), self.means.len())?;
+        self.lines = saved.sized(&format!("{prefix}lines"), self.lines.len())?;
         self.uneven = saved.vector(&format!("{prefix}uneven"))?.to_vec();
         [self.doubt] = saved.scalars(&format!("{prefix}doubt"))?;
         [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;

@@ -30,6 +30,7 @@ mod rows;
 mod solver;
 mod starts;
 mod step;
+mod straight;
 mod told;
 mod triangle;
 mod uneven;

@@ -1,17 +1,19 @@
 //! What is believed of a source before any measurement: how large it is, and how smooth along which time.
 //!
-//! A source is a mean and a Gaussian process about it: of what is left beside the mean,
+//! A source is a straight line and a Gaussian process about it: of what is left beside the line,
 //! `|g|^2 / amplitude^2 + |d^order g / ds^order|^2 / roughness^2` is small, in the mean over a time `s`. Either `s` is the record's own
 //! time and `g` what is left; or `s` passes faster at the record's start, and `g = f dt/ds` is what the rest `f` adds up to in it. What
 //! is set off with the record answers at first in a layer that is thin beside the rest, then slower and slower, and dies away as it
 //! does so.
 //!
-//! The mean is an unknown of its own. Were sources small about zero, they would be drawn to it wherever the data leave their level open,
-//! as beside a field that nothing measures and that may begin anywhere.
+//! The line is an unknown of its own. Were sources small about zero, they would be drawn to it wherever the data leave their level
+//! open, as beside a field that nothing measures and that may begin anywhere. Were they small about a mean, they would be drawn to where
+//! they drift least; but most sources drift over a record by more than their faster waves let expect.
 
 use std::f64::consts::PI;
 
 use super::basis::{Basis, Line};
+use super::straight::{self, Straight};
 use super::triangle::{Row, Triangle};
 use crate::schema;
 
@@ -80,6 +82,8 @@ pub(super) struct Prior {
     evened: Vec<f64>,
     /// By function, how rough the head is there beside its mean.
     uneven: Vec<f64>,
+    /// The line that the head keeps near to.
+    pub(super) straight: Straight,
 }
 
 /// What the rows of a prior are worth.
@@ -97,13 +101,14 @@ impl Prior {
         let places = basis.breakpoints();
         let (first, length) = (places[0], places[places.len() - 1] - places[0]);
         let ones = vec![1.0; basis.len()];
+        let (order, straight) = (kind.order, Straight::new(basis));
         match kind.course {
-            Course::Steady => Self { order: kind.order, along: basis.clone(), evened: ones.clone(), uneven: ones },
+            Course::Steady => Self { order, along: basis.clone(), evened: ones.clone(), uneven: ones, straight },
             Course::Fading => {
                 let stretch = |at: &f64| first + length * (LAYER * (at - first) / length).ln_1p() / LAYER.ln_1p();
                 let along = Basis::new(basis.degree, &places.iter().map(stretch).collect::<Vec<f64>>());
                 let even = |function: usize| pace((basis.centre(function) - first) / length).recip();
-                Self { order: kind.order, along, evened: (0..basis.len()).map(even).collect(), uneven: ones }
+                Self { order, along, evened: (0..basis.len()).map(even).collect(), uneven: ones, straight }
             }
         }
     }
@@ -138,13 +143,9 @@ impl Prior {
         self.along.differences(0).map(move |(at, _, width)| self.evened[at] * width.sqrt() / amplitude)
     }
 
-    /// Standard deviation of the head's mean before any measurement. The mean is believed to be about as far from zero as the head is
-    /// from its mean.
-    pub(super) fn mean(&self, roughness: f64, amplitude: f64) -> f64 {
-        let order = self.order as f64;
-        // The integral of the spectrum `1 / (amplitude^-2 + frequency^(2 order) roughness^-2)` is the variance at a place.
-        let frequency = (roughness / amplitude).powf(order.recip());
-        amplitude * (frequency / (2.0 * order * (PI / (2.0 * order)).sin())).sqrt()
+    /// Standard deviation, at a place, of what is left of the head beside its line.
+    pub(super) fn beside(&self, roughness: f64, amplitude: f64) -> f64 {
+        straight::beside(self.order, roughness, amplitude)
     }
 
     /// All rows.
@@ -256,23 +257,6 @@ mod tests {
             assert!((found / sum - 1.0).abs() < 1e-5, "order {order}: {found} {sum}");
             // A source without long waves has no more in short ones.
             assert!(prior.unresolved(20, 1e9, 0.1) <= 0.01 / (PI / lowest) + 1e-12);
-        }
-    }
-
-    /// The spectrum summed up over all frequencies (trapezoids in their logarithms), to both sides of zero.
-    #[test]
-    fn a_mean_is_as_far_from_zero_as_the_head_is_from_its_mean() {
-        let places: Vec<f64> = (0..=40).map(|at| 0.25 * f64::from(at)).collect();
-        for (order, roughness, amplitude) in [(1, 0.7_f64, 0.4_f64), (2, 0.3, 2.0), (3, 5.0, 0.9)] {
-            let prior = Prior::new(&Basis::new(5, &places), Smoothness { order, course: Course::Steady });
-            let density = |logarithm: f64| {
-                let frequency = logarithm.exp();
-                let inverse = amplitude.powi(-2) + frequency.powi(2 * order as i32) * roughness.powi(-2);
-                frequency / (PI * inverse)
-            };
-            let sum: f64 = (-30_000..30_000).map(|i| 1e-3 * density(1e-3 * f64::from(i))).sum();
-            let found = prior.mean(roughness, amplitude);
-            assert!((found.powi(2) / sum - 1.0).abs() < 1e-9, "order {order}: {found} {sum}");
         }
     }
 

@@ -1,10 +1,13 @@
 //! A problem on its splines: what is set up before any step, and what is read of it after the last.
 
+use std::ops::Range;
+
 use super::cells::{self, Moved};
 use super::group::Group;
 use super::heads::Heads;
 use super::iterate::{Phase, State};
 use super::prior::{Course, Prior, Smoothness};
+use super::straight::Belief;
 use super::triangle::Triangle;
 use crate::facts::Facts;
 use crate::kernel::GroupKernel;
@@ -44,11 +47,16 @@ pub(super) struct Solver<'a> {
     /// By group and row, how far that puts equations off.
     pub(super) blurs: Vec<Vec<f64>>,
     pub(super) scalars: Vec<f64>,
-    /// How many sources have a mean: all of them, or none.
-    pub(super) means: usize,
+    /// What is believed of the lines that sources keep near to.
+    pub(super) belief: Belief,
     /// Length of the domain.
     pub(super) length: f64,
     pub(super) triangle: Triangle,
+}
+
+/// What is believed of sources' lines beside what is learned.
+fn believed(bound: &Bound) -> Belief {
+    if bound.learned.is_empty() { Belief::DRIFT } else { Belief::LEVEL }
 }
 
 fn sources(schema: &crate::schema::Scene) -> usize {
@@ -81,8 +89,9 @@ impl<'a> Solver<'a> {
         let priors = heads.bases.iter().enumerate().map(|(head, basis)| Prior::new(basis, regressed(head))).collect();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let blurs = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
-        let sources = sources(schema);
-        let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len() + sources);
+        let belief = believed(bound);
+        let lines = belief.numbers * sources(schema);
+        let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len() + lines);
         let scalars = bound.scalars.clone();
         let length = breakpoints[breakpoints.len() - 1] - breakpoints[0];
         Self {
@@ -99,16 +108,16 @@ impl<'a> Solver<'a> {
             noise_of_columns: (0..bound.columns.len()).map(|group| of_given(bound, group)).collect(),
             blurs,
             scalars,
-            means: sources,
+            belief,
             length,
             triangle,
         }
     }
 
-    /// The same where sources are small about zero: they have no mean.
-    pub(super) fn without_means(self) -> Self {
+    /// The same where sources are small about zero: they keep near to no line.
+    pub(super) fn without_lines(self) -> Self {
         let triangle = Triangle::new(self.heads.len(), self.heads.band, self.bound.learned.len());
-        Self { means: 0, triangle, ..self }
+        Self { belief: Belief::NONE, triangle, ..self }
     }
 
     /// Bytes that splines over these cells take, about: the triangle and its inverse, a row for every measurement and equation
@@ -116,7 +125,8 @@ impl<'a> Solver<'a> {
     pub(super) fn bytes(bound: &Bound, breakpoints: &[f64]) -> f64 {
         let schema = bound.problem.scene().schema;
         let degrees = cells::degrees(schema).unwrap_or_default();
-        let (cells, shared) = ((breakpoints.len() - 1) as f64, (bound.learned.len() + sources(schema)) as f64);
+        let (cells, shared) =
+            ((breakpoints.len() - 1) as f64, (bound.learned.len() + believed(bound).numbers * sources(schema)) as f64);
         // Of all heads on a cell: as many as rows and the band are wide.
         let functions = degrees.iter().map(|degree| (degree + 1) as f64).sum::<f64>();
         let triangles = 3.0 * cells * degrees.len() as f64 * (functions + shared);
@@ -218,13 +228,18 @@ impl<'a> Solver<'a> {
 
     /// A triangle of no rows.
     pub(super) fn empty(&self, state: &State) -> Triangle {
-        Triangle::new(self.heads.len(), self.heads.band, state.learned.len() + state.means.len())
+        Triangle::new(self.heads.len(), self.heads.band, state.learned.len() + state.lines.len())
     }
 
-    /// The number of a head's mean, if it has one.
-    pub(super) fn mean(&self, head: usize) -> Option<usize> {
-        let before = || self.amplitude[..head].iter().flatten().count();
-        self.amplitude[head].filter(|_| self.means > 0).map(|_| before())
+    /// Numbers of a source's line, among those of all sources.
+    pub(super) fn line(&self, head: usize) -> Range<usize> {
+        let first = self.belief.numbers * self.amplitude[..head].iter().flatten().count();
+        first..first + self.belief.numbers
+    }
+
+    /// Standard deviation of each of them before any measurement, for a source of such a roughness and amplitude.
+    pub(super) fn line_deviation(&self, head: usize, (roughness, amplitude): (f64, f64)) -> f64 {
+        self.belief.far * self.priors[head].beside(roughness, amplitude)
     }
 
     /// How rough and how large a source is believed to be; nothing of fields.

@@ -36,7 +36,7 @@ impl Solver<'_> {
         let mut state = State {
             theta,
             learned,
-            means: vec![0.0; self.means],
+            lines: vec![0.0; self.belief.numbers * self.amplitude.iter().flatten().count()],
             classes,
             uneven: Vec::new(),
             doubt: 0.0,

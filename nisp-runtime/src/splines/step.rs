@@ -84,7 +84,7 @@ impl Solver<'_> {
         let sizes = self.log_sizes(state, &tallies, |_| true);
         let evidence = -0.5 * squares - sizes + worth + lacking - self.triangle.log_determinant();
         let (step, shared) = self.within_bounds(state, &rows, (step, shared));
-        let (scalars, means) = shared.split_at(state.learned.len());
+        let (scalars, lines) = shared.split_at(state.learned.len());
         let mut share = scalars.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(1e-300)));
         let mut next = state.clone();
         let slopes = pull.map_or_else(Vec::new, |pull| pull.slopes);
@@ -92,7 +92,7 @@ impl Solver<'_> {
         for halvings in 0..MOST_HALVINGS {
             next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
             next.learned = state.learned.iter().zip(scalars).map(|(x, s)| x + share * s).collect();
-            next.means = state.means.iter().zip(means).map(|(x, s)| x + share * s).collect();
+            next.lines = state.lines.iter().zip(lines).map(|(x, s)| x + share * s).collect();
             let after = self.loss(&next, phase) - share * drawn;
             let is_less = after <= before * (1.0 + 1e-9) + 1e-12;
             if after.is_finite() && (is_less || halvings + 1 >= HALVINGS) {
@@ -101,7 +101,7 @@ impl Solver<'_> {
             share *= 0.5;
             // Where no step has a value, none is taken.
             (next.theta, next.learned) = (state.theta.clone(), state.learned.clone());
-            next.means.clone_from(&state.means);
+            next.lines.clone_from(&state.lines);
         }
         let ahead = scalars.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
         let change = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
@@ -170,7 +170,9 @@ impl Solver<'_> {
     /// The variance along a row of a source that is believed before any measurement.
     pub(super) fn beforehand(&self, along: &Along, state: &State) -> f64 {
         let sizes = self.source_sizes(state, along.head);
-        sizes.map_or(f64::INFINITY, |sizes| along.beforehand(&self.heads, &self.priors[along.head], sizes))
+        sizes.map_or(f64::INFINITY, |sizes| {
+            along.beforehand(&self.heads, (&self.priors[along.head], self.belief), sizes)
+        })
     }
 
     /// What priors use up, and what they are worth; returns the logarithm of the determinant of their rows.
@@ -183,8 +185,8 @@ impl Solver<'_> {
             let (rough, Some(amplitude)) = (self.roughness[head], self.amplitude[head]) else { continue };
             let (roughness, own) = (state.classes[rough].size, state.classes[amplitude].size);
             let worth = self.priors[head].worth(roughness, own);
-            let mean = self.mean(head).map_or(0.0, |_| self.priors[head].mean(roughness, own).ln());
-            log_determinant += worth.log_determinant - mean;
+            let line = self.belief.numbers as f64 * self.line_deviation(head, (roughness, own)).ln();
+            log_determinant += worth.log_determinant - line;
             // Rounding where waves are much longer than cells.
             let small = worth.amplitude.clamp(0.0, tallies[amplitude].count);
             tallies[rough].count = tallies[amplitude].count - small;
@@ -196,7 +198,7 @@ impl Solver<'_> {
             // Nothing is asked of the others.
             Phase::Regress => judged.iter().map(|&head| self.heads.bases[head].len()).sum(),
         };
-        let unknowns = (functions + self.bound.learned.len() + state.means.len()) as f64;
+        let unknowns = (functions + self.bound.learned.len() + state.lines.len()) as f64;
         let is_rough = |class: usize| self.roughness.contains(&class);
         let is_equation = self.equations(state);
         tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);

@@ -3,6 +3,7 @@
 use super::heads::Heads;
 use super::kept::KeptSplines;
 use super::prior::{Course, Prior};
+use super::straight::Belief;
 use super::triangle::Triangle;
 use crate::facts::Told;
 use crate::schema::Scene;
@@ -49,11 +50,16 @@ impl Along {
     }
 
     /// The variance along this row that a source of such sizes has beforehand.
-    pub(super) fn beforehand(&self, heads: &Heads, prior: &Prior, (roughness, amplitude): (f64, f64)) -> f64 {
+    pub(super) fn beforehand(
+        &self,
+        heads: &Heads,
+        (prior, belief): (&Prior, Belief),
+        (roughness, amplitude): (f64, f64),
+    ) -> f64 {
         let slopes: Vec<f64> = heads.numbers(self.head, 0).iter().map(|&number| self.slopes[number]).collect();
         let beside: f64 = prior.triangle(roughness, amplitude).root(0, &slopes, &[]).iter().map(|x| x * x).sum();
-        let all: f64 = slopes.iter().sum();
-        beside + (all * prior.mean(roughness, amplitude)).powi(2)
+        let line: f64 = prior.straight.along(0, &slopes).iter().take(belief.numbers).map(|x| x * x).sum();
+        beside + line * (belief.far * prior.beside(roughness, amplitude)).powi(2)
     }
 
     /// How far a source with other coefficients goes along this one beyond it.

@@ -47,7 +47,7 @@ impl Stretch {
         let noise = noise::estimate(bound);
         let breakpoints = cells::breakpoints(bound, &noise);
         // A window has no unknowns that all of its rows share.
-        let mut solver = Solver::over(bound, &breakpoints).without_means();
+        let mut solver = Solver::over(bound, &breakpoints).without_lines();
         let kinds = from.map_or_else(|| kinds(solver.has_sources(), false, false), |from| vec![from.kind]);
         let mut place = Place::first(solver.first(&noise), kinds);
         if let Some(from) = from {
