@@ -61,8 +61,9 @@ impl Series {
             request.columns.splice(0..0, own);
         }
         let mut prepared = self.bind(entry, &request, &table, truth.as_ref())?;
-        prepared.begin = clock.begin;
-        prepared.warnings.extend(clock.said(prepared.problem.scene().schema, &table, &request));
+        let said = clock.said(prepared.problem.scene().schema, &table, &request);
+        prepared.begin = clock.begin.filter(|_| said.is_some());
+        prepared.warnings.extend(said);
         Ok(prepared)
     }
 

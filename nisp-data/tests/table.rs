@@ -164,13 +164,15 @@ fn dates_become_seconds_once_their_beginning_is_known() {
     assert_eq!(seconds("02.01.2026 03:04", "3.1.2026 3:05:30"), [0.0, 86_490.0]);
     assert_eq!(seconds("2024/02/28", "2024-03-01"), [0.0, 2.0 * 86_400.0]);
     assert_eq!(seconds("2026-01-02T03:04:05+01:00", "2026-01-02T00:04:05-0230"), [0.0, 1800.0]);
-    // One of the cells tells the order of day and month, or all are of one day.
+    // One of the cells tells the order of day and month.
     assert_eq!(seconds("12/31/2025 11:59:50 PM", "1/1/2026 12:00:10 AM"), [0.0, 20.0]);
     assert_eq!(seconds("31/12/2025 12:30", "01/01/2026 00:30"), [0.0, 43_200.0]);
-    assert_eq!(seconds("03/04/2026 11:59 AM", "03/04/2026 12:01 pm"), [0.0, 120.0]);
+    assert_eq!(seconds("3/14/2026 11:59 AM", "3/14/2026 12:01 pm"), [0.0, 120.0]);
     assert_eq!(seconds("9:59:59 AM", "1:00 PM"), [0.0, 3.0 * 3600.0 + 1.0]);
-    let either = parse("t,q\n01/02/2026,1\n02/02/2026,2\n").quantity("t", "s").unwrap_err().to_string();
-    assert!(either.contains("the day of the month first, or the month; write them like `2026-01-31`"), "{either}");
+    for rows in ["01/02/2026,1\n02/02/2026,2", "03/04/2026 10:00,1\n03/04/2026 10:01,2"] {
+        let either = parse(&format!("t,q\n{rows}\n")).quantity("t", "s").unwrap_err().to_string();
+        assert!(either.contains("the day of the month first, or the month; write them like `2026-01-31`"), "{either}");
+    }
     for other in [
         "13:00 PM",
         "02/01/2026 03:04",

@@ -168,8 +168,8 @@ fn a_linear_record_is_smoothed_as_it_is_solved() {
         assert!(found.lag >= 4.0 - 1e-9 || at >= 360, "row {at} waited for {}", found.lag);
         for (head, (value, deviation)) in found.heads.iter().enumerate() {
             let (exact, bar) = (whole[head].values[at], whole[head].deviations.as_ref().unwrap()[at]);
-            // What is known of noise and smoothness is of the first rows, and bars are those of all kinds of smoothness that may be
-            // right. Half of the rows rule out fewer rough ones.
+            // A stream knows noise and smoothness from its first rows, has one kind of smoothness, and its sources keep near to zero. Bars
+            // of a whole record are of all kinds that may be right, and its sources keep near to a line.
             assert!((value - exact).abs() < 0.5 * bar, "row {at}: {value} beside {exact} +- {bar}");
             assert!((0.7..1.6).contains(&(deviation / bar)), "row {at}: {deviation} beside {bar}");
         }

@@ -98,7 +98,9 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
         folder,
     };
     let mut found = bind(scene, &tables, request)?;
-    found.warnings.extend(read.iter().find_map(|(_, table)| clock.said(schema, table, request)));
+    let said = read.iter().find_map(|(_, table)| clock.said(schema, table, request));
+    let begin = clock.begin.filter(|_| said.is_some());
+    found.warnings.extend(said);
     let truth = request.truth.as_ref().map(Table::read).transpose()?;
     let mut truth = truth.map(|table| gauges(table, schema, request)).transpose()?;
     truth.iter_mut().for_each(|table| clock.count(table));
@@ -118,7 +120,7 @@ pub(crate) fn prepare(entry: &Entry, folder: &Path, request: &Request) -> Result
         measured: found.measured,
         truth,
         source: if files.is_empty() { "no data".into() } else { files.join(", ") },
-        begin: clock.begin,
+        begin,
         warnings: found.warnings,
         assumed: assumed(schema, request),
         problem: found.problem,

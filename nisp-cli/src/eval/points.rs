@@ -22,12 +22,14 @@ pub(super) fn wanted(
         let mut table = Table::read_places(path).map_err(|error| error.to_string())?;
         let header =
             |name: &str| options.column.iter().rev().find(|(own, _)| own == name).map(|(_, header)| header.as_str());
-        begin.into_iter().for_each(|begin| table.count_from(begin));
+        if let Some(begin) = begin {
+            table.count_from(begin);
+        }
         let is_dated = |name: &str| table.is_dated(header(name).unwrap_or(name));
         if let Some(axis) = coordinates.iter().find(|axis| begin.is_none() && is_dated(axis.name)) {
             let (path, name, unit) = (path.display(), axis.name, axis.unit.text);
             return Err(format!(
-                "{path}: `{name}` is given by dates, and the answer was found from data without any: write {unit} as in its data"
+                "{path}: `{name}` is given by dates, and the answer does not know from when it was counted: write {unit} as in its data"
             ));
         }
         let axis = |name: &str, unit: &str| match header(name) {

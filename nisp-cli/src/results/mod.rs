@@ -12,7 +12,7 @@ use std::path::Path;
 use crate::interrupt;
 use nisp::schema::Scene;
 use nisp::solve::driver::Status;
-use nisp::{Estimate, SavedAnswer, Solution};
+use nisp::{Estimate, Solution};
 use nisp_data::export::Mesh;
 use nisp_data::out_dir::Content;
 use nisp_data::{DataError, Table};
@@ -56,7 +56,10 @@ impl Answer {
     fn keep(&mut self, prepared: &Prepared, solution: &mut Solution) {
         match solution.saved() {
             Ok(saved) => {
-                let saved = prepared.begin.into_iter().fold(saved, SavedAnswer::counted_from);
+                let saved = match prepared.begin {
+                    Some(begin) => saved.counted_from(begin),
+                    None => saved,
+                };
                 self.files.push((SAVED, saved.to_bytes()));
             }
             Err(error) => self.warnings.push(format!("{SAVED} is not written: {error}")),

@@ -44,16 +44,15 @@ impl Column {
         }
     }
 
-    /// Decides whether days parted by slashes have the month first, once all cells are seen: where one order makes them all dates, or
-    /// where all are as long after the first in both.
+    /// Decides whether days parted by slashes have the month first, once all cells are seen: where one order alone makes them all dates.
+    /// Tables of one problem may not be read in different orders, so that days that may be either are refused.
     pub(super) fn choose_days(&mut self) {
         let month_first = std::mem::take(&mut self.month_first);
         let is_whole = |dates: &[SystemTime]| !dates.is_empty() && dates.len() == self.values.len();
         if !is_whole(&month_first) || month_first == self.dates {
             return;
         }
-        let after = |dates: &[SystemTime]| dates.iter().map(|date| seconds(dates[0], *date)).collect::<Vec<f64>>();
-        if is_whole(&self.dates) && after(&self.dates) != after(&month_first) {
+        if is_whole(&self.dates) {
             let what =
                 "its days may have the day of the month first, or the month; write them like `2026-01-31`".into();
             let line = self.fault.as_ref().map_or(0, |fault| fault.line);

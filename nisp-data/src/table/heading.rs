@@ -1,5 +1,7 @@
 //! What stands above the rows of a table: titles, the header, and a line of units.
 
+use std::collections::BTreeMap;
+
 use csv::StringRecord;
 use nisp_units::is_unit;
 
@@ -27,8 +29,11 @@ impl Heading {
     pub(super) fn of(text: &str, mark: u8) -> Self {
         let records = reader(mark).from_reader(text.as_bytes()).into_records();
         let lines: Vec<StringRecord> = records.map_while(Result::ok).take(MOST).collect();
-        let widths = || lines.iter().filter(|line| is_row(line)).map(StringRecord::len);
-        let Some(width) = widths().max_by_key(|width| (widths().filter(|other| other == width).count(), *width)) else {
+        let mut counts = BTreeMap::new();
+        for line in lines.iter().filter(|line| is_row(line)) {
+            *counts.entry(line.len()).or_insert(0) += 1;
+        }
+        let Some((width, _)) = counts.into_iter().max_by_key(|(width, count)| (*count, *width)) else {
             return Self::default();
         };
         let row = (1..lines.len()).find(|at| lines[*at].len() == width && is_row(&lines[*at]));
@@ -37,12 +42,15 @@ impl Heading {
         if row > 1 && are_units(&lines[row - 2], &lines[row - 1]) {
             return Self { titles: row - 2, has_units: true };
         }
-        // Titles may have as many words, and rows that are mostly words may stand between: the last line with units in brackets is the header.
+        // Titles may have as many words, and rows that are mostly words may stand between: the last line that says units is the header.
         let is_header = |at: &usize| {
             let mut cells = lines[*at].iter().filter(|cell| !cell.is_empty()).peekable();
             lines[*at].len() == width && cells.peek().is_some() && cells.all(is_word)
         };
-        let says_units = |at: &usize| lines[*at].iter().any(|cell| claimed(cell).is_some());
+        let says_units = |at: &usize| {
+            let own = lines[*at].iter().filter(|cell| claimed(cell).is_some_and(is_unit));
+            2 * own.count() > width
+        };
         let candidates = || (0..row).rev().filter(is_header);
         let header = candidates().find(says_units).or_else(|| candidates().next());
         Self { titles: header.unwrap_or(row - 1), has_units: false }

@@ -20,6 +20,8 @@ pub(super) struct Fill(Arc<SymbolicCholesky<usize>>);
 pub(super) struct Cholesky {
     fill: Fill,
     lower: Vec<f64>,
+    /// What the diagonal of `H` was raised by, as a share of itself.
+    pub(super) lift: f64,
 }
 
 impl Fill {
@@ -43,7 +45,7 @@ impl Fill {
         symbolic
             .factorize_numeric_llt(&mut lower, matrix, Side::Lower, as_it_is, both, stack, Default::default())
             .ok()?;
-        Some(Cholesky { fill: self.clone(), lower })
+        Some(Cholesky { fill: self.clone(), lower, lift: 0.0 })
     }
 }
 
@@ -58,8 +60,11 @@ impl Cholesky {
         Some(solutions)
     }
 
-    /// Logarithm of the determinant of `H`.
-    pub(super) fn log_determinant(&self) -> f64 {
+    /// Logarithm of the determinant of `H`; nothing where rounding has made it another one.
+    pub(super) fn log_determinant(&self) -> Option<f64> {
+        if self.lift > 0.0 {
+            return None;
+        }
         let logarithms: f64 = match self.fill.0.raw() {
             SymbolicCholeskyRaw::Simplicial(own) => (0..own.ncols()).map(|at| self.lower[own.col_ptr()[at]].ln()).sum(),
             SymbolicCholeskyRaw::Supernodal(own) => {
@@ -71,6 +76,6 @@ impl Cholesky {
                 (0..own.n_supernodes()).map(block).sum()
             }
         };
-        2.0 * logarithms
+        Some(2.0 * logarithms)
     }
 }

@@ -4,7 +4,6 @@ use super::normal::factor::Factor;
 use super::phase::{CONVEX_STEPS, Phase, WARM_STEPS};
 use super::place::{Place, State};
 use super::solver::{LEAST_DAMPING, Solver};
-use super::surface::Surface;
 use super::{LocalError, Stage};
 use crate::carrier::Progress;
 use crate::facts::{Known, Score};
@@ -21,8 +20,6 @@ pub(super) const BARS: f64 = 2.0;
 pub(super) const ASKED: f64 = 1.0;
 /// Largest change of a learned scalar's parameter in one step.
 const BOLDEST: f64 = 0.5;
-/// Root mean square of the rows, in tolerances, above which there is no solution to speak of.
-const MOST_OFF: f64 = 5.0;
 /// Relative change of the coefficients at which the answer counts as converged.
 const CONVERGED: f64 = 2e-3;
 /// Change of the logarithm of the probability, by rows, at which a lattice's answer counts as converged too if learned scalars
@@ -57,9 +54,10 @@ pub(super) struct End {
     pub(super) moved: f64,
     /// What the last step left open; empty if nothing.
     pub(super) warnings: Vec<Warning>,
-    /// The last step's factorised matrix, and the state that it is about.
+    /// The last step's factorised matrix.
     pub(super) factor: Option<Factor>,
-    pub(super) linearised: State,
+    /// The state that it is about, where it is of all rows and priors, and hardly damped.
+    pub(super) linearised: Option<State>,
     /// Seconds of the longest step.
     pub(super) longest: f64,
     /// The state before the last step, which whoever goes on from it repeats.
@@ -97,6 +95,7 @@ impl Solver {
         let (mut rows, mut moved) = (0, f64::INFINITY);
         let mut status = Status::Budget;
         let mut factor = None;
+        let mut is_plain = false;
         let mut faults = Vec::new();
         let mut longest = 0.0f64;
         while factor.is_none() || stage.before + iteration < stage.limits.iterations {
@@ -114,6 +113,7 @@ impl Solver {
                 // The step that led here was too long: it is taken back, and a part of it is tried.
                 Err(LocalError::Fault(fault)) if factor.is_some() => {
                     faults.push(fault);
+                    is_plain = false;
                     self.set_feet(good.feet.clone());
                     if faults.len() >= FAULTS_IN_A_ROW as usize {
                         (state, status) = (good.state.clone(), Status::NotConverged);
@@ -130,6 +130,7 @@ impl Solver {
             let before = std::mem::replace(&mut state, next);
             (loss, rows) = (found.loss, found.rows);
             moved = self.heads.moved(self.bound.problem.scene().schema, &before.theta, &state.theta);
+            is_plain = found.damping <= LEAST_DAMPING && Phase::of(iteration + skipped, coarse) == Phase::Concave;
             factor = Some(found.factor);
             iteration += 1;
             let elapsed_s = stage.start.elapsed().as_secs_f64();
@@ -159,7 +160,7 @@ impl Solver {
         let fault = faults.pop().filter(|_| status == Status::NotConverged);
         warnings.extend(fault.map(|fault| Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) }));
         let checkpoint = good.save(stage.before, stage.lattice);
-        let linearised = State { noise: state.noise, ..good.state };
+        let linearised = is_plain.then(|| State { noise: state.noise, ..good.state });
         Ok(End {
             state,
             status,
@@ -225,7 +226,7 @@ impl Solver {
             }
             wanted *= STRONGER;
         };
-        Ok((next, Found { loss, gain: before - after, rows, factor, scores }))
+        Ok((next, Found { loss, gain: before - after, rows, factor, damping, scores }))
     }
 
     /// The state after the longest share of a step that leaves no more than `most` as the sum of squares, or after the shortest;
@@ -249,29 +250,6 @@ impl Solver {
         (next, after)
     }
 
-    /// What speaks against an answer: equations that do not hold, or a surface that is nowhere near the cloud.
-    pub(super) fn doubts(&self, loss: f64, rows: usize, steps: u64) -> Vec<Warning> {
-        let mut doubts = Vec::new();
-        if steps < CONVEX_STEPS {
-            doubts.push("it ended before the equations were solved: give more --budget or --iterations".to_string());
-        }
-        let off = (2.0 * loss / rows.max(1) as f64).sqrt();
-        if off > MOST_OFF {
-            doubts.push(format!(
-                "rows are off by {off:.0} times their tolerance: the steps did not reach a solution of the equations; give \
-                 more --budget, and check the parameters"
-            ));
-        }
-        let all: usize = self.surfaces.iter().map(Surface::len).sum();
-        let lost = all - self.surfaces.iter().map(|surface| surface.misfits().count()).sum::<usize>();
-        if 2 * lost > all {
-            doubts.push(format!(
-                "{lost} of the cloud's {all} points are not near the surface: is it a cloud of this body, in its frame?"
-            ));
-        }
-        doubts.into_iter().map(|message| Warning { kind: WarningKind::Stagnation, message }).collect()
-    }
-
     /// Ranges of the coefficients of fields.
     fn fields(&self) -> impl Iterator<Item = std::ops::Range<usize>> + '_ {
         let heads = self.bound.problem.scene().schema.heads.iter().enumerate().filter(|(_, head)| !head.source);
@@ -291,6 +269,8 @@ pub(super) struct Found {
     gain: f64,
     pub(super) rows: usize,
     pub(super) factor: Factor,
+    /// Stiffness against the step.
+    damping: f64,
     pub(super) scores: Vec<Option<Score>>,
 }
 

@@ -14,6 +14,7 @@ mod bspline;
 mod cholesky;
 mod counting;
 mod course;
+mod doubts;
 mod draws;
 mod evaluated;
 mod group;
@@ -169,7 +170,7 @@ pub(crate) fn solve(
     let solved = matches!(end.status, Status::Converged | Status::Budget);
     let has_time_for = |steps: f64| end.status == Status::Converged || stage.has_time(steps * end.longest);
     // What an answer rests on matters more than its error bars.
-    let scores = if solved && has_time_for(course::ASKED) { solver.scores(&end) } else { Vec::new() };
+    let scores = if solved && has_time_for(course::ASKED) { solver.scores(&end) } else { None }.unwrap_or_default();
     let has_time = has_time_for(course::BARS);
     let heads = solver.heads.clone();
     let is_resolvable = end.status == Status::Converged && stage.has_time(resolved::COST * end.longest);

@@ -70,12 +70,14 @@ impl Pattern {
             return None;
         }
         try_with(values).or_else(|| {
-            (-12..=-4).step_by(2).find_map(|exponent| {
+            (-12..=-4).step_by(2).map(|exponent| 10f64.powi(exponent)).find_map(|lift| {
                 let mut values = values.to_vec();
                 // The diagonal is the first entry of every column of a lower triangle.
                 let columns = self.starts().len() - 1;
-                self.starts()[..columns].iter().for_each(|&diagonal| values[diagonal] *= 1.0 + 10f64.powi(exponent));
-                try_with(&values)
+                self.starts()[..columns].iter().for_each(|&diagonal| values[diagonal] *= 1.0 + lift);
+                let mut found = try_with(&values)?;
+                found.lift = lift;
+                Some(found)
             })
         })
     }
@@ -133,5 +135,23 @@ mod tests {
         for (row, expected) in [2.0, 0.0, 1.5].into_iter().enumerate() {
             assert!((solution[(row, 0)] - expected).abs() < 1e-15, "{row}: {}", solution[(row, 0)]);
         }
+    }
+
+    /// A chain of `n` twos beside minus ones has the determinant `n + 1`; ones plus a diagonal of `n` have `2 n^n`.
+    #[test]
+    fn determinants_are_those_of_closed_forms() {
+        let n = 60;
+        let chain: Vec<Vec<usize>> = (0..n).map(|at| (at..n.min(at + 2)).collect()).collect();
+        let values: Vec<f64> = (0..n).flat_map(|at| [2.0, -1.0].into_iter().take(n.min(at + 2) - at)).collect();
+        let found = Pattern::new(&chain).unwrap().factor(&values).unwrap().log_determinant().unwrap();
+        assert!((found - (n as f64 + 1.0).ln()).abs() < 1e-12, "{found}");
+        let full: Vec<Vec<usize>> = (0..n).map(|at| (at..n).collect()).collect();
+        let entry = |(at, row): (usize, usize)| if row == at { 1.0 + n as f64 } else { 1.0 };
+        let values: Vec<f64> = (0..n).flat_map(|at| (at..n).map(move |row| entry((at, row)))).collect();
+        let found = Pattern::new(&full).unwrap().factor(&values).unwrap().log_determinant().unwrap();
+        assert!((found - (2.0f64.ln() + n as f64 * (n as f64).ln())).abs() < 1e-10, "{found}");
+        // Two equal rows: rounding, or a diagonal that was raised, hide that there is none.
+        let same = Pattern::new(&[vec![0, 1], vec![1]]).unwrap().factor(&[1.0, 1.0, 1.0]).unwrap();
+        assert!(same.lift > 0.0 && same.log_determinant().is_none());
     }
 }

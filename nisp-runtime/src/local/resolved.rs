@@ -20,8 +20,8 @@ pub(super) const COST: f64 = 2.0;
 /// Change of a field, beside its size, above which it is not resolved.
 const MOST: f64 = 1e-2;
 
-/// Says which fields of a state move with its lattice, of which `settings` have the number of cells: a step from the answer on a
-/// coarser one. Nothing where that cannot be taken.
+/// Says which fields of a state move with its lattice: a step is taken from the answer on a coarser one. Nothing where that cannot be
+/// taken.
 pub(super) fn unresolved(bound: &Bound, settings: &Local, heads: &Heads, state: &State) -> Option<Warning> {
     let (cells, fewer) = (settings.cells, (settings.cells as f64 / COARSER).round() as usize);
     let mut coarse = Solver::new(bound, settings, fewer).ok()?;

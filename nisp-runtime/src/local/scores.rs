@@ -11,6 +11,7 @@ use rayon::prelude::*;
 use super::block::Block;
 use super::course::End;
 use super::normal::factor::Factor;
+use super::phase::Phase;
 use super::place::State;
 use super::solver::Solver;
 use super::surface::Surface;
@@ -50,11 +51,20 @@ impl Sums {
 }
 
 impl Solver {
-    /// Scores of all that is [known](Solver::known), from the last step's equations.
-    pub(super) fn scores(&mut self, end: &End) -> Vec<Option<Score>> {
-        self.find_feet(&end.linearised);
+    /// Scores of all that is [known](Solver::known), from the last step's equations if they are those of the answer; none where the matrix
+    /// cannot be factorised.
+    pub(super) fn scores(&mut self, end: &End) -> Option<Vec<Option<Score>>> {
         let known = self.known();
-        end.factor.as_ref().map(|factor| self.scores_of(&known, &end.linearised, factor)).unwrap_or_default()
+        if let (Some(linearised), Some(factor)) = (&end.linearised, &end.factor) {
+            self.find_feet(linearised);
+            return Some(self.scores_of(&known, linearised, factor));
+        }
+        let state = &end.state;
+        self.find_feet(state);
+        self.assemble(state, state.noise, Phase::Concave).ok()?;
+        self.normal.set_free(Some(&state.free))?;
+        let factor = self.normal.factor()?;
+        Some(self.scores_of(&known, state, &factor))
     }
 
     /// Scores of some of what is known, from the normal equations as they are assembled about a state and factorised: they are

@@ -162,7 +162,7 @@ impl SavedAnswer {
         read(&mut reader).filter(|_| reader.is_at_end()).ok_or(SavedError::Damaged)
     }
 
-    /// With the moment from which its time is counted. None is kept of moments before 1970.
+    /// With the moment from which its time is counted. Moments before 1970 are not kept.
     pub fn counted_from(mut self, begin: SystemTime) -> Self {
         if let Ok(since) = begin.duration_since(SystemTime::UNIX_EPOCH) {
             self.texts.push(("begin".into(), format!("{}.{:09}", since.as_secs(), since.subsec_nanos())));

@@ -9,7 +9,7 @@ use crate::weighed::{Class, restore_classes, save_classes};
 pub(super) struct State {
     pub(super) theta: Vec<f64>,
     pub(super) learned: Vec<f64>,
-    /// By source, the line that it keeps near to.
+    /// The numbers of the lines that sources keep near to, source by source.
     pub(super) lines: Vec<f64>,
     pub(super) classes: Vec<Class>,
     /// By source and function, how rough the source is there beside its mean; empty where it is as rough all along.

@@ -19,7 +19,7 @@ const GAIN: f64 = 0.5;
 /// How far differences of the evidence are trusted: all kinds are approximations of what the source is like.
 const TRUST: f64 = 0.3;
 /// How much less a kind of smoothness counts than one of an order less, for equal evidence. Orders differ in waves that the data hardly
-/// show: a source that steps to and fro is as likely a smooth one to the evidence, and bars of smooth ones are half as long as it is off.
+/// show. The evidence cannot tell a source that steps to and fro from a smooth one, and the bars of smooth ones are then too short by half.
 const SMOOTHER: f64 = 0.25;
 
 /// Where a run stands: which kind of smoothness is tried, from which iterate, and what came of those before.

@@ -55,7 +55,7 @@ pub(super) struct Solver<'a> {
 }
 
 /// What is believed of sources' lines beside what is learned.
-fn believed(bound: &Bound) -> Belief {
+fn belief(bound: &Bound) -> Belief {
     if bound.learned.is_empty() { Belief::DRIFT } else { Belief::LEVEL }
 }
 
@@ -89,7 +89,7 @@ impl<'a> Solver<'a> {
         let priors = heads.bases.iter().enumerate().map(|(head, basis)| Prior::new(basis, regressed(head))).collect();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let blurs = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
-        let belief = believed(bound);
+        let belief = belief(bound);
         let lines = belief.numbers * sources(schema);
         let triangle = Triangle::new(heads.len(), heads.band, bound.learned.len() + lines);
         let scalars = bound.scalars.clone();
@@ -126,7 +126,7 @@ impl<'a> Solver<'a> {
         let schema = bound.problem.scene().schema;
         let degrees = cells::degrees(schema).unwrap_or_default();
         let (cells, shared) =
-            ((breakpoints.len() - 1) as f64, (bound.learned.len() + believed(bound).numbers * sources(schema)) as f64);
+            ((breakpoints.len() - 1) as f64, (bound.learned.len() + belief(bound).numbers * sources(schema)) as f64);
         // Of all heads on a cell: as many as rows and the band are wide.
         let functions = degrees.iter().map(|degree| (degree + 1) as f64).sum::<f64>();
         let triangles = 3.0 * cells * degrees.len() as f64 * (functions + shared);

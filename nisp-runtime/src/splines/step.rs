@@ -185,8 +185,8 @@ impl Solver<'_> {
             let (rough, Some(amplitude)) = (self.roughness[head], self.amplitude[head]) else { continue };
             let (roughness, own) = (state.classes[rough].size, state.classes[amplitude].size);
             let worth = self.priors[head].worth(roughness, own);
-            let line = self.belief.numbers as f64 * self.line_deviation(head, (roughness, own)).ln();
-            log_determinant += worth.log_determinant - line;
+            let line = self.line_deviation(head, (roughness, own));
+            log_determinant += worth.log_determinant - (0..self.belief.numbers).map(|_| line.ln()).sum::<f64>();
             // Rounding where waves are much longer than cells.
             let small = worth.amplitude.clamp(0.0, tallies[amplitude].count);
             tallies[rough].count = tallies[amplitude].count - small;

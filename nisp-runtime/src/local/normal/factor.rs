@@ -76,8 +76,8 @@ impl Factor {
         below.iter().enumerate().map(product).collect()
     }
 
-    /// Logarithm of the matrix's determinant, its border apart.
-    pub(in super::super) fn log_determinant(&self) -> f64 {
+    /// Logarithm of the matrix's determinant, its border apart; nothing where rounding spoils it.
+    pub(in super::super) fn log_determinant(&self) -> Option<f64> {
         self.factor.log_determinant()
     }
 

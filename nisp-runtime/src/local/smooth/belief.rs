@@ -75,7 +75,7 @@ impl Solver<'_> {
         let asked = rows.asked.iter().flat_map(|asked| self.batches(rows, asked)).flatten().map(left).sum::<f64>();
         let clouds = rows.clouds.iter().flatten().cloned().map(left).sum::<f64>();
         let believed = judged.iter().flat_map(|&head| self.prior_rows(state, head)).map(left).sum::<f64>();
-        Some(-0.5 * (asked + clouds + believed + factor.log_determinant()))
+        Some(-0.5 * (asked + clouds + believed + factor.log_determinant()?))
     }
 
     /// Sum of the logarithms of the noise of all measurements.

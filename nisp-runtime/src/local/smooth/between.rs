@@ -47,8 +47,8 @@ pub(super) fn is_filled(schema: &schema::Scene) -> bool {
     !(0..schema.heads.len()).any(is_of_all)
 }
 
-/// The problem with the largest equation asked at so many points, between those that it has, and those of other fields at as many times
-/// more; nothing where it has as many, or reads what is known at its points alone.
+/// The problem with equations asked at more points, between those that they have: the largest at so many, those of other fields at as many
+/// times more. Nothing where the largest has as many, or reads what is known at its points alone.
 pub(super) fn filled(bound: &Bound, points: usize) -> Option<Bound> {
     let given = count(bound, largest(bound)?);
     if given >= points {
@@ -160,16 +160,22 @@ fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
         other.order < schema.groups[group].order && other.terms.iter().all(|term| term.kind == TermKind::Residual)
     };
     let own = &bound.coordinates[group];
-    let edges = (0..schema.groups.len()).filter(is_edge).flat_map(|at| bound.coordinates[at].iter().copied());
-    let points: Vec<f64> = own.iter().copied().chain(edges).collect();
+    let range = |axis: usize| {
+        let values = own.iter().skip(axis).step_by(inputs);
+        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
+    };
+    let ranges: Vec<(f64, f64)> = (0..inputs).map(range).collect();
+    let widths: Vec<f64> = ranges.iter().map(|(low, high)| (high - low).max(f64::MIN_POSITIVE)).collect();
+    // Conditions of another part of the domain are no edge of this one.
+    let spacing = (count(bound, group) as f64).powf(-(inputs as f64).recip());
+    let is_near = |edge: &&[f64]| {
+        let along = edge.iter().zip(ranges.iter().zip(&widths));
+        along.into_iter().all(|(x, ((low, high), width))| (low - spacing * width..=high + spacing * width).contains(x))
+    };
+    let edges = (0..schema.groups.len()).filter(is_edge).flat_map(|at| bound.coordinates[at].chunks_exact(inputs));
+    let points: Vec<f64> = own.chunks_exact(inputs).chain(edges.filter(is_near)).flatten().copied().collect();
     let count = points.len() / inputs;
     let point = |at: usize| &points[at * inputs..][..inputs];
-    let width = |axis: usize| {
-        let values = own.iter().skip(axis).step_by(inputs);
-        let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
-        (high - low).max(f64::MIN_POSITIVE)
-    };
-    let widths: Vec<f64> = (0..inputs).map(width).collect();
     let scaled: Vec<f64> = points.iter().zip(widths.iter().cycle()).map(|(x, width)| x / width).collect();
     // The nearest along every coordinate, either way, and how far it is: rows of points may lie close, and far apart from each other.
     let nearest = |at: usize| {

@@ -8,7 +8,7 @@ use super::solver::Solver;
 use super::state::State;
 use super::step::is_of_values;
 use crate::noise::deviation;
-use crate::schema::{Term, TermKind};
+use crate::schema::{self, Term, TermKind};
 use crate::solve::vector::root_mean_square;
 
 /// Points that are looked at, at most.
@@ -38,13 +38,16 @@ impl Solver<'_> {
         }
     }
 
-    /// Some points of the largest group that reads a head, flat: elsewhere the head may be anything. Every so many of points that fill a
-    /// domain evenly may all lie in one corner of it: they are picked at random.
+    /// Some points of the largest group that differentiates a head, or else reads it, flat: elsewhere the head may be anything. Every so
+    /// many of points that fill a domain evenly may all lie in one corner of it: they are picked at random.
     pub(super) fn some_points(&self, head: usize) -> Vec<f64> {
         let inputs = self.schema().coordinates.len();
         let groups = self.schema().groups.iter().zip(&self.bound.coordinates);
-        let reading = groups.filter(|(group, _)| group.jets.iter().any(|jet| jet.head == head));
-        let largest = reading.map(|(_, points)| points).max_by_key(|points| points.len());
+        let degree = |jet: &schema::Jet| jet.degree.iter().map(|&degree| usize::from(degree)).sum::<usize>();
+        let highest = |group: &schema::Group| group.jets.iter().filter(|jet| jet.head == head).map(degree).max();
+        let reading = groups.filter_map(|(group, points)| Some((highest(group)? > 0, points)));
+        let largest =
+            reading.max_by_key(|(differentiates, points)| (*differentiates, points.len())).map(|(_, own)| own);
         let points = largest.map_or(&[][..], |points| points.as_slice());
         let count = points.len() / inputs;
         let chosen = sample(&mut StdRng::seed_from_u64(0), count, count.min(MOST));

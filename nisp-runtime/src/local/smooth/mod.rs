@@ -260,7 +260,7 @@ fn finish(
     // What a finer lattice has hardly changed, another one will not. Where nothing is measured such a change tells all.
     let is_early = status == Status::Budget && changes.least() > SAME;
     // Equations that had to be loose hold only if they do so by themselves.
-    let is_loose = status == Status::Converged && state.strictest > solver.tolerance;
+    let is_loose = state.strictest > solver.tolerance;
     let may_change = solver.is_measured() && (is_early || is_loose);
     let strain = may_change.then(|| solver.strain(&state, noise));
     solver.groups = groups(bound, &solver.heads);

@@ -15,7 +15,7 @@ use crate::tolerance::LOOSE;
 
 /// Steps that look for sources under the noise of the regressed data at most.
 const EXPLAIN: u64 = 12;
-/// What is left of all rows when sources were looked for, over what noise leaves, from which on equations are too strict for the cells.
+/// Equations are too strict for the cells where all rows are left over by this many times what noise leaves, once sources were looked for.
 const UNEXPLAINED: f64 = 4.0;
 /// Gain of the logarithm of the evidence that no longer matters.
 const RESTING: f64 = 0.05;
