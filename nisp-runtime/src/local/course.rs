@@ -160,7 +160,7 @@ impl Solver {
         let fault = faults.pop().filter(|_| status == Status::NotConverged);
         warnings.extend(fault.map(|fault| Warning { message: fault.to_string(), kind: WarningKind::Fault(fault) }));
         let checkpoint = good.save(stage.before, stage.lattice);
-        let linearised = is_plain.then(|| State { noise: state.noise, ..good.state });
+        let linearised = is_plain.then_some(State { noise: state.noise, ..good.state });
         Ok(End {
             state,
             status,
