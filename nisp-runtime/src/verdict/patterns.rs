@@ -10,8 +10,8 @@ use crate::rhythm::rhythm;
 
 /// Excess of slow misfits in standard deviations.
 const PATTERN: f64 = 4.0;
-/// Excess of smooth misfits over several coordinates in standard deviations. Right answers have followed the data so far that none of a
-/// hundred had more than two.
+/// Excess of smooth misfits over several coordinates in standard deviations. Right answers follow the data so far that of fifty none had
+/// more than two.
 const SMOOTH: f64 = 3.5;
 /// Patterns with less than this share of the misfit's square do not matter.
 const SLIGHT: f64 = 0.05;
