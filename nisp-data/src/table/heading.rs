@@ -42,7 +42,8 @@ impl Heading {
         if row > 1 && are_units(&lines[row - 2], &lines[row - 1]) {
             return Self { titles: row - 2, has_units: true };
         }
-        // Titles may have as many words, and rows that are mostly words may stand between: the last line that says units is the header.
+        // Titles may have as many words, and rows of words may stand between. The header is the last line of which most cells say a
+        // unit, or else the last line of words.
         let is_header = |at: &usize| {
             let mut cells = lines[*at].iter().filter(|cell| !cell.is_empty()).peekable();
             lines[*at].len() == width && cells.peek().is_some() && cells.all(is_word)
