@@ -1,5 +1,7 @@
 //! What presses a drumhead, and its tension: values, edges, error bars, and what is said where they mean nothing.
 
+use std::f64::consts::PI;
+
 use nisp::solve::driver::{Status, WarningKind};
 use nisp::{Problem, Solution, scene};
 
@@ -64,6 +66,24 @@ fn error_bars_cover_the_truth_and_no_more() {
     let inside = of("f").filter(|(_, c)| c[0].hypot(c[1]) < 0.8 * a);
     let covered = share(inside.map(|((p, sd), _)| (p - f).abs() < 2.0 * sd && *sd < f).collect());
     assert!(covered > 0.8, "{covered} of the pressures");
+}
+
+/// Below a flat plate the membrane is flat, so that the pressure is that from below, over a wide area. The prior prefers fewer nodes.
+#[test]
+fn the_bars_of_a_plates_force_know_what_the_prior_took() {
+    for a in [14.0, 20.0, 26.0] {
+        for noise in [0.1, 0.3, 1.0] {
+            let mut problem = Problem::new(scene::<drum::pressed::Scene>());
+            problem.set_parameter("T", T).unwrap();
+            bind(&mut problem, P, a, noise);
+            let solution = solve(&problem, Some(PATCHES), 2);
+            let (points, area) = (disc(6000), 1e-6 * PI * R * R / 6000.0);
+            let deviation = solution.deviation_of_sum("f", &points, &vec![area; 6000]).unwrap();
+            let off = force(&solution) - true_force(P, a);
+            assert!(off.abs() < 2.5 * deviation, "{a} mm, {noise} mm: {off} +- {deviation}");
+            assert!(deviation < 0.04 * true_force(P, a), "{a} mm, {noise} mm: {deviation}");
+        }
+    }
 }
 
 /// A camera that shows one half: what presses on the other is anybody's guess, and the deviations say so.

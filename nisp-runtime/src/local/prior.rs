@@ -75,6 +75,7 @@ impl Sparse<'_> {
         let (edges, patch) = self.penalties();
         let square = 1.0 / (self.level * self.level);
         let seen = |at: usize| self.unseen.as_ref().is_none_or(|unseen| !unseen.functions[at]);
+        let before = normal.gradient[first..first + f.len()].to_vec();
         for axis in 0..self.lattice().dimensions() {
             for (a, b) in self.lattice().neighbours(axis).filter(|(a, b)| seen(*a as usize) && seen(*b as usize)) {
                 let (i, j) = (a as usize, b as usize);
@@ -92,6 +93,13 @@ impl Sparse<'_> {
                 normal.gradient[first + at] += WALL * area * f / self.level;
                 normal.add_stiffness(first + at, WALL * area * square);
             }
+        }
+        // Without the penalties what is not zero would be elsewhere: their pull counts as a row of unit variance.
+        if let Some(draws) = &mut normal.draws {
+            let pulls = normal.gradient[first..].iter().zip(&before).map(|(after, before)| after - before);
+            let is_pulled = |at: usize| f[at] > 0.0 && seen(at);
+            let pulls = pulls.enumerate().filter(|(at, _)| is_pulled(*at)).map(|(at, pull)| (first + at, pull));
+            draws.add(&pulls.collect::<Vec<_>>());
         }
         if let Some(unseen) = &self.unseen {
             unseen.add(normal, self.heads, self.head, self.level);
