@@ -64,15 +64,17 @@ impl Noise {
         if self.observations.is_empty() { 1.0 } else { sum / self.observations.len() as f64 }
     }
 
-    /// The same with the noise of all clouds in space, whose points then count as observations do.
+    /// The same with the noise of all clouds in space or in a plane, whose points then count as observations do.
     pub(crate) fn with_clouds(mut self, bound: &Bound) -> Self {
         let groups = bound.problem.scene().schema.groups.iter().enumerate();
         let terms =
             groups.flat_map(|(at, group)| group.terms.iter().enumerate().map(move |(term, own)| (at, term, own)));
-        let clouds = terms.filter(|(.., own)| matches!(own.kind, TermKind::Chamfer { .. }) && own.rows == 3);
-        self.observations.extend(clouds.filter_map(|(group, term, _)| {
-            let points = bound.clouds[group][term].as_chunks::<3>().0;
-            let deviation = of_cloud(points)?;
+        let clouds =
+            terms.filter(|(.., own)| matches!(own.kind, TermKind::Chamfer { .. }) && (2..=3).contains(&own.rows));
+        self.observations.extend(clouds.filter_map(|(group, term, own)| {
+            let point = |point: &[f64]| std::array::from_fn(|axis| point.get(axis).copied().unwrap_or(0.0));
+            let points: Vec<[f64; 3]> = bound.clouds[group][term].chunks_exact(own.rows).map(point).collect();
+            let deviation = roughness(&points, &points, own.rows - 1)?;
             let (_, spread) = spread(points.iter().map(|&point| point.into()));
             Some(ObservationNoise { group, term, deviation, spread })
         }));
@@ -163,7 +165,7 @@ fn shares(places: &[f64], inputs: usize) -> Vec<f64> {
 
 /// The standard deviation of the points of a cloud in space about smooth pieces of its surface; nothing where they are few.
 pub fn of_cloud(points: &[[f64; 3]]) -> Option<f64> {
-    roughness(points, points)
+    roughness(points, points, 2)
 }
 
 /// The noise of rounding to steps: a step over the root of twelve. Values that seldom repeat have none to speak of.

@@ -15,10 +15,12 @@ const THICK: f64 = 0.3;
 /// So many times as many.
 const WIDER: NonZero<usize> = NonZero::new(4).unwrap();
 
-/// Standard deviation of a cloud about smooth pieces of surface: least squares of a quadratic through the neighbours of some
-/// points, across the plane that they lie in.
-pub(crate) fn roughness(points: &[[f64; 3]], places: &[[f64; 3]]) -> Option<f64> {
-    const UNKNOWNS: usize = 6;
+/// Standard deviation of a cloud about smooth pieces of surface, or of a curve where it has one direction instead of two: least squares
+/// of a quadratic through the neighbours of some points, across the plane, or the line, that they lie in.
+pub(crate) fn roughness(points: &[[f64; 3]], places: &[[f64; 3]], directions: usize) -> Option<f64> {
+    // A curve has no second direction, so that a quadratic has three unknowns instead of six.
+    let powers = |[x, y, _]: [f64; 3]| [1.0, x, x * x, y, x * y, y * y];
+    let unknowns = if directions == 1 { 3 } else { 6 };
     if points.len() < 4 * AROUND.get() {
         return None;
     }
@@ -28,17 +30,15 @@ pub(crate) fn roughness(points: &[[f64; 3]], places: &[[f64; 3]]) -> Option<f64>
         let Piece { local, widths } = std::iter::successors(Some(AROUND), |around| around.checked_mul(WIDER))
             .map_while(|around| Piece::around(centre, around, points, &tree))
             .find(|piece| {
-                piece.widths[2] <= THICK * piece.widths[1] || WIDER.get() * piece.local.len() > points.len()
+                piece.widths[directions] <= THICK * piece.widths[directions - 1]
+                    || WIDER.get() * piece.local.len() > points.len()
             })?;
         let reach = widths[0].max(f64::MIN_POSITIVE);
-        let rows = local.iter().flat_map(|&[x, y, _]| {
-            let (x, y) = (x / reach, y / reach);
-            [1.0, x, y, x * x, x * y, y * y]
-        });
-        let design = DMatrix::from_row_iterator(local.len(), UNKNOWNS, rows);
-        let heights = DVector::from_iterator(local.len(), local.iter().map(|p| p[2]));
+        let rows = local.iter().flat_map(|point| powers(point.map(|x| x / reach)).into_iter().take(unknowns));
+        let design = DMatrix::from_row_iterator(local.len(), unknowns, rows);
+        let heights = DVector::from_iterator(local.len(), local.iter().map(|p| p[directions]));
         let fit = design.clone().svd(true, true).solve(&heights, 1e-10).ok()?;
-        Some((heights - design * fit).norm_squared() / (local.len() - UNKNOWNS) as f64)
+        Some((heights - design * fit).norm_squared() / (local.len() - unknowns) as f64)
     });
     Some(middle(left.collect()).sqrt())
 }
@@ -86,7 +86,24 @@ mod tests {
     fn roughness_is_the_noise_and_not_the_shape() {
         for noise in [0.0, 1e-2] {
             let (points, places) = cap(noise);
-            let found = roughness(&points, &places).unwrap();
+            let found = roughness(&points, &places, 2).unwrap();
+            assert!((found - noise).abs() < 0.15 * noise + 1e-4, "{found} for {noise}");
+        }
+    }
+
+    /// An arc in a plane: across the line that its pieces lie in, not across the plane.
+    #[test]
+    fn roughness_of_a_curve_is_in_its_plane() {
+        let mut random = StdRng::seed_from_u64(5);
+        for noise in [0.0, 1e-2] {
+            let angles = (0..600).map(|at| f64::from(at) / 300.0);
+            let points: Vec<[f64; 3]> = angles
+                .map(|angle| {
+                    let radius = 1.0 + noise * normal(&mut random);
+                    [radius * angle.cos(), radius * angle.sin(), 0.0]
+                })
+                .collect();
+            let found = roughness(&points, &points, 1).unwrap();
             assert!((found - noise).abs() < 0.15 * noise + 1e-4, "{found} for {noise}");
         }
     }
@@ -95,7 +112,7 @@ mod tests {
     #[test]
     fn roughness_of_a_dense_cloud_is_its_noise_too() {
         let (points, places) = cap(0.1);
-        let found = roughness(&points, &places).unwrap();
+        let found = roughness(&points, &places, 2).unwrap();
         assert!((found / 0.1 - 1.0).abs() < 0.15, "{found}");
     }
 }

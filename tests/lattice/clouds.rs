@@ -33,6 +33,19 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// A wire that a load pulls down, seen from the side.
+    pub mod wire {
+        units: off;
+        coordinates: x;
+        fields: w;
+        sources: f;
+        on inside { balance: d(w, x, 2) == f; seen: chamfer [x, w]; }
+        on ends { held: w == 0; }
+        scene recover { }
+    }
+}
+
 /// The skin's height over the unit square: slopes reach a half.
 fn height([x, y]: [f64; 2]) -> f64 {
     0.15 * (PI * x).sin() * (PI * y).sin()
@@ -120,4 +133,26 @@ fn a_tension_is_learned_from_a_cloud() {
     let found = &solution.learned()[0];
     let off = (found.value - 2.0).abs();
     assert!(off < 0.02 && off < 3.0 * found.deviation.unwrap(), "{found:?}");
+}
+
+/// `w = -0.1 sin(pi x)` sags under `f = 0.1 pi^2 sin(pi x)`, which a curve in a plane shows as a surface in space does.
+#[test]
+fn a_load_is_found_from_a_curve_with_bars_that_hold() {
+    let mut normal = normals(7);
+    let places: Vec<f64> = (0..400).map(|at| f64::from(at) / 399.0).collect();
+    let point = |x: &f64| [*x, -0.1 * (PI * x).sin()].map(|x| x + 1e-3 * normal());
+    let cloud: Vec<f64> = places.iter().flat_map(point).collect();
+    let mut problem = Problem::new(scene::<wire::recover::Scene>());
+    problem.set_group("inside", places.into(), Vec::new()).unwrap();
+    problem.set_group("ends", vec![0.0, 1.0].into(), Vec::new()).unwrap();
+    problem.set_cloud("inside", "seen", cloud).unwrap();
+    let mut solution = solve(&problem);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let inner: Vec<f64> = (1..40).map(|at| f64::from(at) / 40.0).collect();
+    let truth = |x: f64| 0.1 * PI * PI * (PI * x).sin();
+    let found = solution.evaluate_with_errors(&inner).into_iter().find(|estimate| estimate.name == "f").unwrap();
+    let deviations = found.deviations.unwrap();
+    let off: Vec<f64> = inner.iter().zip(&found.values).map(|(x, found)| (found - truth(*x)).abs()).collect();
+    let within = off.iter().zip(&deviations).filter(|(off, deviation)| **off < 2.0 * **deviation).count();
+    assert!(off.iter().all(|off| *off < 0.3) && within > 30, "{within}, {off:?}");
 }

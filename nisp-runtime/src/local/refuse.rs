@@ -40,14 +40,15 @@ pub(super) fn clouds(schema: &schema::Scene) -> Option<&'static str> {
     let has_known = |group: &schema::Group| (0..group.columns.len()).any(|column| is_known(group, column));
     let has_cloud =
         |group: &schema::Group| group.terms.iter().any(|term| matches!(term.kind, TermKind::Chamfer { .. }));
-    let is_surface = (2..=3).contains(&schema.coordinates.len());
+    // A curve in a plane, or a surface in space.
+    let is_met = |term: &schema::Term| matches!((schema.coordinates.len(), term.rows), (1, 2) | (2..=3, 3));
     let is_symmetric = |term: &schema::Term| term.kind == TermKind::Chamfer { symmetric: true, plane: false };
     match () {
         () if schema.groups.iter().any(|group| has_cloud(group) && has_known(group)) => {
             Some("clouds in groups with columns")
         }
         () if clouds().any(is_symmetric) => Some("symmetric Chamfer distances"),
-        () if clouds().any(|term| term.rows != 3 || !is_surface) => Some("clouds that are not in space"),
+        () if !clouds().all(is_met) => Some("clouds that are neither of a surface in space nor of a curve in a plane"),
         () => None,
     }
 }

@@ -1,4 +1,6 @@
-//! A surface in space, and directions along it at rest.
+//! A surface in space, or a curve in a plane, and directions along it at rest.
+
+use std::ops::Range;
 
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -18,8 +20,8 @@ pub(super) struct Shape<'a> {
     /// [`Group::spread`] of the coefficients.
     pub(super) spread: &'a [Vec<f64>],
     pub(super) scalars: &'a [f64],
-    /// First row of the term.
-    pub(super) first: usize,
+    /// Rows of the term: components of a position.
+    pub(super) rows: Range<usize>,
 }
 
 impl Shape<'_> {
@@ -28,7 +30,8 @@ impl Shape<'_> {
         let some = |flat: &[f64]| {
             let sites = self.group.sites_at(self.heads, flat);
             let rows = self.group.evaluate_at(&sites, self.heads, self.spread, self.scalars, false);
-            let position = |p: usize| Vector3::from_fn(|c, _| rows.row(self.first + c, p));
+            let component = |c: usize, p: usize| self.rows.clone().nth(c).map_or(0.0, |row| rows.row(row, p));
+            let position = |p: usize| Vector3::from_fn(|c, _| component(c, p));
             (0..sites.count).map(position).collect::<Vec<_>>()
         };
         flat.par_chunks(TOGETHER * inputs).flat_map_iter(some).collect()
@@ -40,11 +43,13 @@ pub(super) fn padded(point: &[f64]) -> [f64; 3] {
     std::array::from_fn(|axis| point.get(axis).copied().unwrap_or(0.0))
 }
 
-/// Two directions along the surface at rest, flat: the axes of a plane domain, or where the neighbours lie.
+/// Directions along the surface at rest, flat: the axes of a plane domain or of a line, or two towards which the neighbours lie.
 pub(super) fn tangents_at(tree: Option<&Nearest<3>>, samples: &[[f64; 3]], at: &[f64; 3], inputs: usize) -> Vec<f64> {
     const NEIGHBOURS: std::num::NonZero<usize> = std::num::NonZero::new(12).unwrap();
-    if inputs == 2 {
-        return vec![1.0, 0.0, 0.0, 1.0];
+    match inputs {
+        1 => return vec![1.0],
+        2 => return vec![1.0, 0.0, 0.0, 1.0],
+        _ => {}
     }
     let Some(tree) = tree else { return vec![0.0; 2 * inputs] };
     let around: Vec<[f64; 3]> = tree.some(at, NEIGHBOURS).iter().map(|found| samples[found.index]).collect();

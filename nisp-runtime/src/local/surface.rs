@@ -1,5 +1,7 @@
 //! Rows of a cloud: how far each of its points is from the surface, across it, beside the noise in that direction.
 //!
+//! A curve in a plane is a surface in space that goes on alike across the plane.
+//!
 //! A camera's points are off along its view `v` by a standard deviation `sigma`, and by a share `across` of it in the other
 //! directions: their covariance is `sigma^2 S` with `S = v v^T + across^2 (I - v v^T)`. A point's foot is the place at rest whose
 //! image it most likely is. From there to the point is the direction `S n` with the surface's normal `n`, and the distance along
@@ -33,6 +35,8 @@ pub(super) struct Surface {
     /// Name of its term.
     pub(super) term: &'static str,
     first: usize,
+    /// Components of a point, of which a curve has two.
+    components: usize,
     cloud: Vec<Vector3<f64>>,
     /// The direction of view; nothing if points are off alike in all directions.
     view: Option<Vector3<f64>>,
@@ -91,7 +95,7 @@ impl Surface {
         inputs: usize,
         (reach, mut counting): (f64, Counting),
     ) -> Self {
-        let cloud: Vec<Vector3<f64>> = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
+        let cloud = in_space(cloud, term.rows);
         let flat: Vec<[f64; 3]> = samples.chunks_exact(inputs).map(padded).collect();
         let rest = Nearest::of(&flat);
         let tangents = flat.iter().zip(samples.chunks_exact(inputs));
@@ -102,6 +106,7 @@ impl Surface {
             group,
             term: term.name,
             first: term.first,
+            components: term.rows,
             cloud,
             view: view.map(|v| Vector3::from(v).normalize()),
             across: 0.0,
@@ -122,7 +127,7 @@ impl Surface {
 
     /// Takes over another cloud, whose feet are to be found.
     pub(super) fn renew(&mut self, cloud: &[f64]) {
-        self.cloud = cloud.chunks_exact(3).map(Vector3::from_column_slice).collect();
+        self.cloud = in_space(cloud, self.components);
         let count = self.cloud.len();
         self.counting.see(&self.cloud);
         self.feet.clear();
@@ -224,7 +229,8 @@ impl Surface {
 
     /// Where the surface has the feet of all points.
     pub(super) fn images(&self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Vector3<f64>> {
-        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, first: self.first };
+        let rows = self.first..self.first + self.components;
+        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, rows };
         shape.positions(&self.feet, self.inputs)
     }
 
@@ -247,7 +253,8 @@ impl Surface {
 
     /// Finds the feet of all points on the present surface: true where they have come to rest.
     pub(super) fn find(&mut self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) -> bool {
-        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, first: self.first };
+        let rows = self.first..self.first + self.components;
+        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, rows };
         if self.feet.is_empty() {
             self.begin(&shape);
         }
@@ -266,7 +273,8 @@ impl Surface {
     /// Looks around some feet: the normals there, what is left of the points, and how far feet are to move along both tangents.
     fn look(&mut self, shape: &Shape<'_>, moving: &[usize]) -> Vec<Option<Vector2<f64>>> {
         let small = 1e-3 * self.reach;
-        let mut around = Vec::with_capacity(5 * self.inputs * moving.len());
+        let directions = self.inputs.min(2);
+        let mut around = Vec::with_capacity((1 + 2 * directions) * self.inputs * moving.len());
         for &i in moving {
             let foot = &self.feet[i * self.inputs..(i + 1) * self.inputs];
             around.extend_from_slice(foot);
@@ -279,7 +287,7 @@ impl Surface {
         let positions = shape.positions(&around, self.inputs);
         let way = |(&i, near): (&usize, &[Vector3<f64>])| {
             let slope = |k: usize| (near[1 + 2 * k] - near[2 + 2 * k]) / (2.0 * small);
-            let (a, b) = (slope(0), slope(1));
+            let (a, b) = (slope(0), if directions > 1 { slope(1) } else { Vector3::z() });
             let normal = a.cross(&b);
             let Some(normal) = normal.try_normalize(1e-12 * a.norm() * b.norm()) else {
                 self.found[i] = false;
@@ -298,7 +306,7 @@ impl Surface {
             let along = Vector2::new(gap.dot(&across), a.dot(&gap.cross(&likely)));
             self.found[i].then(|| along / a.dot(&across))
         };
-        moving.iter().zip(positions.chunks_exact(5)).map(way).collect()
+        moving.iter().zip(positions.chunks_exact(1 + 2 * directions)).map(way).collect()
     }
 
     /// A step of Newton's method for some feet; returns those that it has moved.
@@ -320,8 +328,8 @@ impl Surface {
         let inputs = self.inputs;
         let tangent = &self.tangents[self.nearest[i]];
         let mut foot = self.feet[i * inputs..(i + 1) * inputs].to_vec();
-        for (k, x) in foot.iter_mut().enumerate() {
-            *x += a * tangent[k] + b * tangent[inputs + k];
+        for (tangent, far) in tangent.chunks_exact(inputs).zip([a, b]) {
+            foot.iter_mut().zip(tangent).for_each(|(x, t)| *x += far * t);
         }
         let Some(tree) = &self.rest else { return false };
         let found = tree.one(&padded(&foot));
@@ -362,11 +370,18 @@ impl Surface {
         let kept: Vec<usize> = (0..self.cloud.len()).filter(|&i| self.found[i]).collect();
         kept.into_par_iter()
             .map(|i| {
-                let seed = |bar| (0..3).map(|c| self.normals[i][c] * evaluated.bar(self.first + c, bar, i)).sum();
+                let components = 0..self.components;
+                let seed =
+                    |bar| components.clone().map(|c| self.normals[i][c] * evaluated.bar(self.first + c, bar, i)).sum();
                 let mut block = group.at_point(heads, (&sites, i), learned, self.misfits[i], seed);
                 block.divide(std::iter::once(1.0 / self.root_weight(i, sigma)));
                 block
             })
             .collect()
     }
+}
+
+/// Points in space; of a plane the third component is zero.
+fn in_space(cloud: &[f64], components: usize) -> Vec<Vector3<f64>> {
+    cloud.chunks_exact(components).map(|point| Vector3::from(padded(point))).collect()
 }

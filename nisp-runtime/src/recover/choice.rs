@@ -89,7 +89,7 @@ fn of(bound: &Bound, settings: &Settings) -> (Chosen, String) {
     let asked = |chosen| (chosen, "asked for".to_string());
     match settings.carrier {
         Carrier::Network => asked(Chosen::Network),
-        Carrier::Splines if bound.problem.scene().schema.coordinates.len() > 1 => asked(Chosen::Lattice),
+        Carrier::Splines if is_for_lattices(bound.problem.scene().schema) => asked(Chosen::Lattice),
         Carrier::Splines => asked(Chosen::Splines),
         Carrier::Local(local) => (Chosen::Local(local), "the scene has edges, which they know".into()),
         Carrier::Auto if settings.optimizer != Optimizer::Auto => {
@@ -107,7 +107,12 @@ fn most_rows(bound: &Bound) -> usize {
 
 /// What splines do not do of a scene; nothing where they carry it unless the settings ask for something else.
 pub fn beyond_splines(schema: &Scene) -> Option<&'static str> {
-    if schema.coordinates.len() > 1 { smooth::refused(schema) } else { splines::refused(schema) }
+    if is_for_lattices(schema) { smooth::refused(schema) } else { splines::refused(schema) }
+}
+
+/// Whether splines of a scene are those on a lattice: over several coordinates, and of curves that a cloud shows.
+fn is_for_lattices(schema: &Scene) -> bool {
+    schema.coordinates.len() > 1 || smooth::has_clouds(schema)
 }
 
 /// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. Of a source
@@ -117,6 +122,7 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
     let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
     match (beyond_splines(schema), schema.coordinates.len(), differentiated) {
         (Some(what), ..) => (Chosen::Network, format!("splines do not do {what}")),
+        (None, 1, _) if is_for_lattices(schema) => (Chosen::Lattice, "a cloud".into()),
         (None, 2.., _) => (Chosen::Lattice, format!("{} coordinates", schema.coordinates.len())),
         (None, _, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short")),
         (None, _, None) => (Chosen::Splines, "one coordinate".into()),

@@ -50,7 +50,7 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let rough = within
         .or_else(|| {
             let (points, places): (Vec<_>, Vec<_>) = own.unzip();
-            roughness(&points, &places)
+            roughness(&points, &places, term.rows - 1)
         })
         .unwrap_or(0.0)
         .max(cloud.resolution);

@@ -1,4 +1,4 @@
-//! Local functions for measured fields and smooth sources, over two coordinates or more.
+//! Local functions for measured fields and smooth sources, over two coordinates or more, and for curves that a cloud shows.
 //!
 //! Fields and sources are splines on one lattice of cells, as fine as the points of the equations can tell. Equations hold at
 //! their points, to a tolerance that falls from step to step; all unknowns are found together by Gauss-Newton steps on sparse
@@ -82,7 +82,7 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
     let terms = || schema.groups.iter().flat_map(|group| group.terms);
     let heads = || 0..schema.heads.len();
     let refused = [
-        (schema.coordinates.len() < 2, "one coordinate"),
+        (schema.coordinates.len() < 2 && !has_clouds(schema), "one coordinate"),
         (schema.coordinates.len() > MOST_COORDINATES, "more than four coordinates"),
         (schema.groups.iter().any(|group| group.paired), "paired points"),
         (terms().any(|term| matches!(term.kind, TermKind::Integral)), "integrals"),
@@ -90,6 +90,11 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
     ];
     let found = refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what);
     found.or_else(|| refuse::clouds(schema)).or_else(|| bounds::refused(schema))
+}
+
+/// Whether a scene has clouds.
+pub(crate) fn has_clouds(schema: &schema::Scene) -> bool {
+    schema.groups.iter().flat_map(|group| group.terms).any(|term| matches!(term.kind, TermKind::Chamfer { .. }))
 }
 
 /// Solves a bound problem within its limits, from the start or from a saved state.
