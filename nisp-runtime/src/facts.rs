@@ -206,12 +206,20 @@ pub(crate) struct Score {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Told {
     pub(crate) head: usize,
-    /// Its root mean square in standard deviations of each place, over the time along which it is alike.
-    pub(crate) size: f64,
+    /// Its root mean square in standard deviations of each place, over the time along which it is alike; nothing where there are no
+    /// deviations.
+    pub(crate) size: Option<f64>,
     /// Deviations by which the true source is nearer to it than to none, in the mean square.
     pub(crate) nearer: f64,
     /// Share that the data leave of what was not known of its mean beforehand, as a variance; zero where that is not asked.
     pub(crate) open: f64,
+}
+
+impl Told {
+    /// Of a source without deviations.
+    pub(crate) fn unasked(head: usize) -> Self {
+        Self { head, size: None, nearer: 0.0, open: 0.0 }
+    }
 }
 
 /// The middle of a cloud, and its radius: the root mean square of the distances from there.

@@ -135,9 +135,8 @@ fn a_tension_is_learned_from_a_cloud() {
     assert!(off < 0.02 && off < 3.0 * found.deviation.unwrap(), "{found:?}");
 }
 
-/// `w = -0.1 sin(pi x)` sags under `f = 0.1 pi^2 sin(pi x)`, which a curve in a plane shows as a surface in space does.
-#[test]
-fn a_load_is_found_from_a_curve_with_bars_that_hold() {
+/// The wire under `f = 0.1 pi^2 sin(pi x)`, as a noisy cloud.
+fn hanging() -> Problem {
     let mut normal = normals(7);
     let places: Vec<f64> = (0..400).map(|at| f64::from(at) / 399.0).collect();
     let point = |x: &f64| [*x, -0.1 * (PI * x).sin()].map(|x| x + 1e-3 * normal());
@@ -146,7 +145,13 @@ fn a_load_is_found_from_a_curve_with_bars_that_hold() {
     problem.set_group("inside", places.into(), Vec::new()).unwrap();
     problem.set_group("ends", vec![0.0, 1.0].into(), Vec::new()).unwrap();
     problem.set_cloud("inside", "seen", cloud).unwrap();
-    let mut solution = solve(&problem);
+    problem
+}
+
+/// A curve in a plane shows its load as a surface in space does.
+#[test]
+fn a_load_is_found_from_a_curve_with_bars_that_hold() {
+    let mut solution = solve(&hanging());
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
     let inner: Vec<f64> = (1..40).map(|at| f64::from(at) / 40.0).collect();
     let truth = |x: f64| 0.1 * PI * PI * (PI * x).sin();
@@ -155,4 +160,16 @@ fn a_load_is_found_from_a_curve_with_bars_that_hold() {
     let off: Vec<f64> = inner.iter().zip(&found.values).map(|(x, found)| (found - truth(*x)).abs()).collect();
     let within = off.iter().zip(&deviations).filter(|(off, deviation)| **off < 2.0 * **deviation).count();
     assert!(off.iter().all(|off| *off < 0.3) && within > 30, "{within}, {off:?}");
+}
+
+/// A network follows the noise of a cloud, and steps that end early leave no time to tell.
+#[test]
+fn a_source_without_bars_is_not_called_right() {
+    let by_network = Settings { carrier: Carrier::Network, iterations: Some(100), ..Settings::default() };
+    let early = Settings { iterations: Some(12), ..Settings::default() };
+    for settings in [by_network, early] {
+        let solution = recover(&hanging(), &settings, &mut |_| Flow::Continue).unwrap();
+        let told = solution.verdict.checks.iter().find(|check| check.check == "told").unwrap();
+        assert!(!told.passed && told.message.contains("error bars"), "{told:?}");
+    }
 }

@@ -39,7 +39,7 @@ macro_rules! problem {
 }
 
 /// All of them.
-pub(super) fn problems() -> [Problem; 10] {
+pub(super) fn problems() -> [Problem; 11] {
     [
         problem!("elliptic", elliptic),
         problem!("rate", rate),
@@ -48,6 +48,7 @@ pub(super) fn problems() -> [Problem; 10] {
         problem!("lorenz", |_| lorenz(|_| 0.0)),
         problem!("forced_lorenz", |_| lorenz(|t| 10.0 * (2.0 * PI * t).sin())),
         problem!("reaction", reaction),
+        problem!("navier_stokes", navier_stokes),
         problem!("poisson", poisson),
         problem!("wrong_poisson", poisson),
         problem!("heat", heat),
@@ -146,6 +147,20 @@ fn reaction(_: &mut Random) -> Data {
     let cells = || (0..=CELLS).step_by(EVERY);
     let rows = (0..times.len()).flat_map(|time| cells().map(move |cell| (time, cell))).map(row).collect();
     Data { columns: &["x", "t", "a", "b"], rows, truth: Truth::Parameters(vec![("kf", rate), ("D", diffusivity)]) }
+}
+
+/// DeepXDE, Navier_Stokes_inverse, with a vortex of Taylor and Green in a stream in place of its wake, for which there is a closed form.
+fn navier_stokes(random: &mut Random) -> Data {
+    let (stream, viscosity) = ([1.0, 0.5], 0.01);
+    let row = |_| {
+        let [x, y, t] = [PI * random.uniform(), PI * random.uniform(), random.uniform()];
+        let (along, across) = (x - stream[0] * t, y - stream[1] * t);
+        let left = (-2.0 * viscosity * t).exp();
+        let u = stream[0] + left * along.sin() * across.cos();
+        vec![x, y, t, u, stream[1] - left * along.cos() * across.sin()]
+    };
+    let rows = (0..7000).map(row).collect();
+    Data { columns: &["x", "y", "t", "u", "v"], rows, truth: Truth::Parameters(vec![("C1", 1.0), ("C2", viscosity)]) }
 }
 
 /// PINNacle, PoissonInv, with the source that its solution has.

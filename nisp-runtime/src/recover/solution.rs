@@ -124,7 +124,8 @@ impl Solution {
             }
         }
         self.verdict.checks.extend(self.left_open());
-        self.is_met_exactly = self.meets_data_exactly(&noise) && answer.told.iter().all(|told| told.size > PLAIN);
+        self.is_met_exactly = self.meets_data_exactly(&noise)
+            && answer.told.iter().all(|told| told.size.is_some_and(|size| size > PLAIN));
         match (self.status, self.verdict.passed()) {
             (Status::Budget, true) if self.is_met_exactly && self.has_room() => self.status = Status::Converged,
             (Status::Converged, false) => self.status = Status::Inconsistent,

@@ -4,9 +4,10 @@ use super::bars::Distrust;
 use super::carried::{Carried, Values, heads};
 use crate::carrier::Kept;
 use crate::engine::Engine;
-use crate::facts::{Answer, Leaning};
+use crate::facts::{Answer, Leaning, Told};
 use crate::local::smooth;
 use crate::network::Architecture;
+use crate::noise;
 use crate::problem::Bound;
 use crate::saved::KeptNetwork;
 use crate::solve::curvature::Curvature;
@@ -93,6 +94,12 @@ impl Carried for Trained {
         if bound.problem.scene().schema.heads.iter().any(|head| head.source) {
             let known = |deviation| Leaning { moved: None, deviation, is_weighed: false };
             answer.leaning = self.deviations().into_iter().map(known).collect();
+        }
+        // Without error bars a source may follow the noise of what was measured or seen.
+        let schema = bound.problem.scene().schema;
+        if self.prior.is_none() && noise::estimate(bound).with_clouds(bound).is_there(schema) {
+            let sources = (0..schema.heads.len()).filter(|&head| schema.heads[head].source);
+            answer.told = sources.map(Told::unasked).collect();
         }
         // Where nothing is measured, points of the equations are all that a network was shown.
         let others = bound.problem.scene().schema.observed().is_empty().then(|| smooth::others(bound)).flatten();

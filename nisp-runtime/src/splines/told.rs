@@ -99,7 +99,7 @@ pub(super) fn told(
             .map(|(spread, own)| spread.share * (own[at] + along.apart(&kept.theta, &spread.theta).powi(2)))
             .sum();
         let nearer = along.square / (2.0 * variance.sqrt());
-        Some(Told { head, size: (squares / places.len() as f64).sqrt(), nearer, open: open[at] })
+        Some(Told { head, size: Some((squares / places.len() as f64).sqrt()), nearer, open: open[at] })
     };
     along.iter().enumerate().filter_map(of).collect()
 }

@@ -17,9 +17,16 @@ const OPEN: f64 = 0.9;
 /// Two checks for every source that its carrier tells of.
 pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
     let heads = bound.problem.scene().schema.heads;
-    let size = |told: &Told| told.size.max(told.nearer * LEAST / NEARER);
+    let size = |told: &Told| told.size.map_or(0.0, |size| size.max(told.nearer * LEAST / NEARER));
     let check = |own: &Told| {
         let (name, size_of) = (heads[own.head].name, size(own));
+        if own.size.is_none() {
+            let said = format!(
+                "`{name}` has no error bars, so that nothing says how much of it is noise: give a larger budget or more iterations, or \
+                 take `--carrier splines`"
+            );
+            return Check::new("told", ("", name), (f64::INFINITY, 1.0 / LEAST), said);
+        }
         let is_beside =
             |other: &&Told| other.head != own.head && size(other) < LEAST && are_together(bound, own.head, other.head);
         let hint = match told.iter().find(is_beside) {

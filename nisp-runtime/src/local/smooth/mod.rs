@@ -284,7 +284,9 @@ fn finish(
     let mut kept = KeptLattices { heads: solver.heads, theta, learned, draws };
     sources().for_each(|head| kept.widen(head, places::widened(bound, head)));
     // What the cells cannot hold tells no source from none.
-    answer.told = told::told(bound, &kept);
+    let is_untold =
+        is_noisy && kept.draws.coefficients.is_empty() && matches!(status, Status::Converged | Status::Budget);
+    answer.told = told::told(bound, &kept, is_untold);
     if is_beside_sources {
         answer.leaning = leaning::facts(&kept, rougher.as_deref());
     }

@@ -8,11 +8,13 @@ use crate::solve::vector;
 /// Points at which a source is compared with what is known of it, at most.
 const MOST: usize = 2000;
 
-/// How much is told of every source, at points of the equations that it is in; nothing without deviations.
-pub(super) fn told(bound: &Bound, kept: &KeptLattices) -> Vec<Told> {
+/// How much is told of every source, at points of the equations that it is in; nothing without deviations, unless there was no time for
+/// them.
+pub(super) fn told(bound: &Bound, kept: &KeptLattices, is_early: bool) -> Vec<Told> {
     let schema = bound.problem.scene().schema;
     let sources = (0..schema.heads.len()).filter(|&head| schema.heads[head].source);
-    sources.filter_map(|head| of(head, &points(bound, head), kept)).collect()
+    let unasked = |head| is_early.then(|| Told::unasked(head));
+    sources.filter_map(|head| of(head, &points(bound, head), kept).or_else(|| unasked(head))).collect()
 }
 
 /// Points of the largest group that reads a head.
@@ -32,5 +34,5 @@ fn of(head: usize, points: &[f64], kept: &KeptLattices) -> Option<Told> {
     // The truth `f` is nearer to the answer `a` than to none if `2 a (f - a) > -a a`.
     let along = kept.deviation_of_sum(&kept.weights_of_sum(head, points, &values))?;
     let nearer = vector::dot(&values, &values) / (2.0 * along);
-    Some(Told { head, size: (squares / values.len().max(1) as f64).sqrt(), nearer, open: 0.0 })
+    Some(Told { head, size: Some((squares / values.len().max(1) as f64).sqrt()), nearer, open: 0.0 })
 }
