@@ -12,7 +12,7 @@ use crate::residual::Programs;
 use crate::schema::{self, Jet, Term, TermKind};
 use crate::units::Number;
 
-/// Residual of an equation over its source.
+/// Residual of an equation over its source; where nothing is measured it is [`PART`]: such equations are all that says what the source is.
 const SOURCE: f64 = 0.3;
 /// Residual of a balance without a source over its largest part.
 const BALANCE: f64 = 0.2;
@@ -69,8 +69,9 @@ struct Judged<'a> {
     sizes: &'a Sizes,
     scalars: &'a [f64],
     finer: &'static str,
-    /// The largest residual of a balance without a source, over its largest part.
+    /// The largest residual of a balance without a source, over its largest part, and of one with a source, over that.
     balance: f64,
+    source: f64,
 }
 
 /// Checks of the equations and conditions of a group.
@@ -89,8 +90,9 @@ pub(super) fn checks(
         (true, Some(_)) => PART,
         (true, None) => STRICT,
     };
+    let source = if scene.observed().is_empty() { PART } else { SOURCE };
     let (scalars, finer) = (&answer.scalars, answer.finer);
-    let judged = Judged { bound, group, schema, facts, programs, sizes, scalars, finer, balance };
+    let judged = Judged { bound, group, schema, facts, programs, sizes, scalars, finer, balance, source };
     let mut checks = Vec::new();
     for (term, natural) in schema.terms.iter().zip(&bound.sizes[group]) {
         match term.kind {
@@ -121,7 +123,9 @@ impl Judged<'_> {
                 let parts = self.parts(term, row);
                 let kind = if condition { "condition" } else { "equation" };
                 match parts.source {
-                    Some(source) if !condition => (kind, source.max(NOTHING * parts.largest), SOURCE, "its source"),
+                    Some(source) if !condition => {
+                        (kind, source.max(NOTHING * parts.largest), self.source, "its source")
+                    }
                     _ => {
                         let limit = if parts.stated { PART.min(self.balance) } else { self.balance };
                         (kind, parts.largest.max(REST * natural), limit, "its largest part")
