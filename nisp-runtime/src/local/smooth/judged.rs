@@ -39,7 +39,7 @@ impl Solver<'_> {
     /// answer under that one.
     pub(super) fn doubted(&mut self, state: &State) -> Option<(Deviations, Vec<f64>)> {
         let mut beyond = vec![0.0; state.theta.len()];
-        let mut other = state.clone();
+        let (mut other, mut eases) = (state.clone(), false);
         if !self.judged(Phase::Solve).is_empty() {
             let bends = self.evidence_of_belief(state);
             let draws = self.deviations(state)?.coefficients;
@@ -48,6 +48,11 @@ impl Solver<'_> {
                 other = self.step(&other).ok()?.next;
             }
             let borne_out = BorneOut::by(bends, self.evidence_of_belief(&other));
+            match borne_out {
+                BorneOut::Edges => other = self.as_rough_as_likely(&other)?,
+                BorneOut::Bends => eases = true,
+                BorneOut::Unknown => {}
+            }
             for head in self.judged(Phase::Solve) {
                 let own = self.heads.first[head]..self.heads.first[head + 1];
                 let size = |state: &State| state.classes[self.roughness[head]].size;
@@ -55,7 +60,7 @@ impl Solver<'_> {
                 let short = match borne_out {
                     BorneOut::Bends => 0.0,
                     BorneOut::Edges => edges::unresolved(&self.heads, head, size(&other)),
-                    BorneOut::Neither => {
+                    BorneOut::Unknown => {
                         let likely: Vec<Vec<f64>> = draws.iter().map(likely).collect();
                         short::unresolved(&self.heads, head, &likely, size(state))
                     }
@@ -63,7 +68,10 @@ impl Solver<'_> {
                 beyond[own].fill(short);
             }
         }
-        let mut deviations = self.deviations(&other)?;
+        // What strict equations rule out of a smooth source for want of cells is unknown.
+        let about = if eases { self.eased(&other) } else { other.clone() };
+        self.set_sigmas(&about);
+        let mut deviations = self.deviations(&about)?;
         let add = |draws: &mut [Vec<f64>], ours: &[f64], theirs: &[f64]| {
             // Signs in turns, so that draws stay draws about nothing.
             for (draw, sign) in draws.iter_mut().zip([1.0, -1.0].into_iter().cycle()) {

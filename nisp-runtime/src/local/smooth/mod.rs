@@ -28,6 +28,7 @@ mod step;
 mod told;
 mod undetermined;
 mod unmeasured;
+mod unsure;
 
 use std::time::Instant;
 
@@ -57,7 +58,7 @@ use state::State;
 pub(crate) const METHOD: &str = "splines on a lattice";
 
 /// What error bars take, in steps.
-const BARS: f64 = 5.0 + judged::DOUBTS as f64;
+const BARS: f64 = 6.0 + judged::DOUBTS as f64;
 
 /// Points of the largest equation on a finer lattice, beside those on the one before.
 const MORE: usize = 2;

@@ -23,8 +23,27 @@ impl Solver<'_> {
         }
         let asked = rows.asked.iter().map(|asked| self.without(asked)).filter(|asked| is_any(&asked.counts)).collect();
         self.add_all(state, &Rows { asked, clouds: Vec::new(), learned: rows.learned.clone() });
+        let heads = self.schema().heads.iter().enumerate();
+        heads.filter(|(_, declared)| !declared.source).for_each(|(head, _)| self.hold(state, head));
         let found = self.settled(state, &sizes);
         Unmeasured::new(found.unwrap_or_default(), sizes)
+    }
+
+    /// Adds to the normal equations that a head is as large as it was found to be. Equations without measurements may leave a field open,
+    /// as where nothing is said of what comes in.
+    pub(super) fn hold(&mut self, state: &State, head: usize) {
+        let squares = self.squares(state, head);
+        if squares > 0.0 {
+            for at in self.heads.first[head]..self.heads.first[head + 1] {
+                self.normal.add_stiffness(at, 1.0 / squares);
+                self.normal.gradient[at] += state.theta[at] / squares;
+            }
+        }
+    }
+
+    /// Sum of squares of a head's coefficients.
+    pub(super) fn squares(&self, state: &State, head: usize) -> f64 {
+        state.theta[self.heads.first[head]..self.heads.first[head + 1]].iter().map(|x| x * x).sum()
     }
 
     /// By head, what the rows in the normal equations settle.
