@@ -12,10 +12,10 @@ use super::separated::reader;
 use super::{Column, Fault, Kind};
 
 /// Lines that are searched for the first row, at most.
-const MOST: usize = 512;
+pub(super) const MOST: usize = 512;
 
 /// Where the header of a table is.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Heading {
     /// How many lines stand above the header.
     pub(super) titles: usize,
@@ -78,7 +78,7 @@ impl Column {
 }
 
 /// True of cells without words, or that begin with none and hold a number, or are more numbers than words.
-fn is_row(line: &StringRecord) -> bool {
+pub(super) fn is_row(line: &StringRecord) -> bool {
     let words = line.iter().filter(|cell| is_word(cell)).count();
     let numbers = line.iter().filter(|cell| is_number(cell)).count();
     let is_empty = line.iter().all(str::is_empty);
