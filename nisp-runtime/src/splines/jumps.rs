@@ -28,6 +28,7 @@ pub(super) fn jumps(bound: &Bound, noise: &Noise) -> Vec<[f64; 2]> {
             let mut rows: Vec<(f64, f64)> = all.filter(|(_, value)| !value.is_nan()).collect();
             rows.sort_by(|a, b| a.0.total_cmp(&b.0));
             jumps.extend(of_rows(&rows, found.deviation, ALONE));
+            jumps.extend(of_slopes(&rows, found.deviation));
         }
     }
     jumps
@@ -65,6 +66,19 @@ fn of_rows(rows: &[(f64, f64)], noise: f64, alone: f64) -> Vec<[f64; 2]> {
     rows.windows(4).filter(is_jump).map(|near| [near[1].0, near[2].0]).collect()
 }
 
+/// Pairs of neighbouring places between which the slope of values jumps: something that moves them was switched. The slope between the two
+/// is one of both.
+fn of_slopes(rows: &[(f64, f64)], noise: f64) -> Vec<[f64; 2]> {
+    let is_jump = |near: &&[(f64, f64)]| {
+        let gap = |at: usize| near[at + 1].0 - near[at].0;
+        let slope = |at: usize| (near[at + 1].1 - near[at].1) / gap(at);
+        let change = |from: usize, to: usize| (slope(to) - slope(from)).abs();
+        change(1, 3) > FAR * noise * (1.0 / gap(1) + 1.0 / gap(3))
+            && change(1, 3) > 2.0 * ALONE * change(0, 1).max(change(3, 4))
+    };
+    rows.windows(6).filter(is_jump).map(|near| [near[2].0, near[3].0]).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,5 +91,16 @@ mod tests {
         assert!(of_rows(&rows(&step), 0.3, ALONE).is_empty());
         assert!(of_rows(&rows(&|at| at), 0.01, ALONE).is_empty());
         assert!(of_rows(&[], 0.01, ALONE).is_empty());
+    }
+
+    #[test]
+    fn a_slope_jumps_where_it_is_another_behind_and_not_where_it_turns() {
+        let rows = |value: &dyn Fn(f64) -> f64| (0..20).map(f64::from).map(|at| (at, value(at))).collect::<Vec<_>>();
+        let switched = |at: f64| if at < 7.4 { at } else { 14.8 - at };
+        assert_eq!(of_slopes(&rows(&switched), 0.05), [[7.0, 8.0]]);
+        assert!(of_slopes(&rows(&switched), 0.2).is_empty());
+        // A wave of seven rows.
+        assert!(of_slopes(&rows(&|at| (0.9 * at).sin()), 1e-6).is_empty());
+        assert!(of_slopes(&rows(&|at| at * at), 1e-6).is_empty());
     }
 }
