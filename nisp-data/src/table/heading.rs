@@ -95,11 +95,14 @@ fn is_word(cell: &str) -> bool {
     !cell.is_empty() && number(cell, b';').is_err() && !is_date(cell)
 }
 
-/// True if the line below a header says the units of its columns: every word in it is one, and it holds no number.
+/// True if the line below a header says the units of its columns: it holds no number, and every word in it is a unit, or at least half of
+/// them are and all of them stand below words.
 fn are_units(header: &StringRecord, below: &StringRecord) -> bool {
-    let words = || below.iter().filter(|cell| is_word(cell));
+    let words = || header.iter().zip(below).filter(|(_, cell)| is_word(cell));
+    let units = words().filter(|(_, word)| is_unit(bracketed(word).unwrap_or(word))).count();
+    let are_below_words = || words().all(|(above, _)| is_word(above));
     below.len() == header.len()
-        && words().count() > 0
+        && units > 0
         && !below.iter().any(is_number)
-        && words().all(|word| is_unit(bracketed(word).unwrap_or(word)))
+        && (units == words().count() || 2 * units >= words().count() && are_below_words())
 }
