@@ -1,5 +1,7 @@
 //! A scene over one coordinate, bound to rows as they come.
 
+use std::time::SystemTime;
+
 use nisp::schema::{Place, Portion};
 use nisp::{FixedLagSmoother, LagSettings, Problem, RowColumn, SceneRef};
 use nisp_data::Table;
@@ -7,7 +9,7 @@ use nisp_data::Table;
 use crate::entry::Entry;
 use crate::error::PrepareError;
 use crate::request::Request;
-use crate::tables::{header, read};
+use crate::tables::{Clock, header, read};
 
 /// How rows of a table become those of a scene.
 #[derive(Clone)]
@@ -19,7 +21,7 @@ pub struct Record {
 }
 
 impl Record {
-    /// For rows under a header, a table that may have no rows.
+    /// For rows like those of a table, which may have none.
     ///
     /// # Errors
     /// A scene that cannot be followed, or a column, a scene or a parameter that does not fit.
@@ -43,6 +45,11 @@ impl Record {
     /// What the rows measure nothing of.
     pub fn lacking(&self) -> impl Iterator<Item = &'static str> + '_ {
         self.columns.iter().filter(|(_, is_there)| !is_there).map(|(column, _)| column.name)
+    }
+
+    /// What the user should know where places are given by dates, which are counted from a moment.
+    pub fn dated(&self, table: &Table, begin: Option<SystemTime>) -> Option<String> {
+        Clock { begin }.said(self.scene.schema, table, &self.request)
     }
 
     /// The place of a row, and its columns in declared units, NaN where nothing was measured.

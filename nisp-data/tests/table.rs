@@ -220,6 +220,14 @@ fn time_must_rise() {
 }
 
 #[test]
+fn dates_that_do_not_rise_are_told_as_dates() {
+    let mut table = parse("t,q\n2026-01-02 00:00:10,1\n2026-01-02 00:00:05,2\n");
+    table.count_from(table.begins().unwrap());
+    let said = table.require_increasing("t").unwrap_err().to_string();
+    assert!(said.contains("line 3, column `t`: 2026-01-02 00:00:05 comes after 2026-01-02 00:00:10; sort"), "{said}");
+}
+
+#[test]
 fn the_repository_data_reads() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../data");
     let observed = Table::read(root.join("pendulum/run_01_obs.csv")).unwrap();
@@ -289,6 +297,11 @@ fn titles_above_a_header_and_units_below_it_are_known() {
     let phases = parse("who,phase,t,q\nA,A,0,5\nA,,1,6\nB,,3,8\n");
     assert_eq!(phases.quantity("t", "s").unwrap(), [0.0, 1.0, 3.0]);
     assert_eq!(parse("n,t,q\n-,s,mm\n1,0,5\n2,1,6\n").quantity("q", "m").unwrap(), [0.005, 0.006]);
+    // A line of units with one that is not known is still one, and says so where its column is asked for.
+    let unknown = parse("t,q,n\ns,mm,Upm\n0,5,1\n1,6,1\n");
+    assert_eq!(unknown.quantity("q", "m").unwrap(), [0.005, 0.006]);
+    let said = unknown.quantity("n", "1/s").unwrap_err().to_string();
+    assert!(said.contains("`n [Upm]` is in Upm") && said.contains("no such unit is known"), "{said}");
     assert_eq!(parse("t_s,q_mm\ns,mm\n0,5\n1,6\n").quantity("q", "m").unwrap(), [0.005, 0.006]);
     let many = parse("t;q;a;b;c;e\n0,5;5,1;u;v;w;x\n1,5;6,1;u;v;w;x\n");
     assert_eq!(many.quantity("q", "m").unwrap(), [5.1, 6.1]);

@@ -3,6 +3,7 @@
 use nisp::solve::driver::Flow;
 use nisp::{Carrier, FixedLagSmoother, LagSettings, Problem, SceneRef, Settings, Smoothed, recover, scene};
 
+mod learned;
 mod rows;
 
 nisp::pde! {

@@ -147,6 +147,9 @@ fn rows_that_cannot_be_taken_are_left_out() {
     let mut found = Vec::new();
     for (at, (t, y)) in rows.iter().enumerate() {
         found.extend(spoiled.push(*t, &[*y]).unwrap());
+        if at < 3 {
+            assert!(matches!(spoiled.push(*t, &[*y]), Err(LiveError::Backwards { .. })));
+        }
         if at % 50 == 49 {
             assert!(matches!(spoiled.push(*t - 0.05, &[*y]), Err(LiveError::Backwards { .. })));
             assert!(matches!(spoiled.push(*t, &[*y]), Err(LiveError::Backwards { .. })));

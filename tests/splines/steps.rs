@@ -45,6 +45,20 @@ nisp::pde! {
     }
 }
 
+nisp::pde! {
+    /// An oven whose loss nobody knows, and a heater that is switched.
+    mod oven {
+        units: off;
+        coordinates: t;
+        fields: T;
+        sources: P;
+        parameters: loss > 0 = 0.1;
+        on motion { balance: d(T, t) == P - loss * T; }
+        on samples { observe T; }
+        scene heated { learn loss; }
+    }
+}
+
 /// When the valve opens and closes, and how much comes through it.
 const OPEN: [(f64, f64, f64); 2] = [(2.0, 3.5, 1.0), (6.0, 6.4, 0.6)];
 
@@ -153,4 +167,35 @@ fn a_load_that_switches_is_within_its_bars() {
     }
     let beyond = |most: f64| off.iter().filter(|off| **off > most).count() as f64 / off.len() as f64;
     assert!(beyond(2.0) < 0.15 && beyond(4.0) < 0.01, "{} {}", beyond(2.0), beyond(4.0));
+}
+
+/// A row of the oven brings 480 times the noise, and the heater is switched between two of them: cells as wide as rows are apart cannot follow.
+/// What each switch brings relaxes exponentially.
+#[test]
+fn a_heater_that_switches_between_two_rows_is_found_with_the_loss_beside_it() {
+    const LOSS: f64 = 0.057;
+    const HEAT: f64 = 48.0;
+    let times: Vec<f64> = (0..400).map(f64::from).collect();
+    let switches = || (0..5).map(|turn| 80.0 * f64::from(turn) + 13.37).flat_map(|on| [(on, HEAT), (on + 32.0, -HEAT)]);
+    let heat = |t: f64| switches().filter(|(at, _)| *at <= t).map(|(_, heat)| heat).sum::<f64>();
+    let warm = |t: f64| {
+        let by = |(at, heat): (f64, f64)| heat / LOSS * -(-LOSS * (t - at).max(0.0)).exp_m1();
+        50.0 * (-LOSS * t).exp() + switches().map(by).sum::<f64>()
+    };
+    for seed in 1..4 {
+        let mut normal = normals(seed);
+        let mut problem = Problem::new(scene::<oven::heated::Scene>());
+        problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+        let measured = times.iter().map(|&t| warm(t) + 0.1 * normal()).collect();
+        problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
+        let mut solution = solve(&problem, Carrier::Splines);
+        assert_eq!(solution.status, Status::Converged, "{seed}: {:?}", solution.verdict);
+        let learned = solution.learned()[0].clone();
+        assert!((learned.value / LOSS - 1.0).abs() < 0.01, "{learned:?}");
+        let estimates = solution.evaluate_with_errors(&times);
+        let found = of(&estimates, "P");
+        let bars = found.deviations.as_ref().expect("a sound answer has error bars");
+        let rows = (0..400).filter(|&row| (found.values[row] - heat(times[row])).abs() > 2.0 * bars[row]);
+        assert!(rows.count() < 40);
+    }
 }

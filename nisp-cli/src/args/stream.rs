@@ -112,7 +112,9 @@ Frames:
   In a folder that is followed, files count when they have stopped growing; those that were there before do not.
 
 Rows of a record:
-  CSV as for `nisp solve`: names and units in the header, empty or nan cells where nothing was measured, times that rise.
+  CSV as for `nisp solve`: titles, names and units in the header or below it, dates, empty or nan cells where nothing was
+  measured, times that rise. The first three rows side by side tell the separator, where the header is, and whether days
+  or months come first in dates.
   The first 200 rows say how large the noise is, how smooth the sources are, and which lag is worth waiting for; then
   they are all answered, and every later row when the record is a lag farther. Where the record ends the last rows are
   answered at shorter lags. After a gap longer than the lag it begins anew with the next 200 rows. Where answers no longer

@@ -51,10 +51,11 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
         }
     };
     let rows = Rows::read(name, input).map_err(|error| error.to_string())?;
-    let record = Record::new(entry, &request, rows.header()).map_err(|error| error.to_string())?;
+    let record = Record::new(entry, &request, rows.first()).map_err(|error| error.to_string())?;
     for name in record.lacking() {
         say(&format!("`{name}` is not measured: no column answers to it"));
     }
+    record.dated(rows.first(), rows.begin()).iter().for_each(|words| say(words));
     let (sender, came) = sync_channel(AHEAD);
     let bring = {
         let record = record.clone();

@@ -80,6 +80,34 @@ fn every_row_has_its_line_and_a_bad_one_is_named() {
     assert!(lag(&good[399]) < 1e-9 && (lag(&good[200]) - lag(&good[210])).abs() < 1e-6);
 }
 
+/// Loggers write titles, a line of units, dates and Windows line ends, into pipes as into files.
+#[test]
+fn what_files_may_have_streams_may_have() {
+    let place = Place::new();
+    place.put("spring.pde", SPRING);
+    let mut csv = String::from("Rig 7\r\nRun of today;;\r\n\r\nclock;y\r\n;mm\r\n");
+    for i in 0..300 {
+        let (plain, ms) = (row(i), 50 * i);
+        let y: f64 = plain.split_once(',').unwrap().1.parse().unwrap();
+        let clock = format!("31.01.2026 23:59:{:02}.{:03}", 40 + ms / 1000, ms % 1000);
+        let y = format!("{}", 1e3 * y).replace('.', ",");
+        writeln!(csv, "{clock};{}\r", if i == 250 { "oops".into() } else { y }).unwrap();
+    }
+    place.put("run.csv", &csv);
+    let ran = place.run("stream spring.pde --data run.csv --column t=clock");
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    assert!(ran.stderr.contains("counted from 2026-01-31 23:59:40"), "{}", ran.stderr);
+    let (bad, good): (Vec<_>, Vec<_>) = lines(&ran.stdout).into_iter().partition(|line| line["status"] == "error");
+    let [bad] = &bad[..] else { panic!("{bad:?}") };
+    assert!(bad["error"].as_str().unwrap().contains("line 256, column `y [mm]`: `oops`"), "{bad}");
+    assert_eq!(good.len(), 299);
+    let is_right = |line: &Value| {
+        let t = line["t"].as_f64().unwrap();
+        (line["state"]["y"]["value"].as_f64().unwrap() - motion(t).0).abs() < 0.02
+    };
+    assert!(good.iter().all(is_right) && good[298]["t"].as_f64().is_some_and(|t| (t - 14.95).abs() < 1e-9));
+}
+
 /// What is asked of a program that waits: an answer before the input ends.
 #[test]
 fn rows_are_answered_as_they_come() {
@@ -109,8 +137,10 @@ fn what_cannot_be_followed_is_said_with_what_to_do() {
     place.put("spring.pde", SPRING);
     place.put("few.csv", "t_s,y_m\n0,1\n1,1\n");
     place.put("other.csv", "t_s,x_m\n0,1\n1,1\n");
+    place.put("empty.csv", &format!("t_s,y_m\n{}", (0..20).map(|i| format!("{i},\n")).collect::<String>()));
     for (line, code, what) in [
         ("stream spring.pde --data few.csv", 3, "too few"),
+        ("stream spring.pde --data empty.csv", 3, "none of the first 20 rows has a measurement"),
         ("stream spring.pde --data other.csv", 2, "y"),
         ("stream spring.pde --data none.csv", 2, "none.csv"),
         ("stream spring.pde --data few.csv --maps maps", 2, "--maps is about clouds"),

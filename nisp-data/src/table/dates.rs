@@ -44,21 +44,35 @@ impl Column {
         }
     }
 
-    /// Decides whether days parted by slashes have the month first, once all cells are seen: where one order alone makes them all dates.
-    /// Tables of one problem may not be read in different orders, so that days that may be either are refused.
-    pub(super) fn choose_days(&mut self) {
-        let month_first = std::mem::take(&mut self.month_first);
+    /// In which order days parted by slashes are written, once all cells are seen: the one that alone makes them all dates. Nothing where
+    /// both do, and they are other dates.
+    pub(super) fn order(&self) -> Option<Order> {
         let is_whole = |dates: &[SystemTime]| !dates.is_empty() && dates.len() == self.values.len();
-        if !is_whole(&month_first) || month_first == self.dates {
-            return;
+        match (is_whole(&self.dates), is_whole(&self.month_first)) {
+            (true, true) if self.dates != self.month_first => None,
+            (false, true) => Some(Order::MonthFirst),
+            _ => Some(Order::DayFirst),
         }
-        if is_whole(&self.dates) {
+    }
+
+    /// Reads days in an order.
+    pub(super) fn read_days(&mut self, order: Order) {
+        let month_first = std::mem::take(&mut self.month_first);
+        if order == Order::MonthFirst {
+            self.dates = month_first;
+        }
+    }
+
+    /// Reads days in the order that they are written in. Tables of one problem may not be read in different orders, so that days that
+    /// may be either are refused.
+    pub(super) fn choose_days(&mut self) {
+        let order = self.order();
+        self.read_days(order.unwrap_or(Order::DayFirst));
+        if order.is_none() {
             let what =
                 "its days may have the day of the month first, or the month; write them like `2026-01-31`".into();
             let line = self.fault.as_ref().map_or(0, |fault| fault.line);
             (self.dates, self.fault) = (Vec::new(), Some(Fault { line, what, kind: Kind::Word }));
-        } else {
-            self.dates = month_first;
         }
     }
 
@@ -68,16 +82,26 @@ impl Column {
     }
 }
 
-/// Gives times of day the days of the column beside them, where one column holds days alone: that is no date of its own then.
-pub(super) fn join_days(columns: &mut [Column]) {
+/// The only column that holds days alone.
+pub(super) fn column_of_days(columns: &[Column]) -> Option<usize> {
     let is_day = |at: &SystemTime| !is_of_day(*at) && seconds(SystemTime::UNIX_EPOCH, *at) % 86_400.0 == 0.0;
-    let numbers = |of: &dyn Fn(&SystemTime) -> bool| -> Vec<usize> {
-        let all = |at: &usize| columns[*at].is_dated() && columns[*at].dates.iter().all(of);
-        (0..columns.len()).filter(all).collect()
-    };
-    let (days, of_day) = (numbers(&is_day), numbers(&|at| is_of_day(*at)));
-    let ([of_days], false) = (&days[..], of_day.is_empty()) else { return };
-    let days = std::mem::take(&mut columns[*of_days].dates);
+    let mut days = all(columns, is_day);
+    days.next().filter(|_| days.next().is_none())
+}
+
+/// Columns that hold dates alone of which something is true.
+fn all(columns: &[Column], of: impl Fn(&SystemTime) -> bool) -> impl Iterator<Item = usize> {
+    let all = move |(_, column): &(usize, &Column)| column.is_dated() && column.dates.iter().all(&of);
+    columns.iter().enumerate().filter(all).map(|(at, _)| at)
+}
+
+/// Gives times of day the days of a column beside them, which holds no dates of its own then.
+pub(super) fn join_days(columns: &mut [Column], of_days: usize) {
+    let of_day: Vec<usize> = all(columns, |at| is_of_day(*at)).collect();
+    if of_day.is_empty() {
+        return;
+    }
+    let days = std::mem::take(&mut columns[of_days].dates);
     for at in of_day {
         for (at, day) in columns[at].dates.iter_mut().zip(&days) {
             *at = *day + at.duration_since(SystemTime::UNIX_EPOCH).unwrap_or_default();
@@ -94,7 +118,7 @@ pub fn moment(at: SystemTime) -> String {
 
 /// What comes first in a day parted by slashes whose year comes last.
 #[derive(Clone, Copy, PartialEq)]
-enum Order {
+pub(super) enum Order {
     DayFirst,
     MonthFirst,
 }

@@ -12,10 +12,10 @@ use super::separated::reader;
 use super::{Column, Fault, Kind};
 
 /// Lines that are searched for the first row, at most.
-const MOST: usize = 512;
+pub(super) const MOST: usize = 512;
 
 /// Where the header of a table is.
-#[derive(Default)]
+#[derive(Clone, Copy, Default)]
 pub(super) struct Heading {
     /// How many lines stand above the header.
     pub(super) titles: usize,
@@ -78,7 +78,7 @@ impl Column {
 }
 
 /// True of cells without words, or that begin with none and hold a number, or are more numbers than words.
-fn is_row(line: &StringRecord) -> bool {
+pub(super) fn is_row(line: &StringRecord) -> bool {
     let words = line.iter().filter(|cell| is_word(cell)).count();
     let numbers = line.iter().filter(|cell| is_number(cell)).count();
     let is_empty = line.iter().all(str::is_empty);
@@ -95,11 +95,14 @@ fn is_word(cell: &str) -> bool {
     !cell.is_empty() && number(cell, b';').is_err() && !is_date(cell)
 }
 
-/// True if the line below a header says the units of its columns: every word in it is one, and it holds no number.
+/// True if the line below a header says the units of its columns: it holds no number, and every word in it is a unit, or at least half of
+/// them are and all of them stand below words.
 fn are_units(header: &StringRecord, below: &StringRecord) -> bool {
-    let words = || below.iter().filter(|cell| is_word(cell));
+    let words = || header.iter().zip(below).filter(|(_, cell)| is_word(cell));
+    let units = words().filter(|(_, word)| is_unit(bracketed(word).unwrap_or(word))).count();
+    let are_below_words = || words().all(|(above, _)| is_word(above));
     below.len() == header.len()
-        && words().count() > 0
+        && units > 0
         && !below.iter().any(is_number)
-        && words().all(|word| is_unit(bracketed(word).unwrap_or(word)))
+        && (units == words().count() || 2 * units >= words().count() && are_below_words())
 }

@@ -5,6 +5,7 @@ mod dates;
 mod headers;
 mod heading;
 mod lookup;
+mod opening;
 mod read;
 mod rows;
 mod separated;
@@ -82,13 +83,18 @@ impl Table {
     pub fn require_increasing(&self, name: &str) -> Result<(), DataError> {
         let values = self.column(name)?;
         let Some(row) = values.windows(2).position(|pair| pair[1] <= pair[0]) else { return Ok(()) };
-        let (before, after) = (values[row], values[row + 1]);
-        let what = if before == after {
+        let column = self.find(name, None)?;
+        let shown = |row: usize| match column.dates.get(row).filter(|_| column.is_dated()) {
+            Some(at) => moment(*at),
+            None => values[row].to_string(),
+        };
+        let (before, after) = (shown(row), shown(row + 1));
+        let what = if values[row] == values[row + 1] {
             format!("the value {after} is there twice; keep one row for each value")
         } else {
             format!("{after} comes after {before}; sort the rows by this column")
         };
-        let column = self.find(name, None)?.header.clone();
+        let column = column.header.clone();
         let line = self.lines.get(row + 1).copied().unwrap_or(row + 2);
         Err(DataError::Cell { path: self.path.clone(), line, column, what })
     }

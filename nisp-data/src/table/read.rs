@@ -5,7 +5,7 @@ use std::path::Path;
 use csv::StringRecord;
 
 use super::cell::{describe, number};
-use super::dates::join_days;
+use super::dates::{column_of_days, join_days};
 use super::heading::Heading;
 use super::separated::{reader, separator, syntax};
 use super::{Column, Fault, Kind, Table};
@@ -53,6 +53,8 @@ impl Table {
             |record: &StringRecord| place.of_record(text, record.position().map_or(0, |at| at.byte() as usize));
         let below = line_of(&units);
         columns.iter_mut().zip(&units).for_each(|(column, unit)| column.add_unit(below, unit));
+        let title =
+            format!("if the line that begins with `{}` is a title, begin it with `#` or remove it", &headers[0]);
         let mut lines = Vec::new();
         for record in records {
             let record = record.map_err(|error| syntax(path, &error))?;
@@ -61,21 +63,9 @@ impl Table {
             if record.iter().all(str::is_empty) {
                 continue;
             }
-            if record.len() != columns.len() {
-                let instead = if lines.is_empty() || columns.len() == 1 {
-                    format!(
-                        "; if the line that begins with `{}` is a title, begin it with `#` or remove it",
-                        &headers[0]
-                    )
-                } else {
-                    "; fill or remove this row".into()
-                };
-                let what = format!("{} cells where the header has {}{instead}", record.len(), columns.len());
+            let instead = if lines.is_empty() || columns.len() == 1 { &title } else { "fill or remove this row" };
+            if let Some(what) = unlike(&record, columns.len(), instead) {
                 return Err(DataError::line(path, line, what));
-            }
-            if record.iter().any(|cell| cell.contains(['\n', '\r'])) {
-                // Rows below would be taken for one long remark.
-                return Err(DataError::line(path, line, "a cell goes on in the next line; close its quotation mark"));
             }
             for (column, cell) in columns.iter_mut().zip(&record) {
                 column.push(line, cell, mark);
@@ -89,7 +79,9 @@ impl Table {
         }
         columns.iter_mut().for_each(Column::doubt_thousands);
         columns.iter_mut().for_each(Column::choose_days);
-        join_days(&mut columns);
+        if let Some(of_days) = column_of_days(&columns) {
+            join_days(&mut columns, of_days);
+        }
         Ok(Table { path: path.to_path_buf(), columns, lines })
     }
 }
@@ -141,11 +133,20 @@ impl Column {
     }
 
     /// A column whose numbers may be a thousand times larger is refused where it is asked for.
-    fn doubt_thousands(&mut self) {
+    pub(super) fn doubt_thousands(&mut self) {
         if let (None, Some((line, what))) = (&self.fault, self.thousands.doubt()) {
             self.fault = Some(Fault { line, what, kind: Kind::Word });
         }
     }
+}
+
+/// What is wrong with a row as a whole, and what to do where it has too few cells or too many.
+pub(super) fn unlike(record: &StringRecord, columns: usize, instead: &str) -> Option<String> {
+    // Rows below would be taken for one long remark.
+    if record.iter().any(|cell| cell.contains(['\n', '\r'])) {
+        return Some("a cell goes on in the next line; close its quotation mark".into());
+    }
+    (record.len() != columns).then(|| format!("{} cells where the header has {columns}; {instead}", record.len()))
 }
 
 pub(super) fn check_headers(path: &Path, headers: &StringRecord) -> Result<Vec<Column>, DataError> {

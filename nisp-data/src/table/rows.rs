@@ -5,76 +5,93 @@ use std::path::Path;
 use std::time::SystemTime;
 
 use super::Table;
-use super::read::check_headers;
-use super::separated::{reader, separator, syntax};
+use csv::StringRecord;
+
+use super::dates::{Order, column_of_days, join_days};
+use super::opening::Records;
+use super::read::{check_headers, unlike};
 use crate::DataError;
 
-/// Rows of a CSV that is still being written. Dates in them are counted from those of the first row.
+/// What becomes of a row that is none.
+const LEFT_OUT: &str = "the row is left out";
+
+/// Rows of a CSV that is still being written, with all that tables in files may have: titles above the header, a line of units below
+/// it, remarks, dates. What a file tells as a whole the first rows tell: what parts cells, where the header is, and in which order days
+/// are written. Dates are counted from those of the first row.
 pub struct Rows<R> {
-    records: csv::Reader<R>,
-    record: csv::StringRecord,
+    records: Records<R>,
+    /// The first rows with their dates alone.
+    first: Table,
     row: Table,
-    separator: u8,
+    /// In which order each column writes days.
+    orders: Vec<Order>,
+    /// The column of days to which times of day belong.
+    of_days: Option<usize>,
     /// From when dates are counted.
     begin: Option<SystemTime>,
 }
 
 impl<R: BufRead> Rows<R> {
-    /// Reads the header line; `path` is only used to name the source in errors.
+    /// Reads the header and the first rows; `path` is only used to name the source in errors.
     ///
     /// # Errors
-    /// No header line, or none that can be one.
-    pub fn read(path: &Path, mut input: R) -> Result<Self, DataError> {
-        let mut header = String::new();
-        while header.trim().is_empty() || header.starts_with('#') {
-            header.clear();
-            let read = input.read_line(&mut header);
-            match read.map_err(|error| DataError::file(path, error.to_string()))? {
-                0 => return Err(DataError::file(path, "it ended before its header line, for instance `t [s],q [m]`")),
-                _ => header = header.trim_start_matches('\u{feff}').to_string(),
-            }
+    /// No header line, or none that can be one, and what is no text.
+    pub fn read(path: &Path, input: R) -> Result<Self, DataError> {
+        let mut records = Records::open(path, input)?;
+        let heading = records.heading;
+        let none = || DataError::file(path, "it ended before its header line, for instance `t [s],q [m]`");
+        for _ in 0..heading.titles {
+            records.next().transpose()?;
         }
-        let mark = separator(&header);
-        let mut first = csv::StringRecord::new();
-        let mut line = reader(mark).has_headers(false).from_reader(header.as_bytes());
-        line.read_record(&mut first).map_err(|error| syntax(path, &error))?;
-        let columns = check_headers(path, &first)?;
-        let records = reader(mark).has_headers(false).from_reader(input);
-        Ok(Self {
-            records,
-            record: csv::StringRecord::new(),
-            row: Table { path: path.into(), columns, lines: vec![0] },
-            separator: mark,
-            begin: None,
-        })
+        let (line, header) = records.next().transpose()?.ok_or_else(none)?;
+        let mut columns = check_headers(path, &header)?;
+        if heading.has_units
+            && let Some((line, units)) = records.next().transpose()?
+        {
+            columns.iter_mut().zip(&units).for_each(|(column, unit)| column.add_unit(line, unit));
+        }
+        let row = Table { path: path.into(), columns, lines: vec![line] };
+        let (mut first, orders, of_days) = first_rows(row.clone(), &records);
+        let begin = first.begins();
+        begin.into_iter().for_each(|begin| first.count_from(begin));
+        Ok(Self { records, first, row, orders, of_days, begin })
     }
 
-    /// The table of the header alone.
-    pub fn header(&self) -> &Table {
-        &self.row
+    /// The table of the first rows, of whose cells only dates are known.
+    pub fn first(&self) -> &Table {
+        &self.first
+    }
+
+    /// From when dates are counted, if there are any.
+    pub fn begin(&self) -> Option<SystemTime> {
+        self.begin
     }
 
     /// Waits for the next row; nothing at the end. After an error the next row may be asked for.
     pub fn next_row(&mut self) -> Option<Result<&Table, DataError>> {
-        match self.records.read_record(&mut self.record) {
-            Ok(false) => return None,
-            Ok(true) => {}
-            Err(error) => return Some(Err(syntax(&self.row.path, &error))),
-        }
-        // The header's line comes first.
-        let line = self.record.position().map_or(0, |at| at.line() as usize + 1);
+        let (line, record) = loop {
+            match self.records.next()? {
+                // Spreadsheets write rows of nothing but separators below their table.
+                Ok((_, record)) if record.iter().all(str::is_empty) => {}
+                Ok(row) => break row,
+                Err(error) => return Some(Err(error)),
+            }
+        };
         let Table { path, columns, lines } = &mut self.row;
-        if self.record.len() != columns.len() {
-            let what = format!("{} cells where the header has {}", self.record.len(), columns.len());
+        if let Some(what) = unlike(&record, columns.len(), LEFT_OUT) {
             return Some(Err(DataError::line(path, line, what)));
         }
         lines[0] = line;
-        for (column, cell) in columns.iter_mut().zip(&self.record) {
-            column.values.clear();
+        for ((column, cell), order) in columns.iter_mut().zip(&record).zip(&self.orders) {
             column.fault = None;
+            column.values.clear();
             column.dates.clear();
-            column.push(line, cell, self.separator);
-            column.choose_days();
+            column.push(line, cell, self.records.mark);
+            column.doubt_thousands();
+            column.read_days(*order);
+        }
+        if let Some(of_days) = self.of_days {
+            join_days(columns, of_days);
         }
         self.begin = self.begin.or_else(|| self.row.begins());
         if let Some(begin) = self.begin {
@@ -84,13 +101,39 @@ impl<R: BufRead> Rows<R> {
     }
 }
 
+/// A table of the rows that were read ahead, in which order each of its columns writes days, and which one holds days for times beside it.
+/// Of its cells only dates are kept: what is wrong with a row is told when it comes.
+fn first_rows<R: BufRead>(mut table: Table, records: &Records<R>) -> (Table, Vec<Order>, Option<usize>) {
+    let is_row = |record: &StringRecord| unlike(record, table.columns.len(), LEFT_OUT).is_none();
+    let rows: Vec<_> = records.waiting().filter(|(_, record)| is_row(record)).collect();
+    table.lines = rows.iter().map(|(line, _)| *line).collect();
+    let mut orders = Vec::new();
+    for (at, column) in table.columns.iter_mut().enumerate() {
+        let of_header = column.fault.clone();
+        rows.iter().for_each(|(line, record)| column.push(*line, &record[at], records.mark));
+        column.values.fill(f64::NAN);
+        let order = column.order();
+        orders.push(order.unwrap_or(Order::DayFirst));
+        match order {
+            Some(order) => {
+                column.read_days(order);
+                column.fault = of_header;
+            }
+            None => column.choose_days(),
+        }
+    }
+    let of_days = column_of_days(&table.columns);
+    of_days.into_iter().for_each(|at| join_days(&mut table.columns, at));
+    (table, orders, of_days)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
 
     #[test]
     fn rows_come_one_by_one_and_a_bad_one_does_not_end_them() {
-        let text = "# a remark\nt_s;q [mm]\n0;1,0\n1;\n\n2;3;4\n3;x\n4;5\n";
+        let text = "# a remark\nt_s;q [mm]\n0;1,0\n1;\n\n2;3;4\n3;x\n4;\"5\n5;6\n";
         let mut rows = Rows::read(Path::new("pipe"), text.as_bytes()).unwrap();
         let mut read = || {
             let row = rows.next_row()?;
@@ -99,10 +142,54 @@ mod tests {
         assert_eq!(read().unwrap().unwrap(), (0.0, 1e-3));
         let (t, q) = read().unwrap().unwrap();
         assert!(t == 1.0 && q.is_nan());
-        assert!(read().unwrap().unwrap_err().to_string().contains("3 cells where the header has 2"));
-        assert!(read().unwrap().unwrap_err().to_string().contains("`x` is not a number"));
-        assert_eq!(read().unwrap().unwrap(), (4.0, 5e-3));
+        let mut wrong = |words: &str| {
+            let message = read().unwrap().unwrap_err().to_string();
+            assert!(message.contains(words), "{message}");
+        };
+        wrong("line 6: 3 cells where the header has 2");
+        wrong("line 7, column `q [mm]`: `x` is not a number");
+        wrong("line 8: a cell goes on in the next line");
+        assert_eq!(read().unwrap().unwrap(), (5.0, 6e-3));
         assert!(read().is_none());
+    }
+
+    /// A text that comes byte by byte, of which it is known how much was read.
+    struct Drops<'a> {
+        text: &'a [u8],
+        read: &'a std::cell::Cell<usize>,
+    }
+
+    impl std::io::Read for Drops<'_> {
+        fn read(&mut self, into: &mut [u8]) -> std::io::Result<usize> {
+            let at = self.read.get();
+            let count = self.text[at..].len().min(into.len()).min(1);
+            into[..count].copy_from_slice(&self.text[at..at + count]);
+            self.read.set(at + count);
+            Ok(count)
+        }
+    }
+
+    #[test]
+    fn what_files_may_have_streams_may_have_and_no_row_waits_for_later_ones() {
+        let text =
+            "Logger 7\r\nRun,of today\r\n\r\nt,T\r\nms,degC\r\n# begun\r\n0,20\r\n10,21\r\n20,n/a\r\n30,x\r\n40,22";
+        let read = std::cell::Cell::new(0);
+        let drops = Drops { text: text.as_bytes(), read: &read };
+        let mut rows = Rows::read(Path::new("pipe"), std::io::BufReader::new(drops)).unwrap();
+        // The first row is there when three are: a carriage return ends its line.
+        assert_eq!(read.get(), text.find("\n30").unwrap());
+        let mut next = |t: f64, kelvins: f64| {
+            let row = rows.next_row().unwrap().unwrap();
+            assert_eq!(row.quantity("t", "s").unwrap(), [t]);
+            assert_eq!(row.measured("T", "K").unwrap()[0].to_bits(), kelvins.to_bits());
+        };
+        next(0.0, 293.15);
+        next(0.01, 294.15);
+        next(0.02, f64::NAN);
+        let wrong = rows.next_row().unwrap().unwrap().measured("T", "K").unwrap_err().to_string();
+        assert!(wrong.contains("line 10, column"), "{wrong}");
+        assert_eq!(rows.next_row().unwrap().unwrap().measured("T", "K").unwrap(), [295.15]);
+        assert!(rows.next_row().is_none());
     }
 
     #[test]
@@ -113,9 +200,41 @@ mod tests {
         assert_eq!([read(), read()], [0.0, 2000.0]);
     }
 
+    /// The first rows tell what comes first in a day, and no later row is read otherwise.
+    #[test]
+    fn days_are_read_in_one_order_and_joined_with_the_times_beside_them() {
+        let text = "day,clock,q\n1/31/2026,11:59:58 PM,1\n1/31/2026,11:59:59 PM,2\n2/1/2026,12:00:01 AM,3\n2/2/2026,12:00:01 AM,4\n";
+        let mut rows = Rows::read(Path::new("pipe"), text.as_bytes()).unwrap();
+        let mut read = || rows.next_row().unwrap().unwrap().chosen("t", "clock", "s").unwrap()[0];
+        assert_eq!([read(), read(), read(), read()], [0.0, 1.0, 3.0, 86_403.0]);
+        let either = "day,q\n1/2/2026,1\n1/3/2026,2\n1/4/2026,3\n1/31/2026,4\n";
+        let rows = Rows::read(Path::new("pipe"), either.as_bytes()).unwrap();
+        let refused = rows.first().chosen("t", "day", "s").unwrap_err().to_string();
+        assert!(refused.contains("line 2") && refused.contains("write them like `2026-01-31`"), "{refused}");
+    }
+
+    #[test]
+    fn marks_of_thousands_are_doubted_once_they_are_seen() {
+        let mut rows = Rows::read(Path::new("pipe"), "t;n\n0;998\n1;999\n2;1.001\n".as_bytes()).unwrap();
+        let mut read = || rows.next_row().unwrap().unwrap().quantity("n", "1").map(|n| n[0]);
+        assert_eq!((read().unwrap(), read().unwrap()), (998.0, 999.0));
+        assert!(read().unwrap_err().to_string().contains("parts thousands"));
+    }
+
     #[test]
     fn a_stream_without_a_header_says_what_it_lacks() {
         assert!(Rows::read(Path::new("pipe"), "".as_bytes()).is_err());
         assert!(Rows::read(Path::new("pipe"), "0,1\n".as_bytes()).is_err());
+    }
+
+    #[test]
+    fn a_line_without_end_is_bounded() {
+        let text = format!("t,q\n0,1\n1,2\n2,3\n{}\n3,4\n", "9".repeat(3 << 20));
+        let mut rows = Rows::read(Path::new("pipe"), text.as_bytes()).unwrap();
+        let last = std::iter::from_fn(|| Some(rows.next_row()?.map(|row| row.column("q").unwrap()[0])));
+        let told: Vec<String> = last.map(|row| row.map_or_else(|e| e.to_string(), |q| q.to_string())).collect();
+        assert_eq!(told.len(), 5);
+        assert!(told[3].contains("line 5: the line is longer"), "{}", told[3]);
+        assert_eq!(told[4], "4");
     }
 }

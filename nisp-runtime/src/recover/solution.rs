@@ -69,7 +69,7 @@ pub struct TermReport {
     pub equation: &'static str,
     /// Its unit.
     pub unit: schema::Unit,
-    /// Root mean square of its rows, in its unit.
+    /// Root mean square of its rows, in its unit; NaN where it has none, as where nothing was measured.
     pub rms: f64,
     /// The natural size of its rows, in its unit.
     pub size: f64,
@@ -333,7 +333,7 @@ impl Solution {
                 let outward = |x| self.bound.system.outward(&term.unit).of(Number::engine(x)).as_declared();
                 let observation = matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. });
                 let (misfits, noise) = self.carried.misfits(group, at);
-                let rms = (misfits.iter().map(|x| x * x).sum::<f64>() / misfits.len().max(1) as f64).sqrt();
+                let rms = (misfits.iter().map(|x| x * x).sum::<f64>() / misfits.len() as f64).sqrt();
                 reports.push(TermReport {
                     name: format!("{}.{}", schema.name, term.name),
                     equation: term.equation,

@@ -56,7 +56,8 @@ impl Kind {
     fn remedy(self) -> &'static str {
         match self {
             Self::Residual => {
-                "; check the equation there for a division by zero, a logarithm or a root of a negative number"
+                "; check the equation there for a division by zero, a logarithm or a root of a negative number: where a field \
+                 is never negative, say so (`h [m] >= 0`)"
             }
             Self::Gradient => "; check the equation there for a root or a power at zero",
             Self::Factorisation => {

@@ -11,6 +11,8 @@ use crate::schema::{Group, TermKind};
 /// place.
 const FAR: f64 = 10.0;
 const ALONE: f64 = 1.5;
+/// A jump of a slope over the changes of the slopes before and behind it, at least. A wave of eleven rows changes by less beside its crest.
+const TURNED: f64 = 3.0;
 /// A jump of a column that equations know, over the changes before and after it. It is stricter, since no equation is asked for between
 /// the two rows: a drive with three rows to a wave is no switch.
 const SWITCHED: f64 = 4.0;
@@ -28,6 +30,7 @@ pub(super) fn jumps(bound: &Bound, noise: &Noise) -> Vec<[f64; 2]> {
             let mut rows: Vec<(f64, f64)> = all.filter(|(_, value)| !value.is_nan()).collect();
             rows.sort_by(|a, b| a.0.total_cmp(&b.0));
             jumps.extend(of_rows(&rows, found.deviation, ALONE));
+            jumps.extend(of_slopes(&rows, found.deviation));
         }
     }
     jumps
@@ -65,6 +68,19 @@ fn of_rows(rows: &[(f64, f64)], noise: f64, alone: f64) -> Vec<[f64; 2]> {
     rows.windows(4).filter(is_jump).map(|near| [near[1].0, near[2].0]).collect()
 }
 
+/// Pairs of neighbouring places between which the slope of values jumps: something that moves them was switched. The slope between the two
+/// is one of both. A switch close to a row may be found on both sides of it.
+fn of_slopes(rows: &[(f64, f64)], noise: f64) -> Vec<[f64; 2]> {
+    let is_jump = |near: &&[(f64, f64)]| {
+        let gap = |at: usize| near[at + 1].0 - near[at].0;
+        let slope = |at: usize| (near[at + 1].1 - near[at].1) / gap(at);
+        let change = |from: usize, to: usize| (slope(to) - slope(from)).abs();
+        change(1, 3) > FAR * noise * (1.0 / gap(1) + 1.0 / gap(3))
+            && change(1, 3) > TURNED * change(0, 1).max(change(3, 4))
+    };
+    rows.windows(6).filter(is_jump).map(|near| [near[2].0, near[3].0]).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -77,5 +93,18 @@ mod tests {
         assert!(of_rows(&rows(&step), 0.3, ALONE).is_empty());
         assert!(of_rows(&rows(&|at| at), 0.01, ALONE).is_empty());
         assert!(of_rows(&[], 0.01, ALONE).is_empty());
+    }
+
+    #[test]
+    fn a_slope_jumps_where_it_is_another_behind_and_not_where_it_turns() {
+        let rows = |value: &dyn Fn(f64) -> f64| (0..20).map(f64::from).map(|at| (at, value(at))).collect::<Vec<_>>();
+        let switched = |at: f64| if at < 7.4 { at } else { 14.8 - at };
+        assert_eq!(of_slopes(&rows(&switched), 0.05), [[7.0, 8.0]]);
+        assert!(of_slopes(&rows(&switched), 0.2).is_empty());
+        // A wave of eleven rows, wherever it begins.
+        for begin in 0..11 {
+            assert!(of_slopes(&rows(&|at| (0.571 * at + 0.1 * f64::from(begin)).sin()), 1e-6).is_empty());
+        }
+        assert!(of_slopes(&rows(&|at| at * at), 1e-6).is_empty());
     }
 }

@@ -27,6 +27,11 @@ pub(super) struct Weights {
     pub(super) scalars: Vec<f64>,
     /// How far a learned scalar moves where sources may be larger, at most, as a share of itself.
     pub(super) leaning: f64,
+    /// Parameters of the learned scalars, and their covariances, row by row.
+    pub(super) learned: Vec<f64>,
+    pub(super) spread: Vec<f64>,
+    /// Derivatives of the scalars by their parameters.
+    pub(super) by_learned: Vec<f64>,
     /// Noise that differences of neighbours show.
     pub(super) noise: Noise,
     /// The classes to start from the next time.
@@ -66,12 +71,14 @@ impl Stretch {
         let best = place.best().filter(|_| status == Status::Converged).cloned();
         let Tried { kind, state, .. } = best.ok_or(LiveError::Open)?;
         // The window's sources are as rough all along. Scalars that are learned beside them need not believe so.
-        let (mut learned, mut leaning) = (state.learned.clone(), 0.0);
+        let (mut learned, mut leaning, mut spread) = (state.learned.clone(), 0.0, None);
         if !learned.is_empty() && solver.has_sources() {
             run.vary(&mut solver, &mut place, &Place::save)?;
-            if let Some(best) = place.best() {
-                learned.clone_from(&best.state.learned);
+            if let Some(best) = place.best().cloned() {
                 leaning = solver.leaning(KINDS[best.kind], &best.state)?.into_iter().fold(0.0, f64::max);
+                solver.set_smoothness(KINDS[best.kind], &best.state);
+                learned.clone_from(&best.state.learned);
+                spread = solver.doubted(best.state, &[])?.map(|(_, found, _)| found.covariance.corner);
             }
         }
         solver.set_smoothness(KINDS[kind], &state);
@@ -82,7 +89,10 @@ impl Stretch {
             kind,
             sigma: sigma(&solver, &state),
             sizes: (0..solver.heads.bases.len()).map(|head| solver.source_sizes(&state, head)).collect(),
+            by_learned: solver.set_learned(&learned),
             scalars: solver.scalars(&learned).to_vec(),
+            learned,
+            spread: spread.unwrap_or_else(|| covariance.corner.clone()),
             leaning,
             noise,
             classes,

@@ -130,8 +130,14 @@ pub enum LiveError {
         "the first rows and the equations leave some of the unknowns open: give more conditions, more columns or more rows"
     )]
     Open,
+    /// Rows without a measurement.
+    #[error("none of the first {rows} rows has a measurement: their cells are empty")]
+    Unmeasured {
+        /// Rows there were.
+        rows: usize,
+    },
     /// A record that ends too soon.
-    #[error("{rows} rows are too few to tell noise from a source; give {least} at least")]
+    #[error("{rows} row(s) are too few to tell noise from a source; give {least} at least")]
     FewRows {
         /// Rows there were.
         rows: usize,

@@ -86,6 +86,11 @@ impl FixedLagSmoother {
         self.check(at, values)?;
         let mut found = Vec::new();
         if let Some(ahead) = self.ahead.take() {
+            if ahead.at == at {
+                // The same place again says nothing of whether it is a wrong one.
+                self.ahead = Some(ahead);
+                return Err(LiveError::Backwards { at, last: at });
+            }
             if ahead.at < at {
                 found.extend(self.take(ahead)?);
             } else {
@@ -229,7 +234,10 @@ impl FixedLagSmoother {
                 found => found,
             }
         } else {
-            self.begin_with(rows, self.settings.lag, open)
+            self.begin_with(rows, self.settings.lag, open).map_err(|error| match error {
+                LiveError::Bind(BindError::NoPoints { .. }) => LiveError::Unmeasured { rows: count },
+                error => error,
+            })
         };
         self.due = first;
         found

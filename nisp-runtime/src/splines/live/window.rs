@@ -5,6 +5,7 @@
 //! triangle says of cells that have left the window is in its later rows already (`triangle/lag.rs`).
 
 mod bends;
+mod read;
 mod tail;
 
 use std::collections::VecDeque;
@@ -64,6 +65,8 @@ pub(super) struct Window {
     has_left: bool,
     kernels: Vec<GroupKernel<f64>>,
     step: Vec<f64>,
+    /// By learned scalar, how the unknowns follow its parameter.
+    follow: Vec<Vec<f64>>,
     scratch: Vec<f64>,
 }
 
@@ -80,7 +83,8 @@ impl Window {
         let kernels = bound.problem.scene().double();
         let equation = |&at: &usize| (at, Group::new(&schema.groups[at], kernels[at], &heads, &places, &[]));
         let equations = continuous.iter().map(equation).collect();
-        let triangle = Triangle::new(unknowns, heads.band, 0);
+        let learned = weights.learned.len();
+        let triangle = Triangle::new(unknowns, heads.band, learned);
         let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
         let reaches_the_end = schema.groups.iter().all(|group| group.columns.is_empty() || !is_equation(group));
         Self {
@@ -99,6 +103,7 @@ impl Window {
             has_left: false,
             kernels,
             step: vec![0.0; unknowns],
+            follow: vec![vec![0.0; unknowns]; learned],
             scratch: Vec::new(),
             bound,
             grid,
@@ -110,8 +115,11 @@ impl Window {
         &self.grid
     }
 
-    /// Takes over what the evidence of a later part of the record says.
+    /// Takes over what the evidence of a later part of the record says. Rows of older cells follow learned scalars to what they are now.
     pub(super) fn weigh(&mut self, weights: Weights) {
+        let moved: Vec<f64> = weights.learned.iter().zip(&self.weights.learned).map(|(new, old)| new - old).collect();
+        self.settled.move_shared(&moved);
+        self.all.copy_from(&self.settled, 0);
         self.weights = weights;
         self.weighed_from = self.grid.left() + self.grid.tail_start() as f64 * self.grid.width;
     }
@@ -205,6 +213,7 @@ impl Window {
         if !self.all.solve_from(from, &mut self.step) {
             return Err(Fault::unsolved("the latest rows"));
         }
+        self.follow.iter_mut().enumerate().for_each(|(at, follow)| self.all.follow_from(from, at, follow));
         let pinned = if self.reaches_the_end { self.theta.len() } else { self.first(self.grid.cells) };
         let mut change = 0.0_f64;
         for at in from..self.theta.len() {
@@ -234,12 +243,7 @@ impl Window {
         let suspects = self.observed.iter().map(|observed| {
             let Observed { at, what, first, slopes, value } = observed;
             let moved: f64 = slopes.iter().zip(&step[*first..]).map(|(slope, step)| slope * step).sum();
-            Suspect {
-                at: *at,
-                what: *what,
-                off: value + moved,
-                root: triangle.root(*first, slopes, &[]).split_off(*first),
-            }
+            Suspect { at: *at, what: *what, off: value + moved, root: triangle.root_beside(*first, slopes) }
         });
         let strays = Strays::among(suspects.collect());
         self.count(false, |at| strays.found.contains(&at) || strays.aside.contains(&at));
@@ -263,14 +267,6 @@ impl Window {
     /// Up to where it is known which rows are strays.
     pub(super) fn decided(&self) -> f64 {
         self.aside.first().copied().unwrap_or(f64::INFINITY)
-    }
-
-    /// A head at a place of the window in the engine's units, and its standard deviation.
-    pub(super) fn read(&mut self, head: usize, at: f64) -> (f64, f64) {
-        let local = at - self.grid.left();
-        let value = self.heads.derivative(head, (self.heads.cell(local), local), 0, &self.theta);
-        let (first, slopes) = self.heads.value_row(head, local);
-        (value, self.all.deviation(first, &slopes, &mut self.scratch))
     }
 
     /// Gives how far each observation of an event is off, over the noise of neighbours; over that of the fit where neighbours are

@@ -31,7 +31,37 @@ impl Triangle {
         self.corner_right.copy_from_slice(&other.corner_right);
     }
 
-    /// The unknowns from one on that make the rows least, written to the same places, where no unknowns are shared. Returns
+    /// Takes the shared unknowns to be so much farther on than rows were turned in about.
+    pub(in super::super) fn move_shared(&mut self, moved: &[f64]) {
+        if !moved.is_empty() {
+            let rows = self.right.iter_mut().zip(self.border.chunks_exact(self.shared));
+            rows.for_each(|(right, border)| *right -= super::dot(border, moved));
+        }
+    }
+
+    /// How the unknowns from one on follow a shared one, written to the same places.
+    pub(in super::super) fn follow_from(&self, first: usize, shared: usize, x: &mut [f64]) {
+        for at in (first..self.len).rev() {
+            let row = &self.rows[at * self.band..][..self.band.min(self.len - at)];
+            let after = super::dot(&row[1..], &x[at + 1..]);
+            x[at] = -(self.border[at * self.shared + shared] + after) / row[0];
+        }
+    }
+
+    /// `R^-T v` of a row `v` from its first unknown on, where the shared ones are known.
+    pub(in super::super) fn root_beside(&self, first: usize, slopes: &[f64]) -> Vec<f64> {
+        let mut found = vec![0.0; self.len - first];
+        found[..slopes.len()].copy_from_slice(slopes);
+        for at in first..self.len {
+            let row = &self.rows[at * self.band..][..self.band];
+            let own = found[at - first] / row[0];
+            found[at - first] = own;
+            found[at - first + 1..].iter_mut().zip(&row[1..]).for_each(|(x, r)| *x -= r * own);
+        }
+        found
+    }
+
+    /// The unknowns from one on that make the rows least, written to the same places, where the shared ones are known. Returns
     /// false if the rows leave some open.
     pub(in super::super) fn solve_from(&self, first: usize, x: &mut [f64]) -> bool {
         let mut is_finite = true;
@@ -44,7 +74,7 @@ impl Triangle {
         is_finite
     }
 
-    /// Standard deviation of what a row says of the unknowns from its first on, where none are shared: the length of
+    /// Standard deviation of what a row says of the unknowns from its first on, where the shared ones are known: the length of
     /// `R^-T a`, by substitution from there to the end.
     pub(in super::super) fn deviation(&self, first: usize, slopes: &[f64], scratch: &mut Vec<f64>) -> f64 {
         scratch.clear();
@@ -113,5 +143,37 @@ mod tests {
                 assert!((deviation / exact - 1.0).abs() < 1e-12, "{deviation} {exact}");
             }
         }
+    }
+
+    /// Rows with two shared unknowns: what they say where these are known is what they say without them, moved by so much.
+    #[test]
+    fn unknowns_follow_those_that_are_shared() {
+        let number = |at: usize| ((at * 7919 + 13) % 101) as f64 / 101.0 - 0.4;
+        let shared = [0.7, -1.3];
+        let (mut moving, mut known) = (Triangle::new(8, 3, 2), Triangle::new(8, 3, 0));
+        for at in 0..40 {
+            let (slopes, by) = ([0, 1, 2].map(|k| number(5 * at + k)), [0, 1].map(|k| number(11 * at + k)));
+            let (first, value) = (at / 7, number(17 * at));
+            moving.add(Row { first, slopes: &slopes, shared: &by, value });
+            known.add(Row {
+                first,
+                slopes: &slopes,
+                shared: &[],
+                value: value + by[0] * shared[0] + by[1] * shared[1],
+            });
+        }
+        let [mut before, mut after, mut exact] = [[0.0; 8]; 3];
+        assert!(moving.solve_from(0, &mut before) && known.solve_from(0, &mut exact));
+        let mut follow = [[0.0; 8]; 2];
+        follow.iter_mut().enumerate().for_each(|(at, follow)| moving.follow_from(0, at, follow));
+        moving.move_shared(&shared);
+        assert!(moving.solve_from(0, &mut after));
+        for at in 0..8 {
+            let followed = before[at] + follow[0][at] * shared[0] + follow[1][at] * shared[1];
+            assert!((after[at] - exact[at]).abs() < 1e-12 && (followed - exact[at]).abs() < 1e-12);
+        }
+        let slopes = [0.3, -0.7, 1.1];
+        let (root, deviation) = (moving.root_beside(2, &slopes), known.deviation(2, &slopes, &mut Vec::new()));
+        assert!((root.iter().map(|x| x * x).sum::<f64>().sqrt() / deviation - 1.0).abs() < 1e-12);
     }
 }

@@ -45,7 +45,11 @@ impl Observed {
 impl Window {
     /// Rows of the tail, and of the cell before it, about the present state.
     pub(super) fn rows(&mut self) -> Result<Split, Fault> {
-        let mut split = Split { leaving: Rows::new(0), staying: Rows::new(0), observed: Vec::new() };
+        let mut split = Split {
+            leaving: Rows::new(self.follow.len()),
+            staying: Rows::new(self.follow.len()),
+            observed: Vec::new(),
+        };
         let left = self.grid.left();
         let mut equations = std::mem::take(&mut self.equations);
         for (at, group) in &mut equations {
@@ -85,7 +89,7 @@ impl Window {
         events: &[&Event],
         split: &mut Split,
     ) -> Result<(), Fault> {
-        let found = group.evaluate(&self.heads, &self.theta, &self.weights.scalars, Some(0));
+        let found = group.evaluate(&self.heads, &self.theta, &self.weights.scalars, Some(self.follow.len()));
         let tail = self.grid.tail_start();
         let is_there = |term: &Term, p: usize| {
             let counts =
@@ -101,8 +105,9 @@ impl Window {
                         return Err(Fault::residual(format!("{}.{}", group.schema.name, term.name), Some(p)));
                     }
                     let factor = loss.weight(misfit / sigma).sqrt() / sigma;
-                    let mut bundle = group.bundle(&self.heads, group.cell(p), 0);
-                    group.add_row(&self.heads, (&found, row, p), &[], factor, &mut bundle);
+                    let mut bundle = group.bundle(&self.heads, group.cell(p), self.follow.len());
+                    let by_learned = &self.weights.by_learned;
+                    group.add_row(&self.heads, (&found, row, p), by_learned, factor, &mut bundle);
                     let out = split.at(cell < tail);
                     bundle.iter().for_each(|row| out.push(self.about_reference(row), 0));
                     if term.kind == TermKind::Observation && cell >= tail {
@@ -126,26 +131,26 @@ impl Window {
     /// Rows that keep sources smooth and small, and those that keep coefficients bounded that nothing else speaks of.
     fn add_priors(&self, split: &mut Split) {
         let tail = self.grid.tail_start();
-        let mut slopes = Vec::new();
+        let (mut slopes, none) = (Vec::new(), vec![0.0; self.follow.len()]);
         for (head, sizes) in self.weights.sizes.iter().enumerate() {
             let Some((roughness, amplitude)) = *sizes else { continue };
             let prior = Prior::new(&self.heads.bases[head], KINDS[self.weights.kind]);
             for (first, factors) in prior.smooth(roughness).filter(|(first, _)| *first >= tail - 1) {
                 let (number, value) =
                     self.heads.row_of((head, first), &factors[..prior.width()], &self.reference, &mut slopes);
-                split.at(first < tail).push(Row { first: number, slopes: &slopes, shared: &[], value }, 0);
+                split.at(first < tail).push(Row { first: number, slopes: &slopes, shared: &none, value }, 0);
             }
             let small = prior.small(amplitude).enumerate().skip(tail - 1);
             for (first, factor) in small {
                 let number = self.heads.numbers(head, first)[0];
                 let value = factor * self.reference[number];
-                split.at(first < tail).push(Row { first: number, slopes: &[factor], shared: &[], value }, 0);
+                split.at(first < tail).push(Row { first: number, slopes: &[factor], shared: &none, value }, 0);
             }
         }
         let unknowns = self.first(tail - 1)..self.theta.len();
         for number in unknowns {
             let value = RIDGE * self.reference[number];
-            split.at(number < self.first(tail)).push(Row { first: number, slopes: &[RIDGE], shared: &[], value }, 0);
+            split.at(number < self.first(tail)).push(Row { first: number, slopes: &[RIDGE], shared: &none, value }, 0);
         }
     }
 }
