@@ -17,6 +17,7 @@ mod levels;
 mod measured;
 mod oscillator;
 mod steps;
+mod stops;
 
 /// Normal numbers, about: sums of twelve uniform ones.
 pub(crate) fn normals(seed: u64) -> impl FnMut() -> f64 {

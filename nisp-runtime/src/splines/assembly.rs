@@ -1,6 +1,6 @@
 //! Rows about an iterate: of terms, of priors, and of those that keep everything bounded.
 
-use super::cells::{MANY, SMOOTH};
+use super::cells::{MANY, order};
 use super::iterate::{Phase, State};
 use super::rows::Rows;
 use super::solver::Solver;
@@ -85,7 +85,7 @@ impl Solver<'_> {
             let stay = RIDGE.max((FREE * (numbers.len() as f64).sqrt()).recip());
             // Without data fields begin anywhere, and the equations make the rest of them.
             let order = match self.amplitude[head] {
-                None if !self.is_measured => self.heads.bases[head].degree - SMOOTH,
+                None if !self.is_measured => order(self.bound.problem.scene().schema, head),
                 _ => 0,
             };
             let stay = if self.is_measured { stay } else { RIDGE };
