@@ -74,6 +74,10 @@ impl Frames {
             let reason = format!("{count} points do not show a {body}; record {FEWEST} at least");
             return Err(PrepareError::File { path: path(), reason });
         }
+        if cloud.is_flat {
+            let reason = format!("it has two columns; a {body} is shown by x, y and z");
+            return Err(PrepareError::File { path: path(), reason });
+        }
         let (low, high) = self.within;
         cloud.require_near(&low, &high).map_err(fault)?;
         let size = (0..3).map(|axis| high[axis] - low[axis]).fold(0.0, f64::max);

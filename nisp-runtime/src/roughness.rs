@@ -7,8 +7,10 @@ use nalgebra::{DMatrix, DVector};
 use crate::axes::Axes;
 use crate::nearest::Nearest;
 
-/// Neighbours that a smooth piece of surface is fitted to, at least, and how many such pieces are.
-const AROUND: NonZero<usize> = NonZero::new(24).unwrap();
+/// Neighbours that a smooth piece of surface is fitted to, at least, unless they were more than this share of all, and how many such pieces
+/// are.
+const AROUND: usize = 24;
+const SHARE: usize = 4;
 const PLACES: usize = 400;
 /// Where a piece is thicker than this share of its width, its plane is not told from its noise: more neighbours are taken.
 const THICK: f64 = 0.3;
@@ -21,13 +23,16 @@ pub(crate) fn roughness(points: &[[f64; 3]], places: &[[f64; 3]], directions: us
     // A curve has no second direction, so that a quadratic has three unknowns instead of six.
     let powers = |[x, y, _]: [f64; 3]| [1.0, x, x * x, y, x * y, y * y];
     let unknowns = if directions == 1 { 3 } else { 6 };
-    if points.len() < 4 * AROUND.get() {
+    // As many neighbours as unknowns would say nothing.
+    let around = (points.len() / SHARE).clamp(2 * unknowns, AROUND);
+    if points.len() < 2 * around {
         return None;
     }
+    let around = NonZero::new(around)?;
     let tree = Nearest::of(places)?;
     let step = points.len().div_ceil(PLACES);
     let left = places.iter().step_by(step).filter_map(|centre| {
-        let Piece { local, widths } = std::iter::successors(Some(AROUND), |around| around.checked_mul(WIDER))
+        let Piece { local, widths } = std::iter::successors(Some(around), |around| around.checked_mul(WIDER))
             .map_while(|around| Piece::around(centre, around, points, &tree))
             .find(|piece| {
                 piece.widths[directions] <= THICK * piece.widths[directions - 1]

@@ -62,6 +62,14 @@ pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) ->
                 );
                 return Err(DataError::File { path: file.path.into(), what }.into());
             }
+            let unlike = match (cloud.is_flat, term.rows) {
+                (true, 3) => Some("has two columns, of points in a plane; the term wants x, y and z"),
+                (false, 2) => Some("has points in space; the term wants two columns, in the order of its components"),
+                _ => None,
+            };
+            if let Some(what) = unlike {
+                return Err(DataError::File { path: file.path.into(), what: what.into() }.into());
+            }
             cloud.thin(cloud.length() / CELLS, POINTS_OF_A_CELL);
             found.warnings.extend(cloud.warnings);
             let inward = |metres: &f64| term.unit.factor.inverse().of(Number::si(*metres)).as_declared();

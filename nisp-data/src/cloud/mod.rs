@@ -32,6 +32,8 @@ pub struct Cloud {
     pub warnings: Vec<String>,
     /// True if the file says the unit of its points, which are in metres then.
     pub is_in_metres: bool,
+    /// True if the file has two columns: points of a plane, whose third coordinate is zero.
+    pub is_flat: bool,
 }
 
 /// File formats, as told by their first bytes or, where those say nothing, by the file's ending.
@@ -57,15 +59,20 @@ impl Cloud {
         if bytes.is_empty() {
             return Err(DataError::file(path, "the file is empty; a point cloud is needed"));
         }
-        let (points, is_in_metres) = match recognise(path, bytes)? {
-            Format::Ply => (ply::parse(path, bytes)?, false),
-            Format::Pcd => (pcd::parse(path, bytes)?, false),
-            Format::Npy => (npy::Array::new(path, bytes)?.points(path)?, false),
-            Format::Npz => (npz::parse(path, bytes)?, false),
+        let [mut is_in_metres, mut is_flat] = [false; 2];
+        let points = match recognise(path, bytes)? {
+            Format::Ply => ply::parse(path, bytes)?,
+            Format::Pcd => pcd::parse(path, bytes)?,
+            Format::Npy => npy::Array::new(path, bytes)?.points(path)?,
+            Format::Npz => npz::parse(path, bytes)?,
             Format::Png => return Err(DataError::file(path, "is a picture; a point cloud is needed")),
-            Format::Text => text::parse(path, bytes)?,
+            Format::Text => {
+                let found = text::parse(path, bytes)?;
+                (is_in_metres, is_flat) = (found.is_in_metres, found.is_flat);
+                found.points
+            }
         };
-        Ok(Cloud { is_in_metres, ..Cloud::finite(path, points)? })
+        Ok(Cloud { is_in_metres, is_flat, ..Cloud::finite(path, points)? })
     }
 
     /// The points of a depth image, in metres and the camera's frame. Pixels without depth are no points, and are not counted.
@@ -97,7 +104,7 @@ impl Cloud {
             let copies = finite - kept.len();
             warnings.push(format!("{}: {copies} of {all} points are copies of others and left out", path.display()));
         }
-        Ok(Cloud { points: kept, warnings, is_in_metres: false })
+        Ok(Cloud { points: kept, warnings, is_in_metres: false, is_flat: false })
     }
 }
 

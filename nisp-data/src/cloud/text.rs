@@ -1,12 +1,13 @@
-//! Text clouds: CSV with columns x, y, z, or bare rows of three or more numbers.
+//! Text clouds: CSV with columns x, y, z, or bare rows of three or more numbers; or either with two columns, of a plane.
 
 use std::path::Path;
 
 use crate::input::decode;
+use crate::table::Points;
 use crate::{DataError, Table};
 
-/// The points, and true where headers say their unit, which makes metres of them.
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Vec<[f64; 3]>, bool), DataError> {
+/// The points of a text.
+pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Points, DataError> {
     let text = decode(path, bytes)?;
     let mut rows = content(text).peekable();
     let first = rows.peek().map_or(Vec::new(), |(_, line)| cells(line));
@@ -14,7 +15,7 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Vec<[f64; 3]>, bool), 
         return Table::parse(path, bytes)?.points();
     }
     let points: Result<_, _> = rows.map(|(number, line)| bare_row(path, number, &cells(line), first.len())).collect();
-    Ok((points?, false))
+    Ok(Points { points: points?, is_in_metres: false, is_flat: first.len() == 2 })
 }
 
 /// Lines with something on them, numbered from one.
@@ -37,7 +38,7 @@ fn bare_row(path: &Path, number: usize, cells: &[&str], width: usize) -> Result<
         return fail(format!("{} cells where the rows above have {width}; correct or remove this row", cells.len()));
     }
     let mut point = [0.0; 3];
-    for (index, axis) in ["x", "y", "z"].into_iter().enumerate() {
+    for (index, axis) in ["x", "y", "z"].into_iter().take(if width == 2 { 2 } else { 3 }).enumerate() {
         let Some(cell) = cells.get(index) else {
             return fail(format!("no number for {axis}; each row needs x, y and z"));
         };

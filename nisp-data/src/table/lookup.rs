@@ -12,6 +12,15 @@ use crate::names::likeness;
 /// Headers less like a name are not meant by it, unless they begin with it.
 const ALIKE: f64 = 0.85;
 
+/// The points of a table, of which those in a plane have no third coordinate.
+pub(crate) struct Points {
+    pub(crate) points: Vec<[f64; 3]>,
+    /// True where headers say their unit, which makes metres of them.
+    pub(crate) is_in_metres: bool,
+    /// True where there are two columns.
+    pub(crate) is_flat: bool,
+}
+
 impl Table {
     /// The column that answers to `name`: an exact header, or the only one of the forms `name [unit]`, `name (unit)` and
     /// `name_unit`. Its numbers are as they stand in the file, whatever unit the header names.
@@ -123,23 +132,31 @@ impl Table {
         self.find(name, None).is_ok()
     }
 
-    /// The coordinates of points, and true where their headers say the unit, which makes metres of them. Cells that are no finite
-    /// numbers pass, as NaN or infinity.
-    pub(crate) fn points(&self) -> Result<(Vec<[f64; 3]>, bool), DataError> {
-        let columns = [self.find("x", None)?, self.find("y", None)?, self.find("z", None)?];
-        let mut sizes = [None; 3];
-        for ((column, name), size) in columns.iter().zip(["x", "y", "z"]).zip(&mut sizes) {
-            *size = self.conversion_of(column, (name, "m"))?;
-        }
+    /// The coordinates of points, in columns x, y and z; or in the only two, of points in a plane. Cells that are no finite numbers pass, as NaN
+    /// or infinity.
+    pub(crate) fn points(&self) -> Result<Points, DataError> {
+        let is_flat = self.columns.len() == 2;
+        // In a plane a header is any word, with a unit behind it.
+        let name = |column: &Column| column.header.split([' ', '[', '(', '_']).next().unwrap_or_default().to_string();
+        let names = match is_flat {
+            true => self.columns.iter().map(name).collect(),
+            false => ["x", "y", "z"].map(String::from).to_vec(),
+        };
+        let columns = match is_flat {
+            true => self.columns.iter().collect(),
+            false => names.iter().map(|name| self.find(name, None)).collect::<Result<Vec<&Column>, _>>()?,
+        };
+        let of = |(column, name): (&&Column, &String)| self.conversion_of(column, (name, "m"));
+        let sizes: Vec<_> = columns.iter().zip(&names).map(of).collect::<Result<_, _>>()?;
         if sizes.iter().any(Option::is_some) && sizes.iter().any(Option::is_none) {
             let headers = list(columns.iter().map(|column| column.header.as_str()));
-            let what = format!("{headers}: some say their unit and others do not; write it in all three or in none");
+            let what = format!("{headers}: some say their unit and others do not; write it in all of them or in none");
             return Err(DataError::Column { path: self.path.clone(), what });
         }
-        let [x, y, z] = [self.raw(columns[0])?, self.raw(columns[1])?, self.raw(columns[2])?];
+        let raw: Vec<&[f64]> = columns.iter().map(|column| self.raw(column)).collect::<Result<_, _>>()?;
         let metres = |axis: usize, x: f64| sizes[axis].map_or(x, |size| size.of(Number::file(x)).as_declared());
-        let points = (0..self.rows()).map(|row| [metres(0, x[row]), metres(1, y[row]), metres(2, z[row])]).collect();
-        Ok((points, sizes[0].is_some()))
+        let point = |row: usize| std::array::from_fn(|axis| raw.get(axis).map_or(0.0, |own| metres(axis, own[row])));
+        Ok(Points { points: (0..self.rows()).map(point).collect(), is_in_metres: sizes[0].is_some(), is_flat })
     }
 
     fn raw<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {

@@ -14,6 +14,7 @@ mod wide;
 mod write;
 
 pub use dates::moment;
+pub(crate) use lookup::Points;
 pub use rows::Rows;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;

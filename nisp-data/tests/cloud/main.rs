@@ -23,6 +23,20 @@ fn refusal(name: &str, bytes: &[u8]) -> String {
 }
 
 #[test]
+fn two_columns_are_points_in_a_plane() {
+    let points = [[1.0, 2.0, 0.0], [3.0, 4.5, 0.0]];
+    for text in ["x,w\n1,2\n3,4.5\n", "1 2\n3 4.5\n"] {
+        let cloud = read("side.csv", text.as_bytes());
+        assert!(cloud.is_flat && !cloud.is_in_metres && cloud.points == points, "{cloud:?}");
+    }
+    let cloud = read("side.csv", b"x [mm],w [mm]\n1000,2000\n3000,4500\n");
+    assert!(cloud.is_flat && cloud.is_in_metres && cloud.points == points, "{cloud:?}");
+    let mixed = refusal("side.csv", b"x [mm],w\n1,2\n3,4\n");
+    assert!(mixed.contains("in all of them or in none"), "{mixed}");
+    assert!(!read("a.csv", b"x,y,z\n1,2,0\n3,4,0\n").is_flat);
+}
+
+#[test]
 fn ply_of_all_kinds() {
     let mut big = Vec::new();
     for [x, y, z] in POINTS {
@@ -65,7 +79,7 @@ fn text_with_and_without_header() {
     let copied = read("a.csv", b"x,y,z\n1,2,3\n0,4,5\n1,2,3\n-0,4,5\n");
     assert_eq!(copied.points, [[1.0, 2.0, 3.0], [0.0, 4.0, 5.0]]);
     assert_eq!(copied.warnings, ["a.csv: 2 of 4 points are copies of others and left out"]);
-    assert!(refusal("a.csv", b"x,y\n1,2\n3,4\n").contains("no column for `z`"));
+    assert!(refusal("a.csv", b"x,y,w\n1,2,3\n4,5,6\n").contains("no column for `z`"));
     assert!(refusal("a.xyz", b"1 2 3\n1 2\n").contains("line 2: 2 cells where the rows above have 3"));
     assert!(refusal("a.xyz", b"nan nan nan\n").contains("none of the 1 points is finite"));
     assert!(refusal("a.xyz", b"# nothing\n").contains("no points"));
@@ -136,7 +150,7 @@ fn headers_say_the_unit_of_a_cloud() {
     assert_eq!(plain.points[0], [0.0254, 2.0 * 0.0254, 3.0 * 0.0254]);
 
     let fault = |text: &str| parse(text).unwrap_err().to_string();
-    assert!(fault("x_mm,y,z_mm\n1,2,3\n4,5,6\n").contains("in all three or in none"));
+    assert!(fault("x_mm,y,z_mm\n1,2,3\n4,5,6\n").contains("in all of them or in none"));
     assert!(fault("x [s],y [m],z [m]\n1,2,3\n4,5,6\n").contains("`x [s]` is in s"));
 }
 

@@ -19,6 +19,8 @@ const EXPLAIN: u64 = 12;
 const UNEXPLAINED: f64 = 4.0;
 /// Gain of the logarithm of the evidence that no longer matters.
 const RESTING: f64 = 0.05;
+/// Share of the loss that a whole step gains where equations that were made strict are not yet met.
+const FALLING: f64 = 0.5;
 /// Change of a coefficient, in natural sizes, that no longer matters.
 const SETTLED: f64 = 1e-3;
 /// Gain of a whole step in the logarithm of the probability that no longer matters.
@@ -90,9 +92,10 @@ impl Run {
             state = step.next;
             let gain: f64 = state.classes.iter().map(|class| class.gain).sum();
             let is_resting = gain < RESTING && state.since > 1;
+            let is_falling = step.gain.is_finite() && step.gain > FALLING * step.loss;
             let is_ready = match before {
                 Phase::Regress => is_resting || state.since >= REGRESS,
-                Phase::Explain => (is_tight && is_resting) || state.since >= EXPLAIN,
+                Phase::Explain => (is_tight && is_resting && !is_falling) || state.since >= EXPLAIN,
                 Phase::Solve => false,
             };
             if is_ready && before == Phase::Explain && step.strained > UNEXPLAINED && state.strictest < LOOSE {

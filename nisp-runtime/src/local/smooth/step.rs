@@ -49,7 +49,8 @@ pub(super) struct Found {
     pub(super) ahead: f64,
     /// How far it moved a source, over its size, at most.
     pub(super) moved: f64,
-    /// The loss before the step over what noise of inexact measurements leaves of it; nothing where all are exact.
+    /// The loss after the step over what noise of inexact measurements leaves of it; nothing where all are exact, or where there
+    /// are clouds, whose strays are no noise.
     pub(super) strained: f64,
     /// What the loss is less after the whole step; infinite if only a part of it was taken.
     pub(super) gain: f64,
@@ -163,7 +164,7 @@ impl Solver<'_> {
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
         let mut next = state.clone();
         next.unmeasured = unmeasured;
-        let mut gain = f64::INFINITY;
+        let (mut gain, mut left) = (f64::INFINITY, loss);
         for halvings in 0..MOST_HALVINGS {
             next.theta = state.theta.iter().zip(&step).map(|(x, s)| x + share * s).collect();
             next.learned = state.learned.iter().zip(&shared).map(|(x, s)| x + share * s).collect();
@@ -171,6 +172,7 @@ impl Solver<'_> {
             let is_less = after <= loss * (1.0 + 1e-9) + 1e-12;
             if after.is_finite() && (is_less || halvings + 1 >= HALVINGS) {
                 gain = if halvings == 0 { (loss - after).abs() } else { f64::INFINITY };
+                left = after;
                 break;
             }
             share *= 0.5;
@@ -183,7 +185,7 @@ impl Solver<'_> {
         let measured = (0..tallies.len()).filter(|class| !self.roughness.contains(class));
         let measured = measured.filter(|&class| state.classes[class].open.is_some()).map(|class| tallies[class].count);
         let measured: f64 = measured.sum();
-        let strained = if measured > 0.0 { loss / (0.5 * measured) } else { 0.0 };
+        let strained = if measured > 0.0 && self.surfaces.is_empty() { left / (0.5 * measured) } else { 0.0 };
         let is_held = |class| match self.roughness.contains(&class) {
             true => is_loose || !judged.contains(&class),
             // A second start keeps to its noise until sources had a chance.
