@@ -12,7 +12,7 @@ pub(crate) use self::given::of_given;
 use self::fits::{FEW_CLEAN, HALF, by_fits, quantile};
 use crate::facts::spread;
 use crate::problem::Bound;
-use crate::roughness::roughness;
+use crate::roughness::{directions, roughness};
 use crate::schema::{self, TermKind};
 use crate::solve::vector::root_mean_square;
 
@@ -69,12 +69,13 @@ impl Noise {
         let groups = bound.problem.scene().schema.groups.iter().enumerate();
         let terms =
             groups.flat_map(|(at, group)| group.terms.iter().enumerate().map(move |(term, own)| (at, term, own)));
-        let clouds =
-            terms.filter(|(.., own)| matches!(own.kind, TermKind::Chamfer { .. }) && (2..=3).contains(&own.rows));
+        let clouds = terms.filter(|(.., own)| matches!(own.kind, TermKind::Chamfer { .. }));
+        let coordinates = bound.problem.scene().schema.coordinates.len();
         self.observations.extend(clouds.filter_map(|(group, term, own)| {
+            let directions = directions(coordinates, own.rows)?;
             let point = |point: &[f64]| std::array::from_fn(|axis| point.get(axis).copied().unwrap_or(0.0));
             let points: Vec<[f64; 3]> = bound.clouds[group][term].chunks_exact(own.rows).map(point).collect();
-            let deviation = roughness(&points, &points, own.rows - 1)?;
+            let deviation = roughness(&points, &points, directions)?;
             let (_, spread) = spread(points.iter().map(|&point| point.into()));
             Some(ObservationNoise { group, term, deviation, spread })
         }));

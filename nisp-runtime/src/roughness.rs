@@ -17,6 +17,16 @@ const THICK: f64 = 0.3;
 /// So many times as many.
 const WIDER: NonZero<usize> = NonZero::new(4).unwrap();
 
+/// Directions along what a cloud of so many components shows over so many coordinates: a curve in a plane, or a surface in space. Nothing of others,
+/// as of points that fill a plane.
+pub(crate) fn directions(coordinates: usize, components: usize) -> Option<usize> {
+    match (coordinates, components) {
+        (1, 2) => Some(1),
+        (_, 3) => Some(2),
+        _ => None,
+    }
+}
+
 /// Standard deviation of a cloud about smooth pieces of surface, or of a curve where it has one direction instead of two: least squares
 /// of a quadratic through the neighbours of some points, across the plane, or the line, that they lie in.
 pub(crate) fn roughness(points: &[[f64; 3]], places: &[[f64; 3]], directions: usize) -> Option<f64> {

@@ -95,10 +95,17 @@ fn all(columns: &[Column], of: impl Fn(&SystemTime) -> bool) -> impl Iterator<It
     columns.iter().enumerate().filter(all).map(|(at, _)| at)
 }
 
-/// Gives times of day the days of a column beside them, which holds no dates of its own then.
+/// Gives times of day the days of a column beside them, which holds no dates of its own then. Without a day they are no times.
 pub(super) fn join_days(columns: &mut [Column], of_days: usize) {
     let of_day: Vec<usize> = all(columns, |at| is_of_day(*at)).collect();
     if of_day.is_empty() {
+        return;
+    }
+    if columns[of_days].dates.is_empty() {
+        let fault = columns[of_days].fault.clone();
+        for at in of_day {
+            (columns[at].dates, columns[at].fault) = (Vec::new(), fault.clone());
+        }
         return;
     }
     let days = std::mem::take(&mut columns[of_days].dates);

@@ -7,7 +7,7 @@ use std::time::SystemTime;
 use super::Table;
 use csv::StringRecord;
 
-use super::dates::{Order, column_of_days, join_days};
+use super::dates::{Order, column_of_days, is_date, join_days};
 use super::opening::Records;
 use super::read::{check_headers, unlike};
 use crate::DataError;
@@ -104,13 +104,20 @@ impl<R: BufRead> Rows<R> {
 /// A table of the rows that were read ahead, in which order each of its columns writes days, and which one holds days for times beside it.
 /// Of its cells only dates are kept: what is wrong with a row is told when it comes.
 fn first_rows<R: BufRead>(mut table: Table, records: &Records<R>) -> (Table, Vec<Order>, Option<usize>) {
-    let is_row = |record: &StringRecord| unlike(record, table.columns.len(), LEFT_OUT).is_none();
+    let is_row = |record: &StringRecord| {
+        !record.iter().all(str::is_empty) && unlike(record, table.columns.len(), LEFT_OUT).is_none()
+    };
     let rows: Vec<_> = records.waiting().filter(|(_, record)| is_row(record)).collect();
     table.lines = rows.iter().map(|(line, _)| *line).collect();
     let mut orders = Vec::new();
     for (at, column) in table.columns.iter_mut().enumerate() {
         let of_header = column.fault.clone();
-        rows.iter().for_each(|(line, record)| column.push(*line, &record[at], records.mark));
+        // A day that is not there says nothing of the others.
+        let has_dates = rows.iter().any(|(_, record)| is_date(&record[at]));
+        let cells = rows.iter().map(|(line, record)| (*line, &record[at]));
+        cells.filter(|(_, cell)| !has_dates || is_date(cell)).for_each(|(line, cell)| {
+            column.push(line, cell, records.mark);
+        });
         column.values.fill(f64::NAN);
         let order = column.order();
         orders.push(order.unwrap_or(Order::DayFirst));
@@ -211,6 +218,14 @@ mod tests {
         let rows = Rows::read(Path::new("pipe"), either.as_bytes()).unwrap();
         let refused = rows.first().chosen("t", "day", "s").unwrap_err().to_string();
         assert!(refused.contains("line 2") && refused.contains("write them like `2026-01-31`"), "{refused}");
+        // Rows of separators, and days that are not there, do not hide the order that others tell.
+        let gaps = "day,clock,q\n1/2/2026,11:00,1\n,,\n,12:00,2\n1/31/2026,11:00,3\n2/1/2026,11:00,4\n";
+        let mut rows = Rows::read(Path::new("pipe"), gaps.as_bytes()).unwrap();
+        let mut read = || rows.next_row().unwrap().unwrap().chosen("t", "clock", "s").map(|t| t[0]);
+        assert_eq!(read().unwrap(), 0.0);
+        let missing = read().unwrap_err().to_string();
+        assert!(missing.contains("line 4"), "{missing}");
+        assert_eq!([read().unwrap(), read().unwrap()], [29.0 * 86_400.0, 30.0 * 86_400.0]);
     }
 
     #[test]

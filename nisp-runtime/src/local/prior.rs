@@ -75,7 +75,7 @@ impl Sparse<'_> {
         let (edges, patch) = self.penalties();
         let square = 1.0 / (self.level * self.level);
         let seen = |at: usize| self.unseen.as_ref().is_none_or(|unseen| !unseen.functions[at]);
-        let before = normal.gradient[first..first + f.len()].to_vec();
+        let before = normal.draws.is_some().then(|| normal.gradient[first..first + f.len()].to_vec());
         for axis in 0..self.lattice().dimensions() {
             for (a, b) in self.lattice().neighbours(axis).filter(|(a, b)| seen(*a as usize) && seen(*b as usize)) {
                 let (i, j) = (a as usize, b as usize);
@@ -94,9 +94,10 @@ impl Sparse<'_> {
                 normal.add_stiffness(first + at, WALL * area * square);
             }
         }
-        // Without the penalties what is not zero would be elsewhere: their pull counts as a row of unit variance.
-        if let Some(draws) = &mut normal.draws {
-            let pulls = normal.gradient[first..].iter().zip(&before).map(|(after, before)| after - before);
+        // Without the penalties what is above zero would be larger by an unknown part of what they take. Draws count their gradient there as
+        // one more row of unit variance.
+        if let (Some(draws), Some(before)) = (&mut normal.draws, &before) {
+            let pulls = normal.gradient[first..].iter().zip(before).map(|(after, before)| after - before);
             let is_pulled = |at: usize| f[at] > 0.0 && seen(at);
             let pulls = pulls.enumerate().filter(|(at, _)| is_pulled(*at)).map(|(at, pull)| (first + at, pull));
             draws.add(&pulls.collect::<Vec<_>>());

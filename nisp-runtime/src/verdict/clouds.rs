@@ -6,7 +6,7 @@ use crate::correlation;
 use crate::facts::CloudFacts;
 use crate::nearest::Nearest;
 use crate::problem::Bound;
-use crate::roughness::{middle, roughness};
+use crate::roughness::{directions, middle, roughness};
 use crate::units::Number;
 
 /// Misfit over roughness.
@@ -50,7 +50,8 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let rough = within
         .or_else(|| {
             let (points, places): (Vec<_>, Vec<_>) = own.unzip();
-            roughness(&points, &places, term.rows - 1)
+            let directions = directions(bound.problem.scene().schema.coordinates.len(), term.rows)?;
+            roughness(&points, &places, directions)
         })
         .unwrap_or(0.0)
         .max(cloud.resolution);

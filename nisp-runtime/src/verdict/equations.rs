@@ -12,7 +12,7 @@ use crate::residual::Programs;
 use crate::schema::{self, Jet, Term, TermKind};
 use crate::units::Number;
 
-/// Residual of an equation over its source; where nothing is measured it is [`PART`]: such equations are all that says what the source is.
+/// Limit of a residual over its source. Where nothing is measured the limit is [`PART`], since equations alone say what the source is.
 const SOURCE: f64 = 0.3;
 /// Residual of a balance without a source over its largest part.
 const BALANCE: f64 = 0.2;
@@ -69,8 +69,9 @@ struct Judged<'a> {
     sizes: &'a Sizes,
     scalars: &'a [f64],
     finer: &'static str,
-    /// The largest residual of a balance without a source, over its largest part, and of one with a source, over that.
+    /// Limit of a residual without a source, over its largest part.
     balance: f64,
+    /// Limit of a residual with a source, over its source.
     source: f64,
 }
 

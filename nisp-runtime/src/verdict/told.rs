@@ -23,7 +23,7 @@ pub(super) fn checks(bound: &Bound, told: &[Told]) -> Vec<Check> {
         if own.size.is_none() {
             let said = format!(
                 "`{name}` has no error bars, so that nothing says how much of it is noise: give a larger budget or more iterations, or \
-                 take `--carrier splines`"
+                 take another carrier"
             );
             return Check::new("told", ("", name), (f64::INFINITY, 1.0 / LEAST), said);
         }

@@ -14,9 +14,10 @@ use crate::tolerance::LOOSE;
 /// How much larger the logarithm of the evidence that sources bend little must be, for edges to be ruled out. For boxes under noise of some
 /// per cent it is up to .7 the larger, for smooth sources by more than one mostly.
 const SURE: f64 = 1.0;
-/// How much looser equations may be than in the end: a third of the share of noise.
+/// How many times looser than in the end equations are while evidence is found. In the end they are as strict as a hundredth of the share of
+/// noise, so that this is a third of it.
 const EASED: f64 = 30.0;
-/// Stiffness of every coefficient as a share of its own, the same for all beliefs: what is left open is not left to rounding.
+/// What is added to every coefficient's stiffness, as a share of it. Without it rounding decides the determinant where a coefficient is open.
 const LIFT: f64 = 1e-12;
 
 /// What the measurements say of sources.
@@ -83,8 +84,9 @@ impl Solver<'_> {
         if judged.iter().any(is_zero) {
             return None;
         }
-        // A belief says nothing of a level or a slope. Either is as large as the source.
-        (0..self.priors.len()).for_each(|head| self.hold(state, head));
+        // Every head is taken to be about as large as it was found: a belief says nothing of a source's level or slope, and equations may
+        // leave a field open.
+        (0..self.schema().heads.len()).for_each(|head| self.hold(state, head));
         self.normal.lift(LIFT);
         let factor = self.normal.factor()?;
         let (step, shared) = self.normal.step(&factor)?;

@@ -68,7 +68,7 @@ impl Solver<'_> {
                 beyond[own].fill(short);
             }
         }
-        // What strict equations rule out of a smooth source for want of cells is unknown.
+        // Bars of a smooth source are drawn under loose equations: strict ones rule out short waves only because the cells cannot follow them.
         let about = if eases { self.eased(&other) } else { other.clone() };
         self.set_sigmas(&about);
         let mut deviations = self.deviations(&about)?;

@@ -8,12 +8,11 @@ use crate::solve::vector;
 /// Points at which a source is compared with what is known of it, at most.
 const MOST: usize = 2000;
 
-/// How much is told of every source, at points of the equations that it is in; nothing without deviations, unless there was no time for
-/// them.
-pub(super) fn told(bound: &Bound, kept: &KeptLattices, is_early: bool) -> Vec<Told> {
+/// How much is told of every source, at points of the equations that it is in; nothing without deviations, unless these are lacking.
+pub(super) fn told(bound: &Bound, kept: &KeptLattices, is_untold: bool) -> Vec<Told> {
     let schema = bound.problem.scene().schema;
     let sources = (0..schema.heads.len()).filter(|&head| schema.heads[head].source);
-    let unasked = |head| is_early.then(|| Told::unasked(head));
+    let unasked = |head| is_untold.then(|| Told::unasked(head));
     sources.filter_map(|head| of(head, &points(bound, head), kept).or_else(|| unasked(head))).collect()
 }
 

@@ -1,4 +1,4 @@
-//! How rough sources are is itself not known exactly. Where measurements tell few numbers of a source, one that is twice as rough fits them
+//! Makes sources rougher by one standard deviation of their roughness, for error bars. How rough they are is itself not known exactly: where measurements tell few numbers of a source, one that is twice as rough fits them
 //! nearly as well, and is sharper.
 
 use super::solver::Solver;

@@ -119,7 +119,7 @@ impl Window {
     pub(super) fn weigh(&mut self, weights: Weights) {
         let moved: Vec<f64> = weights.learned.iter().zip(&self.weights.learned).map(|(new, old)| new - old).collect();
         self.settled.move_shared(&moved);
-        self.all.copy_from(&self.settled, 0);
+        self.all.move_shared(&moved);
         self.weights = weights;
         self.weighed_from = self.grid.left() + self.grid.tail_start() as f64 * self.grid.width;
     }

@@ -31,7 +31,7 @@ impl Triangle {
         self.corner_right.copy_from_slice(&other.corner_right);
     }
 
-    /// Takes the shared unknowns to be so much farther on than rows were turned in about.
+    /// Moves the shared unknowns that the rows are about by `moved`: right sides change by the border times that.
     pub(in super::super) fn move_shared(&mut self, moved: &[f64]) {
         if !moved.is_empty() {
             let rows = self.right.iter_mut().zip(self.border.chunks_exact(self.shared));
