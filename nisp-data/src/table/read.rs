@@ -8,6 +8,7 @@ use super::cell::{describe, number};
 use super::dates::{column_of_days, join_days};
 use super::heading::Heading;
 use super::separated::{reader, separator, syntax};
+use super::thousands::Marks;
 use super::{Column, Fault, Kind, Table};
 use crate::DataError;
 use crate::input::{MOST_BYTES, decode, read_bytes};
@@ -77,7 +78,7 @@ impl Table {
             let what = format!("{} row(s) of data below the header; at least {least} {are} needed", lines.len());
             return Err(DataError::file(path, what));
         }
-        columns.iter_mut().for_each(Column::doubt_thousands);
+        doubt_thousands(&mut columns);
         columns.iter_mut().for_each(Column::choose_days);
         if let Some(of_days) = column_of_days(&columns) {
             join_days(&mut columns, of_days);
@@ -131,11 +132,14 @@ impl Column {
         }
         self.values.push(value);
     }
+}
 
-    /// A column whose numbers may be a thousand times larger is refused where it is asked for.
-    pub(super) fn doubt_thousands(&mut self) {
-        if let (None, Some((line, what))) = (&self.fault, self.thousands.doubt()) {
-            self.fault = Some(Fault { line, what, kind: Kind::Word });
+/// Columns whose numbers may be a thousand times larger are refused where they are asked for.
+pub(super) fn doubt_thousands(columns: &mut [Column]) {
+    let marks = Marks::of(columns.iter().map(|column| &column.thousands));
+    for column in columns {
+        if let (None, Some((line, what))) = (&column.fault, column.thousands.doubt(&marks)) {
+            column.fault = Some(Fault { line, what, kind: Kind::Word });
         }
     }
 }

@@ -9,7 +9,7 @@ use csv::StringRecord;
 
 use super::dates::{Order, column_of_days, is_date, join_days};
 use super::opening::Records;
-use super::read::{check_headers, unlike};
+use super::read::{check_headers, doubt_thousands, unlike};
 use crate::DataError;
 
 /// What becomes of a row that is none.
@@ -87,9 +87,9 @@ impl<R: BufRead> Rows<R> {
             column.values.clear();
             column.dates.clear();
             column.push(line, cell, self.records.mark);
-            column.doubt_thousands();
             column.read_days(*order);
         }
+        doubt_thousands(columns);
         if let Some(of_days) = self.of_days {
             join_days(columns, of_days);
         }
