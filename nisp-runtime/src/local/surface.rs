@@ -9,6 +9,8 @@
 //!
 //! A robust loss is minimised by weights that every step renews.
 
+use std::ops::Range;
+
 use nalgebra::{Vector2, Vector3};
 use rayon::prelude::*;
 
@@ -227,10 +229,14 @@ impl Surface {
         self.misfits().map(|misfit| self.counting.rho(misfit, sigma)).sum()
     }
 
+    /// Rows of the term: components of a position.
+    fn rows(&self) -> Range<usize> {
+        self.first..self.first + self.components
+    }
+
     /// Where the surface has the feet of all points.
     pub(super) fn images(&self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) -> Vec<Vector3<f64>> {
-        let rows = self.first..self.first + self.components;
-        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, rows };
+        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, rows: self.rows() };
         shape.positions(&self.feet, self.inputs)
     }
 
@@ -253,8 +259,7 @@ impl Surface {
 
     /// Finds the feet of all points on the present surface: true where they have come to rest.
     pub(super) fn find(&mut self, group: &Group, heads: &Heads, theta: &[f64], scalars: &[f64]) -> bool {
-        let rows = self.first..self.first + self.components;
-        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, rows };
+        let shape = Shape { group, heads, spread: &group.spread(heads, theta), scalars, rows: self.rows() };
         if self.feet.is_empty() {
             self.begin(&shape);
         }
