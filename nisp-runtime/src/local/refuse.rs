@@ -41,7 +41,8 @@ pub(super) fn clouds(schema: &schema::Scene) -> Option<&'static str> {
     let has_cloud =
         |group: &schema::Group| group.terms.iter().any(|term| matches!(term.kind, TermKind::Chamfer { .. }));
     let is_surface = (2..=3).contains(&schema.coordinates.len());
-    let is_symmetric = |term: &schema::Term| term.kind == TermKind::Chamfer { symmetric: true, plane: false };
+    let is_symmetric =
+        |term: &schema::Term| matches!(term.kind, TermKind::Chamfer { symmetric: true, plane: false, .. });
     match () {
         () if schema.groups.iter().any(|group| has_cloud(group) && has_known(group)) => {
             Some("clouds in groups with columns")
