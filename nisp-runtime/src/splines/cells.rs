@@ -175,7 +175,7 @@ pub(super) fn degrees(schema: &schema::Scene) -> Option<Vec<usize>> {
 
 /// True where a group is equations alone, whose points stand for an interval: it may be asked for at some of them, or elsewhere where
 /// no columns are known at them.
-fn stands_for_interval(bound: &Bound, group: usize) -> bool {
+pub(super) fn stands_for_interval(bound: &Bound, group: usize) -> bool {
     let schema = &bound.problem.scene().schema.groups[group];
     let only_equations = schema.terms.iter().all(|term| term.kind == TermKind::Residual);
     let mut sorted = bound.coordinates[group].clone();
