@@ -21,6 +21,7 @@ pub use stl::Surface;
 pub use view::View;
 
 use crate::DataError;
+use crate::components::Components;
 use crate::input::{MOST_BYTES, read_bytes};
 
 /// Points in space, with a note of what had to be left out.
@@ -54,16 +55,26 @@ impl Cloud {
 
     /// Reads a cloud from memory; `path` names the source in errors.
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Cloud, DataError> {
+        Cloud::parse_as(path, bytes, Components::IN_SPACE)
+    }
+
+    /// As [`Cloud::parse`], of points with other components. What they have less than three of is zero.
+    fn parse_as(path: &Path, bytes: &[u8], components: Components<'_>) -> Result<Cloud, DataError> {
         if bytes.is_empty() {
             return Err(DataError::file(path, "the file is empty; a point cloud is needed"));
         }
-        let (points, is_in_metres) = match recognise(path, bytes)? {
+        components.refuse_many(path)?;
+        let format = recognise(path, bytes)?;
+        if matches!(format, Format::Ply | Format::Pcd) {
+            components.refuse_space(path)?;
+        }
+        let (points, is_in_metres) = match format {
             Format::Ply => (ply::parse(path, bytes)?, false),
             Format::Pcd => (pcd::parse(path, bytes)?, false),
-            Format::Npy => (npy::Array::new(path, bytes)?.points(path)?, false),
-            Format::Npz => (npz::parse(path, bytes)?, false),
+            Format::Npy => (npy::Array::new(path, bytes)?.points(path, components)?, false),
+            Format::Npz => (npz::parse(path, bytes, components)?, false),
             Format::Png => return Err(DataError::file(path, "is a picture; a point cloud is needed")),
-            Format::Text => text::parse(path, bytes)?,
+            Format::Text => text::parse(path, bytes, components)?,
         };
         Ok(Cloud { is_in_metres, ..Cloud::finite(path, points)? })
     }

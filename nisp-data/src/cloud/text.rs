@@ -1,19 +1,24 @@
-//! Text clouds: CSV with columns x, y, z, or bare rows of three or more numbers.
+//! Text clouds: CSV with columns for the components of a point, or bare rows of them.
 
 use std::path::Path;
 
+use crate::components::Components;
 use crate::input::decode;
 use crate::{DataError, Table};
 
 /// The points, and true where headers say their unit, which makes metres of them.
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<(Vec<[f64; 3]>, bool), DataError> {
+pub(super) fn parse(path: &Path, bytes: &[u8], components: Components<'_>) -> Result<(Vec<[f64; 3]>, bool), DataError> {
     let text = decode(path, bytes)?;
     let mut rows = content(text).peekable();
     let first = rows.peek().map_or(Vec::new(), |(_, line)| cells(line));
     if first.iter().any(|cell| cell.parse::<f64>().is_err()) {
-        return Table::parse(path, bytes)?.points();
+        return Table::parse(path, bytes)?.points(components);
     }
-    let points: Result<_, _> = rows.map(|(number, line)| bare_row(path, number, &cells(line), first.len())).collect();
+    if components.count() != 3 {
+        components.refuse_width(path, first.len())?;
+    }
+    let row = |(number, line)| bare_row(path, number, (&cells(line), first.len()), components);
+    let points: Result<_, _> = rows.map(row).collect();
     Ok((points?, false))
 }
 
@@ -31,15 +36,20 @@ fn cells(line: &str) -> Vec<&str> {
     }
 }
 
-fn bare_row(path: &Path, number: usize, cells: &[&str], width: usize) -> Result<[f64; 3], DataError> {
+fn bare_row(
+    path: &Path,
+    number: usize,
+    (cells, width): (&[&str], usize),
+    components: Components<'_>,
+) -> Result<[f64; 3], DataError> {
     let fail = |what: String| Err(DataError::line(path, number, what));
     if cells.len() != width {
         return fail(format!("{} cells where the rows above have {width}; correct or remove this row", cells.len()));
     }
     let mut point = [0.0; 3];
-    for (index, axis) in ["x", "y", "z"].into_iter().enumerate() {
+    for (index, axis) in components.names().enumerate() {
         let Some(cell) = cells.get(index) else {
-            return fail(format!("no number for {axis}; each row needs x, y and z"));
+            return fail(format!("no number for {axis}; each row needs {}", components.said()));
         };
         let Ok(value) = cell.parse() else {
             return fail(format!("`{cell:.24}` for {axis} is not a number; correct it or remove the row"));

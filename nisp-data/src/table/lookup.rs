@@ -85,7 +85,11 @@ impl Table {
     }
 
     /// How numbers in the unit that the header of a column says become numbers in another; nothing where it says none.
-    fn conversion_of(&self, column: &Column, (name, unit): (&str, &str)) -> Result<Option<Conversion>, DataError> {
+    pub(super) fn conversion_of(
+        &self,
+        column: &Column,
+        (name, unit): (&str, &str),
+    ) -> Result<Option<Conversion>, DataError> {
         if column.is_dated() {
             let what = format!("`{}` holds dates, where `{name}` is in {unit}; choose another column", column.header);
             return column.dated(unit).map(Some).ok_or(DataError::Column { path: self.path.clone(), what });
@@ -123,32 +127,6 @@ impl Table {
         self.find(name, None).is_ok()
     }
 
-    /// The coordinates of points, and true where their headers say the unit, which makes metres of them. Cells that are no finite
-    /// numbers pass, as NaN or infinity.
-    pub(crate) fn points(&self) -> Result<(Vec<[f64; 3]>, bool), DataError> {
-        let columns = [self.find("x", None)?, self.find("y", None)?, self.find("z", None)?];
-        let mut sizes = [None; 3];
-        for ((column, name), size) in columns.iter().zip(["x", "y", "z"]).zip(&mut sizes) {
-            *size = self.conversion_of(column, (name, "m"))?;
-        }
-        if sizes.iter().any(Option::is_some) && sizes.iter().any(Option::is_none) {
-            let headers = list(columns.iter().map(|column| column.header.as_str()));
-            let what = format!("{headers}: some say their unit and others do not; write it in all three or in none");
-            return Err(DataError::Column { path: self.path.clone(), what });
-        }
-        let [x, y, z] = [self.raw(columns[0])?, self.raw(columns[1])?, self.raw(columns[2])?];
-        let metres = |axis: usize, x: f64| sizes[axis].map_or(x, |size| size.of(Number::file(x)).as_declared());
-        let points = (0..self.rows()).map(|row| [metres(0, x[row]), metres(1, y[row]), metres(2, z[row])]).collect();
-        Ok((points, sizes[0].is_some()))
-    }
-
-    fn raw<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
-        match &column.fault {
-            Some(fault) if matches!(fault.kind, Kind::Word | Kind::Empty) => self.checked(column),
-            _ => Ok(&column.values),
-        }
-    }
-
     /// The values of a column, NaN where nothing was measured.
     fn with_gaps<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
         match &column.fault {
@@ -157,7 +135,7 @@ impl Table {
         }
     }
 
-    fn checked<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
+    pub(super) fn checked<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
         match &column.fault {
             None => Ok(&column.values),
             Some(fault) => Err(DataError::Cell {
@@ -231,7 +209,8 @@ impl Table {
         // A time is what dates say.
         let dated = || self.headers().find(|header| is_date(header) && passes(header));
         let nearest = longer.first().map(|column| column.header.as_str());
-        let nearest = nearest.or_else(dated).or_else(|| self.nearest(name, &passes));
+        let only = || self.headers().find(|header| self.columns.len() == 1 && passes(header));
+        let nearest = nearest.or_else(dated).or_else(|| self.nearest(name, &passes)).or_else(only);
         self.no_column(&wanted, &format!("; {}", choose(name, nearest)))
     }
 
@@ -244,7 +223,9 @@ impl Table {
 
     fn no_column(&self, wanted: &str, hint: &str) -> DataError {
         let all = list(self.headers());
-        let what = if self.columns.len() == 1 {
+        // A single header of several words may be a row that nothing separates.
+        let is_word = |header: &str| base(header).chars().all(|mark| mark.is_alphanumeric() || mark == '_');
+        let what = if self.columns.len() == 1 && !is_word(&all) {
             format!(
                 "no column for {wanted}; the file has one column, `{all}`: separate cells by commas, semicolons or tabs"
             )
@@ -285,6 +266,6 @@ fn option(name: &str, header: &str) -> String {
     }
 }
 
-fn list<'a>(headers: impl Iterator<Item = &'a str>) -> String {
+pub(super) fn list<'a>(headers: impl Iterator<Item = &'a str>) -> String {
     headers.collect::<Vec<_>>().join(", ")
 }

@@ -5,6 +5,7 @@ mod dates;
 mod headers;
 mod heading;
 mod lookup;
+mod points;
 mod read;
 mod rows;
 mod separated;
