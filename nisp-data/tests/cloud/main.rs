@@ -136,7 +136,7 @@ fn headers_say_the_unit_of_a_cloud() {
     assert_eq!(plain.points[0], [0.0254, 2.0 * 0.0254, 3.0 * 0.0254]);
 
     let fault = |text: &str| parse(text).unwrap_err().to_string();
-    assert!(fault("x_mm,y,z_mm\n1,2,3\n4,5,6\n").contains("in all three or in none"));
+    assert!(fault("x_mm,y,z_mm\n1,2,3\n4,5,6\n").contains("in all of them or in none"));
     assert!(fault("x [s],y [m],z [m]\n1,2,3\n4,5,6\n").contains("`x [s]` is in s"));
 }
 
@@ -186,7 +186,7 @@ fn clouds_of_curves_have_two_columns() {
         assert_eq!(read("a.csv", text).unwrap().points, points, "{text}");
     }
     // Neither a column that is not named nor one in the place of another is taken.
-    for text in ["x,y,z\n1,0,0.5\n", "w,y\n0.5,1\n", "1,0,0.5\n", "1\n"] {
+    for text in ["x,y,z\n1,0,0.5\n2,0,1\n", "w,y\n0.5,1\n1,2\n", "1,0,0.5\n", "1\n"] {
         let said = read("a.csv", text).unwrap_err().to_string();
         assert!(said.contains("`x` and `w`"), "{said}");
     }
@@ -195,6 +195,6 @@ fn clouds_of_curves_have_two_columns() {
     // In space the names count before x, y and z.
     let view = View { components: vec!["x".into(), "y".into(), "w".into()], ..View::default() };
     let read = |text: &str| view.parse(Path::new("a.csv"), text.as_bytes()).unwrap().points;
-    assert_eq!(read("z,w,y,x\n9,3,2,1\n"), [[1.0, 2.0, 3.0]]);
-    assert_eq!(read("x,y,z\n1,2,3\n"), [[1.0, 2.0, 3.0]]);
+    assert_eq!(read("z,w,y,x\n9,3,2,1\n9,6,5,4\n"), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    assert_eq!(read("x,y,z\n1,2,3\n4,5,6\n"), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
 }
