@@ -112,6 +112,15 @@ pub enum PrepareError {
         /// The coordinates.
         coordinates: String,
     },
+    /// Pairs whose partners nothing says.
+    #[error(
+        "group `{group}`: nothing says which points are partners; write `on {group} boundary of DOMAIN pairs`, of an interval or a \
+         box, for those on opposite sides, or `on {group} start of DOMAIN pairs` for the start and the end"
+    )]
+    Unpaired {
+        /// The group.
+        group: &'static str,
+    },
     /// A grid of another dimension.
     #[error("--grid has {given} numbers; give one for each of {coordinates}, for instance 61x61 for two")]
     Grid {

@@ -70,10 +70,6 @@ impl Frames {
         let path = || PathBuf::from(source);
         let fault = |error: DataError| PrepareError::File { path: path(), reason: error.to_string() };
         let (count, body) = (cloud.points.len(), self.body);
-        if cloud.is_flat {
-            let reason = format!("it has two columns; a {body} is shown by x, y and z");
-            return Err(PrepareError::File { path: path(), reason });
-        }
         if count < FEWEST {
             let reason = format!("{count} points do not show a {body}; record {FEWEST} at least");
             return Err(PrepareError::File { path: path(), reason });

@@ -19,6 +19,7 @@ mod error;
 mod frames;
 #[cfg(feature = "shipped")]
 pub mod membrane;
+mod pairs;
 #[cfg(feature = "shipped")]
 pub mod pendulum;
 mod places;
@@ -46,6 +47,7 @@ pub use copies::noisy_copy;
 pub use entry::{Binding, Entry, Series, Size};
 pub use error::PrepareError;
 pub use frames::Frames;
+pub use pairs::require_partners;
 pub use prepared::{Assumed, Measured, Prepared};
 pub use record::Record;
 pub use request::{Request, Wanted};

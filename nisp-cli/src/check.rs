@@ -6,7 +6,7 @@ use std::process::ExitCode;
 
 use nisp::noise;
 use nisp::schema::{Group, Portion};
-use nisp_equations::{Entry, Prepared, Request, Survey};
+use nisp_equations::{Entry, Prepared, Request, Survey, require_partners};
 
 use crate::explain::{unit, unknowns};
 
@@ -19,6 +19,7 @@ pub(crate) fn check(
     latex: bool,
 ) -> Result<ExitCode, String> {
     let schema = entry.scene(scene.as_deref()).map_err(|error| error.to_string())?.schema;
+    schema.groups.iter().try_for_each(require_partners).map_err(|error| error.to_string())?;
     let prepared = if data.is_empty() && entry.data.is_empty() {
         None
     } else {

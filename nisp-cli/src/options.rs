@@ -124,5 +124,5 @@ pub fn value(text: &str) -> Result<(String, f64), String> {
 
 /// How clouds are read, as `--unit` and `--camera` say.
 pub(crate) fn view(unit: Option<LengthUnit>, file: Option<&Path>) -> Result<View, PrepareError> {
-    Ok(View { unit, camera: file.map(camera).transpose()? })
+    Ok(View { unit, camera: file.map(camera).transpose()?, components: Vec::new() })
 }

@@ -10,7 +10,7 @@ use nisp::network::{Activation, Architecture};
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Carrier, Checkpoint, Optimizer, Report, Resampling, Settings, Solution, Width, recover, resume};
 use nisp_data::OutDir;
-use nisp_equations::{Prepared, Request, Truth, Wanted};
+use nisp_equations::{Entry, Prepared, Request, Survey, Truth, Wanted};
 
 use crate::args::Options;
 use crate::checkpoint::{self, Keeper};
@@ -69,7 +69,11 @@ pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, St
         interrupt::kept(folder.clone());
     }
     let found = Found::of(&mut solution, &prepared, &answer.estimates);
-    let warnings = warnings(&prepared, &solution, &found, failure.into_iter().chain(answer.warnings.iter().cloned()));
+    let unfinished = matches!(solution.status, Status::NotConverged | Status::Interrupted);
+    let failed = unfinished || !solution.verdict.passed();
+    let more = failure.into_iter().chain(answer.warnings.iter().cloned());
+    let more = more.chain(if failed { questions(&entry, &prepared) } else { Vec::new() });
+    let warnings = warnings(&prepared, &solution, &found, more);
     let rivals = options.rivals.then(|| Rivals::of(&prepared));
     let (settings, prepared, answer, written) = (&settings, &prepared, &answer, &written);
     let run = Run { options, settings, prepared, answer, written, warnings, rivals };
@@ -79,8 +83,6 @@ pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, St
         note(&format!("{}: {message}\n", program.name));
         return Ok(ExitCode::from(NOT_WRITTEN));
     }
-    let unfinished = matches!(solution.status, Status::NotConverged | Status::Interrupted);
-    let failed = unfinished || !solution.verdict.passed();
     Ok(match (failed, &written.fault) {
         (_, Some(_)) => ExitCode::from(NOT_WRITTEN),
         (true, None) => ExitCode::from(NOT_CONVERGED),
@@ -92,6 +94,12 @@ pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, St
 fn wanted(options: &Options) -> Option<Wanted> {
     let grid = options.grid.as_ref().map(|grid| Wanted::Grid(grid.0.clone()));
     options.at.clone().map(Wanted::At).or(grid)
+}
+
+/// What `nisp check` asks of the places of the data: whether they are in another unit, or swapped.
+fn questions(entry: &Entry, prepared: &Prepared) -> Vec<String> {
+    let groups = prepared.problem.scene().schema.groups.iter();
+    groups.filter_map(|group| Survey::of(entry, prepared, group)).flat_map(|survey| survey.questions()).collect()
 }
 
 /// All that the user should know, one line each; `more` is of this run's files.

@@ -6,6 +6,7 @@
 pub mod atomic;
 pub mod cloud;
 pub mod colour;
+mod components;
 pub mod domain;
 mod elsewhere;
 pub mod error;

@@ -182,7 +182,10 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
             RowKind::Residual => TermKind::Residual,
             RowKind::Observation => TermKind::Observation,
             RowKind::Integral(_) => TermKind::Integral,
-            RowKind::Chamfer { symmetric, plane } => TermKind::Chamfer { symmetric, plane },
+            RowKind::Chamfer { symmetric, plane } => {
+                let components = list(describe::components(source, plan).iter().map(|name| text(name)));
+                TermKind::Chamfer { symmetric, plane, components }
+            }
         },
         loss: plan.loss.map_or(Loss::Square, |loss| {
             Loss::named(loss.variant, loss.threshold).expect("the runtime has every loss that the compiler names")
@@ -194,6 +197,8 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
         rows: plan.rows,
         jets: list(plan.jets.iter().copied()),
         columns: list(describe::observed(group, source, plan)),
+        known: plan.known,
+        bound: describe::is_bound(source, plan),
     }
 }
 

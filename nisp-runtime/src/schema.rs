@@ -196,6 +196,16 @@ impl Group {
         self.name == "(beliefs)"
     }
 
+    /// True for a term that is asked for between the places of equations, too: in a group with bounds, what has a value there and
+    /// is stated of values. Where a bound sets in or lets go a field has a kink, and a spline that keeps to its bound at the places
+    /// goes to and fro between them from there on.
+    pub(crate) fn asks_between(&self, term: &Term) -> bool {
+        let is_value = |jet: &usize| self.jets[*jet].degree.iter().all(|&degree| degree == 0);
+        let has_bounds = self.terms.iter().any(|term| term.bound);
+        let is_equation = term.kind == TermKind::Residual && term.within.is_none() && !term.known;
+        is_equation && has_bounds && (term.bound || term.jets.iter().all(is_value))
+    }
+
     /// True for a column that one observation compares with alone: where it is NaN, nothing was measured, and the observation
     /// does not count.
     pub fn may_lack(&self, column: &str) -> bool {
@@ -361,6 +371,10 @@ pub struct Term {
     pub jets: &'static [usize],
     /// Of an observation, the column that each row compares with, by index in [`Group::columns`].
     pub columns: &'static [usize],
+    /// True where its rows read columns: they have a value at the points of the group alone.
+    pub known: bool,
+    /// True for `a >= b` and for `0 <= a _|_ b >= 0`, which turn from one side to the other where they may.
+    pub bound: bool,
 }
 
 /// How a term's rows are meant.
@@ -378,5 +392,7 @@ pub enum TermKind {
         symmetric: bool,
         /// Only the distance across the surface, not that along it.
         plane: bool,
+        /// What the coordinates of its points are called, as people write the rows; none where they do not write them one by one.
+        components: &'static [&'static str],
     },
 }

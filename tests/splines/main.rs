@@ -6,6 +6,7 @@ use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 mod beside;
 mod blurred;
 mod bounded;
+mod contact;
 mod driven;
 mod equations;
 mod few;
@@ -17,7 +18,6 @@ mod levels;
 mod measured;
 mod oscillator;
 mod steps;
-mod stops;
 
 /// Normal numbers, about: sums of twelve uniform ones.
 pub(crate) fn normals(seed: u64) -> impl FnMut() -> f64 {

@@ -83,12 +83,17 @@ impl<'a> Survey<'a> {
         if !self.is_measured {
             return Vec::new();
         }
-        let mut notes = fit::notes(self);
+        let mut notes = self.questions();
         if notes.is_empty() {
             notes.extend(cover::notes(self));
         }
         notes.extend(self.twice());
         notes
+    }
+
+    /// What may be wrong with the places: another unit, swapped columns, rows outside of the domain.
+    pub fn questions(&self) -> Vec<String> {
+        if self.is_measured { fit::notes(self) } else { Vec::new() }
     }
 
     /// Rows that are measured.

@@ -53,7 +53,8 @@ pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) ->
             };
             let is_plain = term.unit.text.is_empty();
             // Clouds are in metres, or in the unit that the user names; numbers without unit are what they are.
-            let view = View { unit: request.view.unit.filter(|_| !is_plain), ..request.view.clone() };
+            let unit = request.view.unit.filter(|_| !is_plain);
+            let view = View { unit, components: components(term), ..request.view.clone() };
             let mut cloud = view.read(file.path)?;
             if is_plain && cloud.is_in_metres {
                 let what = format!(
@@ -61,14 +62,6 @@ pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) ->
                     group.name, term.name
                 );
                 return Err(DataError::File { path: file.path.into(), what }.into());
-            }
-            let unlike = match (cloud.is_flat, term.rows) {
-                (true, 3) => Some("has two columns, of points in a plane; the term wants x, y and z"),
-                (false, 2) => Some("has points in space; the term wants two columns, in the order of its components"),
-                _ => None,
-            };
-            if let Some(what) = unlike {
-                return Err(DataError::File { path: file.path.into(), what: what.into() }.into());
             }
             cloud.thin(cloud.length() / CELLS, POINTS_OF_A_CELL);
             found.warnings.extend(cloud.warnings);
@@ -78,6 +71,15 @@ pub(super) fn bind(found: &mut Found, tables: &Tables<'_>, request: &Request) ->
         }
     }
     Ok(())
+}
+
+/// What the numbers of a point are called: as the term's entries, or as coordinates in space where these are not written one by one.
+fn components(term: &Term) -> Vec<String> {
+    let names: &[&str] = match term.kind {
+        TermKind::Chamfer { components, .. } if !components.is_empty() => components,
+        _ => &["x", "y", "z"][..term.rows.min(3)],
+    };
+    names.iter().map(|name| (*name).to_owned()).collect()
 }
 
 fn terms(group: &'static Group) -> impl Iterator<Item = &'static Term> {

@@ -17,6 +17,7 @@ use nisp_data::{DataError, Table};
 
 use crate::entry::Entry;
 use crate::error::PrepareError;
+use crate::pairs::require_partners;
 use crate::places::{Body, Placed};
 use crate::prepared::{Measured, Prepared};
 use crate::request::Request;
@@ -159,6 +160,7 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
     let mut rows = Vec::new();
     let mut faults = Vec::new();
     for group in schema.groups {
+        require_partners(group)?;
         let read = tables.of(group).map(|table| read::rows(schema, group, table, request, &mut found)).transpose();
         let read = read.unwrap_or_else(|fault| {
             faults.push(fault);

@@ -7,6 +7,7 @@ use nisp::network::Stretched;
 use nisp::schema::{Group, Place, Portion, Scene, TermKind};
 
 use crate::error::PrepareError;
+use crate::pairs;
 use crate::places::{self, Body, Placed};
 use crate::request::Request;
 
@@ -35,7 +36,12 @@ pub(super) fn unmeasured(
         }
         (Some(place), _) => {
             let body = Body::new(place.domain, schema.coordinates, folder)?;
-            body.sample(place.portion, asked.unwrap_or_else(|| body.usual(place.portion, group.order)))
+            let count = asked.unwrap_or_else(|| body.usual(place.portion, group.order));
+            let mut placed = body.sample(place.portion, count);
+            if group.paired {
+                pairs::pair(&mut placed, place.portion, &body.bounds());
+            }
+            placed
         }
         (None, [range]) if range[0] < range[1] => match group.name {
             "start" => return Ok(alone(vec![range[0]])),

@@ -81,3 +81,33 @@ fn other_units_and_swapped_columns_are_suspected() {
     let outside = rows().iter().filter(|[x, ..]| 1.2 * x > 2.0).count();
     assert!(said.contains(&format!("{outside} of 600 rows lie outside of the domain")), "{said}");
 }
+
+/// Minutes under a time in seconds: the rate that the record asks for is beyond its bounds.
+#[test]
+fn what_is_asked_of_the_places_is_asked_again_where_an_answer_is_doubted() {
+    let place = Place::new();
+    place.put(
+        "decay.pde",
+        "
+        coordinates: t [s];
+        fields: T [K];
+        parameters: k [1/s] in 1e-4 .. 1e-2 = 1e-3;
+        domains: run = 0 .. 3600;
+        on body in run { balance: d(T, t) == -k * T; }
+        on samples { observe T; }
+        scene rate { learn k; }
+        ",
+    );
+    let table = |header: &str| {
+        let rows =
+            (0..61).map(|i| format!("{i},{}\n", 100.0 * (-0.06 * f64::from(i)).exp() + 0.1 * f64::from(i * i).sin()));
+        place.put("run.csv", &format!("{header}\n{}", rows.collect::<String>()));
+        place.run("solve decay.pde --data run.csv")
+    };
+    let ran = table("t,T");
+    assert_eq!(ran.code, Some(3), "{}", ran.stderr);
+    assert!((ran.stdout + &ran.stderr).contains("is it in min?"));
+    let ran = table("t [min],T");
+    assert_eq!(ran.code, Some(0), "{} {}", ran.stdout, ran.stderr);
+    assert!(!(ran.stdout + &ran.stderr).contains("is it in"));
+}

@@ -22,6 +22,7 @@ mod interrupt;
 mod json;
 mod loggers;
 mod open_directions;
+mod periodic;
 mod plate;
 mod readme;
 mod records;

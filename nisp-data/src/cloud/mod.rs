@@ -21,6 +21,7 @@ pub use stl::Surface;
 pub use view::View;
 
 use crate::DataError;
+use crate::components::Components;
 use crate::input::{MOST_BYTES, read_bytes};
 
 /// Points in space, with a note of what had to be left out.
@@ -32,8 +33,6 @@ pub struct Cloud {
     pub warnings: Vec<String>,
     /// True if the file says the unit of its points, which are in metres then.
     pub is_in_metres: bool,
-    /// True if the file has two columns: points of a plane, whose third coordinate is zero.
-    pub is_flat: bool,
 }
 
 /// File formats, as told by their first bytes or, where those say nothing, by the file's ending.
@@ -56,23 +55,28 @@ impl Cloud {
 
     /// Reads a cloud from memory; `path` names the source in errors.
     pub fn parse(path: &Path, bytes: &[u8]) -> Result<Cloud, DataError> {
+        Cloud::parse_as(path, bytes, Components::IN_SPACE)
+    }
+
+    /// As [`Cloud::parse`], of points with other components. What they have less than three of is zero.
+    fn parse_as(path: &Path, bytes: &[u8], components: Components<'_>) -> Result<Cloud, DataError> {
         if bytes.is_empty() {
             return Err(DataError::file(path, "the file is empty; a point cloud is needed"));
         }
-        let [mut is_in_metres, mut is_flat] = [false; 2];
-        let points = match recognise(path, bytes)? {
-            Format::Ply => ply::parse(path, bytes)?,
-            Format::Pcd => pcd::parse(path, bytes)?,
-            Format::Npy => npy::Array::new(path, bytes)?.points(path)?,
-            Format::Npz => npz::parse(path, bytes)?,
+        components.refuse_many(path)?;
+        let format = recognise(path, bytes)?;
+        if matches!(format, Format::Ply | Format::Pcd) {
+            components.refuse_space(path)?;
+        }
+        let (points, is_in_metres) = match format {
+            Format::Ply => (ply::parse(path, bytes)?, false),
+            Format::Pcd => (pcd::parse(path, bytes)?, false),
+            Format::Npy => (npy::Array::new(path, bytes)?.points(path, components)?, false),
+            Format::Npz => (npz::parse(path, bytes, components)?, false),
             Format::Png => return Err(DataError::file(path, "is a picture; a point cloud is needed")),
-            Format::Text => {
-                let found = text::parse(path, bytes)?;
-                (is_in_metres, is_flat) = (found.is_in_metres, found.is_flat);
-                found.points
-            }
+            Format::Text => text::parse(path, bytes, components)?,
         };
-        Ok(Cloud { is_in_metres, is_flat, ..Cloud::finite(path, points)? })
+        Ok(Cloud { is_in_metres, ..Cloud::finite(path, points)? })
     }
 
     /// The points of a depth image, in metres and the camera's frame. Pixels without depth are no points, and are not counted.
@@ -104,7 +108,7 @@ impl Cloud {
             let copies = finite - kept.len();
             warnings.push(format!("{}: {copies} of {all} points are copies of others and left out", path.display()));
         }
-        Ok(Cloud { points: kept, warnings, is_in_metres: false, is_flat: false })
+        Ok(Cloud { points: kept, warnings, is_in_metres: false })
     }
 }
 

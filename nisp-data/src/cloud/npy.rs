@@ -1,4 +1,4 @@
-//! NumPy arrays: points in rows of at least three columns, organised points, depth images.
+//! NumPy arrays: points in rows of as many columns as a point has numbers, or more in space, organised points, depth images.
 
 use std::path::Path;
 
@@ -6,6 +6,7 @@ use npyz::{NpyFile, NpyHeader, Order};
 
 use super::image::Image;
 use crate::DataError;
+use crate::components::Components;
 
 /// Bytes of a header at most, as in NumPy itself.
 const MOST_HEADER: usize = 10_000;
@@ -40,8 +41,9 @@ impl<'a> Array<'a> {
     }
 
     /// Whether it may be a cloud.
-    pub(super) fn is_cloud(&self) -> bool {
-        matches!(self.header.shape(), &[_, width] | &[_, _, width] if (3..IMAGE).contains(&width))
+    pub(super) fn is_cloud(&self, components: Components<'_>) -> bool {
+        let least = components.count() as u64;
+        matches!(self.header.shape(), &[_, width] | &[_, _, width] if (least..IMAGE).contains(&width))
     }
 
     /// A depth image, if it is one.
@@ -66,24 +68,27 @@ impl<'a> Array<'a> {
     }
 
     /// Its points.
-    pub(super) fn points(self, path: &Path) -> Result<Vec<[f64; 3]>, DataError> {
+    pub(super) fn points(self, path: &Path, components: Components<'_>) -> Result<Vec<[f64; 3]>, DataError> {
         let (shape, order) = (self.header.shape().to_vec(), self.header.order());
         let (count, width) = match *shape.as_slice() {
             [count, width] => (count, width),
             [rows, columns, width] if order == Order::C => (rows * columns, width),
-            _ => return Err(DataError::file(path, format!("an array of shape {shape:?}; (n, 3) is needed"))),
+            _ => {
+                return Err(DataError::file(
+                    path,
+                    format!("an array of shape {shape:?}; (n, {}) is needed", components.count()),
+                ));
+            }
         };
-        if width < 3 {
-            let what = format!("an array of shape {shape:?}; x, y and z are needed in each row");
-            return Err(DataError::file(path, what));
-        }
+        components.refuse_width(path, width as usize)?;
         let flat = numbers(path, NpyFile::with_header(self.header, self.numbers))?;
         let (count, width) = (count as usize, width as usize);
         let at = |row: usize, column: usize| match order {
             Order::C => flat[row * width + column],
             Order::Fortran => flat[column * count + row],
         };
-        Ok((0..count).map(|row| [at(row, 0), at(row, 1), at(row, 2)]).collect())
+        let of = |row: usize, axis: usize| if axis < components.count() { at(row, axis) } else { 0.0 };
+        Ok((0..count).map(|row| [0, 1, 2].map(|axis| of(row, axis))).collect())
     }
 }
 

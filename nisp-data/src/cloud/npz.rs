@@ -7,10 +7,11 @@ use zip::ZipArchive;
 
 use super::npy::Array;
 use crate::DataError;
+use crate::components::Components;
 use crate::input::MOST_BYTES;
 
 /// Takes the only array that can be a cloud.
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Vec<[f64; 3]>, DataError> {
+pub(super) fn parse(path: &Path, bytes: &[u8], components: Components<'_>) -> Result<Vec<[f64; 3]>, DataError> {
     let unreadable = |error: &dyn std::fmt::Display| {
         let text = error.to_string().replace('\n', " ");
         DataError::file(path, format!("not a readable NPZ archive ({text}); save or copy it again"))
@@ -30,16 +31,18 @@ pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Vec<[f64; 3]>, DataErro
             return Err(DataError::file(path, what));
         };
         left = rest;
-        if Array::new(path, &array)?.is_cloud() {
+        if Array::new(path, &array)?.is_cloud(components) {
             clouds.push(array);
         }
         names.push(name.to_string());
     }
     match clouds.as_slice() {
-        [cloud] => Array::new(path, cloud)?.points(path),
+        [cloud] => Array::new(path, cloud)?.points(path, components),
         _ => {
             let (count, names) = (clouds.len(), names.join(", "));
-            let what = format!("{count} of its arrays ({names}) have the shape (n, 3); save the cloud alone as .npy");
+            let width = components.count();
+            let what =
+                format!("{count} of its arrays ({names}) have the shape (n, {width}); save the cloud alone as .npy");
             Err(DataError::file(path, what))
         }
     }

@@ -1,21 +1,25 @@
-//! Text clouds: CSV with columns x, y, z, or bare rows of three or more numbers; or either with two columns, of a plane.
+//! Text clouds: CSV with columns for the components of a point, or bare rows of them.
 
 use std::path::Path;
 
+use crate::components::Components;
 use crate::input::decode;
-use crate::table::Points;
 use crate::{DataError, Table};
 
-/// The points of a text.
-pub(super) fn parse(path: &Path, bytes: &[u8]) -> Result<Points, DataError> {
+/// The points, and true where headers say their unit, which makes metres of them.
+pub(super) fn parse(path: &Path, bytes: &[u8], components: Components<'_>) -> Result<(Vec<[f64; 3]>, bool), DataError> {
     let text = decode(path, bytes)?;
     let mut rows = content(text).peekable();
     let first = rows.peek().map_or(Vec::new(), |(_, line)| cells(line));
     if first.iter().any(|cell| cell.parse::<f64>().is_err()) {
-        return Table::parse(path, bytes)?.points();
+        return Table::parse(path, bytes)?.points(components);
     }
-    let points: Result<_, _> = rows.map(|(number, line)| bare_row(path, number, &cells(line), first.len())).collect();
-    Ok(Points { points: points?, is_in_metres: false, is_flat: first.len() == 2 })
+    if components.count() != 3 {
+        components.refuse_width(path, first.len())?;
+    }
+    let row = |(number, line)| bare_row(path, number, (&cells(line), first.len()), components);
+    let points: Result<_, _> = rows.map(row).collect();
+    Ok((points?, false))
 }
 
 /// Lines with something on them, numbered from one.
@@ -32,15 +36,20 @@ fn cells(line: &str) -> Vec<&str> {
     }
 }
 
-fn bare_row(path: &Path, number: usize, cells: &[&str], width: usize) -> Result<[f64; 3], DataError> {
+fn bare_row(
+    path: &Path,
+    number: usize,
+    (cells, width): (&[&str], usize),
+    components: Components<'_>,
+) -> Result<[f64; 3], DataError> {
     let fail = |what: String| Err(DataError::line(path, number, what));
     if cells.len() != width {
         return fail(format!("{} cells where the rows above have {width}; correct or remove this row", cells.len()));
     }
     let mut point = [0.0; 3];
-    for (index, axis) in ["x", "y", "z"].into_iter().take(if width == 2 { 2 } else { 3 }).enumerate() {
+    for (index, axis) in components.names().enumerate() {
         let Some(cell) = cells.get(index) else {
-            return fail(format!("no number for {axis}; each row needs x, y and z"));
+            return fail(format!("no number for {axis}; each row needs {}", components.said()));
         };
         let Ok(value) = cell.parse() else {
             return fail(format!("`{cell:.24}` for {axis} is not a number; correct it or remove the row"));

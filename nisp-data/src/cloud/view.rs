@@ -5,6 +5,7 @@ use std::path::Path;
 use super::camera::Camera;
 use super::{Cloud, Format, LengthUnit, image, npy, recognise};
 use crate::DataError;
+use crate::components::Components;
 use crate::input::{MOST_BYTES, read_bytes};
 
 /// What files of clouds do not say themselves.
@@ -14,6 +15,9 @@ pub struct View {
     pub unit: Option<LengthUnit>,
     /// The camera whose frame clouds are in and whose depth images may be given; the body's own frame if none is.
     pub camera: Option<Camera>,
+    /// What the numbers of a point are called, in their order: two or three. Columns with these headers are taken. None stands for x, y
+    /// and z.
+    pub components: Vec<String>,
 }
 
 impl View {
@@ -37,7 +41,7 @@ impl View {
             _ => None,
         };
         let mut cloud = match (image, &self.camera) {
-            (None, _) => Cloud::parse(path, bytes)?,
+            (None, _) => Cloud::parse_as(path, bytes, Components::named(&self.components))?,
             (Some(image), Some(camera)) => Cloud::seen(path, &image, camera)?,
             (Some(_), None) => {
                 let what = "is a depth image; say with --camera FILE which camera took it, or give a cloud of points";

@@ -12,15 +12,6 @@ use crate::names::likeness;
 /// Headers less like a name are not meant by it, unless they begin with it.
 const ALIKE: f64 = 0.85;
 
-/// The points of a table, of which those in a plane have no third coordinate.
-pub(crate) struct Points {
-    pub(crate) points: Vec<[f64; 3]>,
-    /// True where headers say their unit, which makes metres of them.
-    pub(crate) is_in_metres: bool,
-    /// True where there are two columns.
-    pub(crate) is_flat: bool,
-}
-
 impl Table {
     /// The column that answers to `name`: an exact header, or the only one of the forms `name [unit]`, `name (unit)` and
     /// `name_unit`. Its numbers are as they stand in the file, whatever unit the header names.
@@ -94,7 +85,11 @@ impl Table {
     }
 
     /// How numbers in the unit that the header of a column says become numbers in another; nothing where it says none.
-    fn conversion_of(&self, column: &Column, (name, unit): (&str, &str)) -> Result<Option<Conversion>, DataError> {
+    pub(super) fn conversion_of(
+        &self,
+        column: &Column,
+        (name, unit): (&str, &str),
+    ) -> Result<Option<Conversion>, DataError> {
         if column.is_dated() {
             let what = format!("`{}` holds dates, where `{name}` is in {unit}; choose another column", column.header);
             return column.dated(unit).map(Some).ok_or(DataError::Column { path: self.path.clone(), what });
@@ -132,40 +127,6 @@ impl Table {
         self.find(name, None).is_ok()
     }
 
-    /// The coordinates of points, in columns x, y and z; or in the only two, of points in a plane. Cells that are no finite numbers pass, as NaN
-    /// or infinity.
-    pub(crate) fn points(&self) -> Result<Points, DataError> {
-        let is_flat = self.columns.len() == 2;
-        // In a plane a header is any word, with a unit behind it.
-        let name = |column: &Column| column.header.split([' ', '[', '(', '_']).next().unwrap_or_default().to_string();
-        let names = match is_flat {
-            true => self.columns.iter().map(name).collect(),
-            false => ["x", "y", "z"].map(String::from).to_vec(),
-        };
-        let columns = match is_flat {
-            true => self.columns.iter().collect(),
-            false => names.iter().map(|name| self.find(name, None)).collect::<Result<Vec<&Column>, _>>()?,
-        };
-        let of = |(column, name): (&&Column, &String)| self.conversion_of(column, (name, "m"));
-        let sizes: Vec<_> = columns.iter().zip(&names).map(of).collect::<Result<_, _>>()?;
-        if sizes.iter().any(Option::is_some) && sizes.iter().any(Option::is_none) {
-            let headers = list(columns.iter().map(|column| column.header.as_str()));
-            let what = format!("{headers}: some say their unit and others do not; write it in all of them or in none");
-            return Err(DataError::Column { path: self.path.clone(), what });
-        }
-        let raw: Vec<&[f64]> = columns.iter().map(|column| self.raw(column)).collect::<Result<_, _>>()?;
-        let metres = |axis: usize, x: f64| sizes[axis].map_or(x, |size| size.of(Number::file(x)).as_declared());
-        let point = |row: usize| std::array::from_fn(|axis| raw.get(axis).map_or(0.0, |own| metres(axis, own[row])));
-        Ok(Points { points: (0..self.rows()).map(point).collect(), is_in_metres: sizes[0].is_some(), is_flat })
-    }
-
-    fn raw<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
-        match &column.fault {
-            Some(fault) if matches!(fault.kind, Kind::Word | Kind::Empty) => self.checked(column),
-            _ => Ok(&column.values),
-        }
-    }
-
     /// The values of a column, NaN where nothing was measured.
     fn with_gaps<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
         match &column.fault {
@@ -174,7 +135,7 @@ impl Table {
         }
     }
 
-    fn checked<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
+    pub(super) fn checked<'a>(&'a self, column: &'a Column) -> Result<&'a [f64], DataError> {
         match &column.fault {
             None => Ok(&column.values),
             Some(fault) => Err(DataError::Cell {
@@ -248,7 +209,8 @@ impl Table {
         // A time is what dates say.
         let dated = || self.headers().find(|header| is_date(header) && passes(header));
         let nearest = longer.first().map(|column| column.header.as_str());
-        let nearest = nearest.or_else(dated).or_else(|| self.nearest(name, &passes));
+        let only = || self.headers().find(|header| self.columns.len() == 1 && passes(header));
+        let nearest = nearest.or_else(dated).or_else(|| self.nearest(name, &passes)).or_else(only);
         self.no_column(&wanted, &format!("; {}", choose(name, nearest)))
     }
 
@@ -261,7 +223,9 @@ impl Table {
 
     fn no_column(&self, wanted: &str, hint: &str) -> DataError {
         let all = list(self.headers());
-        let what = if self.columns.len() == 1 {
+        // A single header of several words may be a row that nothing separates.
+        let is_word = |header: &str| base(header).chars().all(|mark| mark.is_alphanumeric() || mark == '_');
+        let what = if self.columns.len() == 1 && !is_word(&all) {
             format!(
                 "no column for {wanted}; the file has one column, `{all}`: separate cells by commas, semicolons or tabs"
             )
@@ -302,6 +266,6 @@ fn option(name: &str, header: &str) -> String {
     }
 }
 
-fn list<'a>(headers: impl Iterator<Item = &'a str>) -> String {
+pub(super) fn list<'a>(headers: impl Iterator<Item = &'a str>) -> String {
     headers.collect::<Vec<_>>().join(", ")
 }

@@ -6,6 +6,7 @@ mod headers;
 mod heading;
 mod lookup;
 mod opening;
+mod points;
 mod read;
 mod rows;
 mod separated;
@@ -14,7 +15,6 @@ mod wide;
 mod write;
 
 pub use dates::moment;
-pub(crate) use lookup::Points;
 pub use rows::Rows;
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;

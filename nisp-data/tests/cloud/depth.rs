@@ -63,7 +63,7 @@ fn assert_plane(points: &[[f64; 3]], tolerance: f64) {
 
 #[test]
 fn depth_images_are_points_of_the_body() {
-    let view = View { unit: None, camera: Some(above()) };
+    let view = View { camera: Some(above()), ..View::default() };
     let whole: Vec<u16> = depths().map(|depth| depth.round() as u16).collect();
     let big: Vec<u8> = whole.iter().flat_map(|grey| grey.to_be_bytes()).collect();
     let little: Vec<u8> = whole.iter().flat_map(|grey| grey.to_le_bytes()).collect();
@@ -105,7 +105,7 @@ fn organised_clouds_are_clouds() {
 
 #[test]
 fn clouds_of_a_camera_are_moved_into_the_body() {
-    let view = View { unit: None, camera: Some(above()) };
+    let view = View { camera: Some(above()), ..View::default() };
     let cloud = view.parse(Path::new("a.csv"), b"x_mm,y_mm,z_mm\n1,2,250\n0,0,300\n").unwrap();
     for (found, wanted) in cloud.points[0].iter().zip([0.011, 0.018, 0.05]) {
         assert!((found - wanted).abs() < 1e-15);

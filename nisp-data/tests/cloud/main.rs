@@ -8,7 +8,7 @@ mod thin;
 use std::path::Path;
 
 use nisp_data::Cloud;
-use nisp_data::cloud::{LengthUnit, Surface};
+use nisp_data::cloud::{LengthUnit, Surface, View};
 use proptest::prelude::*;
 use samples::{POINTS, flat, npy, npz, pcd_ascii, pcd_binary, pcd_head, ply, ply_ascii, ply_binary};
 
@@ -20,20 +20,6 @@ fn refusal(name: &str, bytes: &[u8]) -> String {
     let message = Cloud::parse(Path::new(name), bytes).unwrap_err().to_string();
     assert!(!message.contains('\n'), "{message}");
     message
-}
-
-#[test]
-fn two_columns_are_points_in_a_plane() {
-    let points = [[1.0, 2.0, 0.0], [3.0, 4.5, 0.0]];
-    for text in ["x,w\n1,2\n3,4.5\n", "1 2\n3 4.5\n"] {
-        let cloud = read("side.csv", text.as_bytes());
-        assert!(cloud.is_flat && !cloud.is_in_metres && cloud.points == points, "{cloud:?}");
-    }
-    let cloud = read("side.csv", b"x [mm],w [mm]\n1000,2000\n3000,4500\n");
-    assert!(cloud.is_flat && cloud.is_in_metres && cloud.points == points, "{cloud:?}");
-    let mixed = refusal("side.csv", b"x [mm],w\n1,2\n3,4\n");
-    assert!(mixed.contains("in all of them or in none"), "{mixed}");
-    assert!(!read("a.csv", b"x,y,z\n1,2,0\n3,4,0\n").is_flat);
 }
 
 #[test]
@@ -181,4 +167,34 @@ proptest! {
         }
         let _ = Cloud::parse(Path::new("a.ply"), &bytes);
     }
+}
+
+/// A cloud of a curve `[x, w]`: columns by name, or two in their order; what is not named is refused.
+#[test]
+fn clouds_of_curves_have_two_columns() {
+    let view = View { components: vec!["x".into(), "w".into()], ..View::default() };
+    let read = |name: &str, text: &str| view.parse(Path::new(name), text.as_bytes());
+    let points = [[1.0, 0.5, 0.0], [2.0, -0.25, 0.0]];
+    for text in [
+        "x,w\n1,0.5\n2,-0.25\n",
+        "x [m],w [mm]\n1,500\n2,-250\n",
+        "w,y,x\n0.5,7,1\n-0.25,8,2\n",
+        "x,y\n1,0.5\n2,-0.25\n",
+        "s,height\n1,0.5\n2,-0.25\n",
+        "1,0.5\n2,-0.25\n",
+    ] {
+        assert_eq!(read("a.csv", text).unwrap().points, points, "{text}");
+    }
+    // Neither a column that is not named nor one in the place of another is taken.
+    for text in ["x,y,z\n1,0,0.5\n2,0,1\n", "w,y\n0.5,1\n1,2\n", "1,0,0.5\n", "1\n"] {
+        let said = read("a.csv", text).unwrap_err().to_string();
+        assert!(said.contains("`x` and `w`"), "{said}");
+    }
+    let said = view.parse(Path::new("a.ply"), &ply("ascii", &ply_ascii())).unwrap_err().to_string();
+    assert!(said.contains("holds x, y and z, where the points are `x` and `w`"), "{said}");
+    // In space the names count before x, y and z.
+    let view = View { components: vec!["x".into(), "y".into(), "w".into()], ..View::default() };
+    let read = |text: &str| view.parse(Path::new("a.csv"), text.as_bytes()).unwrap().points;
+    assert_eq!(read("z,w,y,x\n9,3,2,1\n9,6,5,4\n"), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
+    assert_eq!(read("x,y,z\n1,2,3\n4,5,6\n"), [[1.0, 2.0, 3.0], [4.0, 5.0, 6.0]]);
 }

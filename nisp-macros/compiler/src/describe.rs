@@ -80,6 +80,19 @@ pub fn observed(group: &GroupPlan, source: &Group, term: &TermPlan) -> Vec<usize
     }
 }
 
+/// True for inequalities and complementarities.
+pub fn is_bound(source: &Group, term: &TermPlan) -> bool {
+    matches!(source.terms[term.term].kind, TermKind::Inequality(_) | TermKind::Complementarity { .. })
+}
+
+/// Of a cloud, what the coordinates of its points are called; nothing where they are not written one by one.
+pub fn components<'a>(source: &'a Group, term: &TermPlan) -> &'a [String] {
+    match &source.terms[term.term].kind {
+        TermKind::Chamfer { names, .. } => names,
+        _ => &[],
+    }
+}
+
 /// The declared value of a parameter in a scene, in SI units.
 pub fn default(model: &Model, scene: &Scene, parameter: usize) -> Option<f64> {
     scene.fixed_parameters[parameter].or(model.parameters[parameter].default)

@@ -38,7 +38,7 @@ impl<E: Precision> Chamfer<E> {
     /// The rows of a term at so many points; `cloud` is flat and point by point. Nothing unless the term is a Chamfer
     /// distance in two to four dimensions and the cloud has a point.
     pub(crate) fn new(cloud: &[f64], (term, loss): (&schema::Term, Loss), points: usize) -> Option<Self> {
-        let TermKind::Chamfer { symmetric, plane } = term.kind else { return None };
+        let TermKind::Chamfer { symmetric, plane, .. } = term.kind else { return None };
         let dimensions = term.rows;
         let zeros = |count: usize| vec![E::ZERO; count * points];
         Some(Self {

@@ -42,7 +42,8 @@ pub(super) fn clouds(schema: &schema::Scene) -> Option<&'static str> {
         |group: &schema::Group| group.terms.iter().any(|term| matches!(term.kind, TermKind::Chamfer { .. }));
     // A curve in a plane, or a surface in space.
     let is_met = |term: &schema::Term| matches!((schema.coordinates.len(), term.rows), (1, 2) | (2..=3, 3));
-    let is_symmetric = |term: &schema::Term| term.kind == TermKind::Chamfer { symmetric: true, plane: false };
+    let is_symmetric =
+        |term: &schema::Term| matches!(term.kind, TermKind::Chamfer { symmetric: true, plane: false, .. });
     match () {
         () if schema.groups.iter().any(|group| has_cloud(group) && has_known(group)) => {
             Some("clouds in groups with columns")

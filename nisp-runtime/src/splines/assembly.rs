@@ -1,6 +1,6 @@
 //! Rows about an iterate: of terms, of priors, and of those that keep everything bounded.
 
-use super::cells::{MANY, order};
+use super::cells::{MANY, SMOOTH};
 use super::iterate::{Phase, State};
 use super::rows::Rows;
 use super::solver::Solver;
@@ -31,6 +31,12 @@ impl Solver<'_> {
         }
     }
 
+    /// The same at a place.
+    pub(super) fn sigma_at(&self, state: &State, (group, term): (usize, usize), row: usize, p: usize) -> f64 {
+        let around = self.between[group][row].get(p).copied().unwrap_or(0.0);
+        self.sigma(state, group, term, row).max(around)
+    }
+
     /// How the misfits of a group's term count at a state.
     fn loss_of(&self, state: &State, (group, term): (usize, usize)) -> Loss {
         let loss = self.bound.losses[group][term];
@@ -57,10 +63,10 @@ impl Solver<'_> {
                 }
                 let loss = self.loss_of(state, (at, number));
                 let lacking = self.bound.lacking(at, term);
+                let count = group.asked(term);
                 let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
                 for row in term.first..term.first + term.rows {
-                    let sigma = self.sigma(state, at, number, row);
-                    for (cell, places) in group.by_cell(|p| is_there(&p)) {
+                    for (cell, places) in group.by_cell(|p| p < count && is_there(&p)) {
                         let mut own = group.bundle(&self.heads, cell, shared);
                         for p in places {
                             let misfit = found.row(row, p);
@@ -68,6 +74,7 @@ impl Solver<'_> {
                                 let name = format!("{}.{}", group.schema.name, term.name);
                                 return Err(Fault::residual(name, Some(p)));
                             }
+                            let sigma = self.sigma_at(state, (at, number), row, p);
                             cost += loss.rho(misfit / sigma);
                             let factor = loss.weight(misfit / sigma).sqrt() / sigma;
                             group.add_row(&self.heads, (&found, row, p), &slopes, factor, &mut own);
@@ -85,7 +92,7 @@ impl Solver<'_> {
             let stay = RIDGE.max((FREE * (numbers.len() as f64).sqrt()).recip());
             // Without data fields begin anywhere, and the equations make the rest of them.
             let order = match self.amplitude[head] {
-                None if !self.is_measured => order(self.bound.problem.scene().schema, head),
+                None if !self.is_measured => self.heads.bases[head].degree - SMOOTH,
                 _ => 0,
             };
             let stay = if self.is_measured { stay } else { RIDGE };
@@ -187,10 +194,11 @@ impl Solver<'_> {
                 }
                 let loss = self.loss_of(state, (at, number));
                 let lacking = self.bound.lacking(at, term);
+                let count = group.asked(term);
                 let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
                 for row in term.first..term.first + term.rows {
-                    let sigma = self.sigma(state, at, number, row);
-                    sum += (0..group.len()).filter(is_there).map(|p| loss.rho(found.row(row, p) / sigma)).sum::<f64>();
+                    let sigma = |p: usize| self.sigma_at(state, (at, number), row, p);
+                    sum += (0..count).filter(is_there).map(|p| loss.rho(found.row(row, p) / sigma(p))).sum::<f64>();
                 }
             }
         }

@@ -164,37 +164,18 @@ pub(super) fn part(bound: &Bound, breakpoints: &[f64]) -> Bound {
 
 /// Degrees of the heads' splines: so much above the order of their highest derivative that residuals are smooth. Nothing where
 /// the degree would be too high.
-///
-/// Where equations hold values, as contacts do, the degree is odd: breakpoints are where equations are asked, and splines of an even degree that
-/// are zero at all of their breakpoints go to and fro in between, undamped.
 pub(super) fn degrees(schema: &schema::Scene) -> Option<Vec<usize>> {
-    let degree = |head: usize| {
-        let degree = SMOOTH + order(schema, head);
-        degree + usize::from(degree.is_multiple_of(2) && degree < HIGHEST_DEGREE && has_held_values(schema, head))
+    let order = |head: usize| {
+        let jets = schema.groups.iter().flat_map(|group| group.jets).filter(|jet| jet.head == head);
+        jets.flat_map(|jet| jet.operator).map(|(order, _)| usize::from(order[0])).max().unwrap_or(0)
     };
-    let degrees: Vec<usize> = (0..schema.heads.len()).map(degree).collect();
+    let degrees: Vec<usize> = (0..schema.heads.len()).map(|head| SMOOTH + order(head)).collect();
     degrees.iter().all(|&degree| degree <= HIGHEST_DEGREE).then_some(degrees)
-}
-
-/// Order of a head's highest derivative.
-pub(super) fn order(schema: &schema::Scene, head: usize) -> usize {
-    let jets = schema.groups.iter().flat_map(|group| group.jets).filter(|jet| jet.head == head);
-    jets.flat_map(|jet| jet.operator).map(|(order, _)| usize::from(order[0])).max().unwrap_or(0)
-}
-
-/// True where an equation beside a differential one reads no derivative, and reads a head.
-fn has_held_values(schema: &schema::Scene, head: usize) -> bool {
-    schema.groups.iter().filter(|group| group.order > 0).any(|group| {
-        let is_value = |jet: usize| group.jets[jet].degree.iter().all(|&degree| degree == 0);
-        let equations = group.terms.iter().filter(|term| term.kind == TermKind::Residual && term.within.is_none());
-        let mut of_values = equations.filter(|term| term.jets.iter().all(|&jet| is_value(jet)));
-        of_values.any(|term| term.jets.iter().any(|&jet| group.jets[jet].head == head))
-    })
 }
 
 /// True where a group is equations alone, whose points stand for an interval: it may be asked for at some of them, or elsewhere where
 /// no columns are known at them.
-fn stands_for_interval(bound: &Bound, group: usize) -> bool {
+pub(super) fn stands_for_interval(bound: &Bound, group: usize) -> bool {
     let schema = &bound.problem.scene().schema.groups[group];
     let only_equations = schema.terms.iter().all(|term| term.kind == TermKind::Residual);
     let mut sorted = bound.coordinates[group].clone();

@@ -16,10 +16,12 @@ const LANES: usize = 16;
 pub(super) struct Group {
     pub(super) schema: &'static schema::Group,
     pub(super) kernel: GroupKernel<f64>,
+    /// Places at which all of its terms are asked for. The others, behind them, lie between these.
+    pub(super) own: usize,
     /// The cell of each place.
     cells: Vec<usize>,
     stride: usize,
-    coordinates: Vec<f64>,
+    pub(super) coordinates: Vec<f64>,
     columns: Vec<f64>,
     /// Heads that the group reads.
     read: Vec<usize>,
@@ -79,6 +81,7 @@ impl Group {
         Self {
             schema,
             kernel,
+            own: places.len(),
             cells: places_in_cells.into_iter().map(|(cell, _)| cell).collect(),
             stride,
             coordinates: padded(places),

@@ -9,6 +9,7 @@
 mod assembly;
 mod bars;
 mod basis;
+mod between;
 mod blurred;
 mod bounded;
 mod cells;
@@ -241,7 +242,7 @@ pub(crate) fn solve(
     let course = place.best().map(|best| KINDS[best.kind].course);
     let State { theta, learned, step: iterations, .. } = place.state;
     let is_beside_sources = solver.is_beside_sources();
-    let (heads, facts) = solver.into_facts(&breakpoints, &theta);
+    let (heads, facts, between) = solver.into_facts(&breakpoints, &theta);
     let (kept, told) = bars.keep((heads, theta, learned), course);
     let own = kept.learned().into_iter().filter(|_| is_beside_sources).enumerate();
     let leaning = own
@@ -249,7 +250,7 @@ pub(crate) fn solve(
         .collect();
     let answer = Answer {
         facts,
-        between: Vec::new(),
+        between,
         clouds: Vec::new(),
         scalars,
         scores: Vec::new(),

@@ -46,6 +46,8 @@ pub(super) struct Solver<'a> {
     pub(super) noise_of_columns: Vec<Vec<f64>>,
     /// By group and row, how far that puts equations off.
     pub(super) blurs: Vec<Vec<f64>>,
+    /// By group, row and place, how far what is asked for between places is off around there; nothing of other rows.
+    pub(super) between: Vec<Vec<Vec<f64>>>,
     pub(super) scalars: Vec<f64>,
     /// What is believed of the lines that sources keep near to.
     pub(super) belief: Belief,
@@ -72,7 +74,8 @@ impl<'a> Solver<'a> {
         let group = |(at, kernel): (usize, _)| {
             let own = || Moved { places: bound.coordinates[at].clone(), columns: bound.filled_columns(at) };
             let Moved { places, columns } = cells::moved(bound, at, breakpoints).unwrap_or_else(own);
-            Group::new(&schema.groups[at], kernel, &heads, &places, &columns)
+            let group = Group::new(&schema.groups[at], kernel, &heads, &places, &columns);
+            if cells::stands_for_interval(bound, at) { group.with_between(&heads, &places, &columns) } else { group }
         };
         let groups: Vec<Group> = kernels.into_iter().take(schema.groups.len()).enumerate().map(group).collect();
         let mut count = 0;
@@ -107,6 +110,7 @@ impl<'a> Solver<'a> {
             sizes,
             noise_of_columns: (0..bound.columns.len()).map(|group| of_given(bound, group)).collect(),
             blurs,
+            between: schema.groups.iter().map(|group| vec![Vec::new(); group.rows]).collect(),
             scalars,
             belief,
             length,
@@ -199,6 +203,7 @@ impl<'a> Solver<'a> {
     /// Takes over the sizes of equations at a state.
     pub(super) fn size(&mut self, state: &State) {
         self.set_learned(&state.learned);
+        self.size_between(state);
         for (at, group) in self.groups.iter().enumerate().filter(|(_, group)| group.len() > 0) {
             let facts = group.facts(&self.heads, &state.theta);
             if state.blurred {
@@ -248,19 +253,21 @@ impl<'a> Solver<'a> {
         self.amplitude[head].map(|amplitude| (size(self.roughness[head]), size(amplitude)))
     }
 
-    /// The heads, and what they say at the points of all groups.
-    pub(super) fn into_facts(self, breakpoints: &[f64], theta: &[f64]) -> (Heads, Vec<Facts>) {
+    /// The heads, and what they say at the points of all groups; of groups that are asked for between their places, also there.
+    pub(super) fn into_facts(self, breakpoints: &[f64], theta: &[f64]) -> (Heads, Vec<Facts>, Vec<(usize, Facts)>) {
         let Self { bound, heads, groups, .. } = self;
         let schema = bound.problem.scene().schema;
+        let all = groups.iter().enumerate().filter(|(_, group)| group.has_between());
+        let between = all.map(|(at, group)| (at, group.facts(&heads, theta))).collect();
         let of = |(at, (own, kernel)): (usize, (Group, GroupKernel<f64>))| {
-            if cells::moved(bound, at, breakpoints).is_none() {
+            if cells::moved(bound, at, breakpoints).is_none() && !own.has_between() {
                 return own.facts(&heads, theta);
             }
             let columns = bound.filled_columns(at);
             Group::new(&schema.groups[at], kernel, &heads, &bound.coordinates[at], &columns).facts(&heads, theta)
         };
         let facts = groups.into_iter().zip(bound.problem.scene().double()).enumerate().map(of).collect();
-        (heads, facts)
+        (heads, facts, between)
     }
 
     /// Misfits of all terms at their places, by group, and the noise of observations.
@@ -272,7 +279,7 @@ impl<'a> Solver<'a> {
                 let rows = term.first..term.first + term.rows;
                 let lacking = self.bound.lacking(at, term);
                 let is_there = |p: &usize| lacking.as_ref().is_none_or(|measured| measured[*p]);
-                let places: Vec<usize> = (0..group.len()).filter(is_there).collect();
+                let places: Vec<usize> = (0..group.asked(term)).filter(is_there).collect();
                 let misfits =
                     rows.flat_map(|row| places.iter().map(move |&p| (row, p))).map(|(row, p)| found.row(row, p));
                 let is_data = term.kind == TermKind::Observation;

@@ -58,7 +58,7 @@ impl Solver<'_> {
         }
         let Some((step, shared)) = self.triangle.solve() else { return Ok(None) };
         let covariance = self.triangle.covariance();
-        let is_equation = self.equations(state);
+        let (is_equation, is_between) = (self.equations(state), self.shared_with_between(state));
         let mut tallies = vec![Tally::default(); state.classes.len() + 1];
         let (mut loss, mut strayed, mut asked) = (0.0, 0.0, 0.0);
         let mut walk = rows.walk();
@@ -68,10 +68,11 @@ impl Solver<'_> {
             let beside: f64 = row.shared.iter().zip(&shared).map(|(a, x)| a * x).sum();
             tally.squares += (row.value + along + beside).powi(2);
             tally.count += count as f64;
-            // Equations are so much stricter than anything else that each settles an unknown.
+            // Equations are so much stricter than anything else that each settles an unknown, but where they are more.
             if is_equation[class] {
                 (strayed, asked) = (strayed + row.value.powi(2), asked + count as f64);
-            } else {
+            }
+            if !is_equation[class] || is_between[class] {
                 tally.used += covariance.of(row.first, row.slopes, row.shared).max(0.0);
             }
             loss += 0.5 * row.value.powi(2);
@@ -129,7 +130,11 @@ impl Solver<'_> {
         for (at, group) in self.groups.iter().enumerate() {
             for (number, term) in group.schema.terms.iter().enumerate().filter(|(_, term)| is_such(term)) {
                 let rows = term.first..term.first + term.rows;
-                let logs: f64 = rows.map(|row| self.sigma(state, at, number, row).ln()).sum();
+                let places = if group.schema.asks_between(term) { group.len().max(1) } else { 1 };
+                let log = |row| {
+                    (0..places).map(|p| self.sigma_at(state, (at, number), row, p).ln()).sum::<f64>() / places as f64
+                };
+                let logs: f64 = rows.map(log).sum();
                 let count = tallies[self.classes[at][number]].count;
                 // Terms without rows have no size.
                 sum += if count > 0.0 { count * logs / term.rows as f64 } else { 0.0 };
@@ -201,7 +206,9 @@ impl Solver<'_> {
         let unknowns = (functions + self.bound.learned.len() + state.lines.len()) as f64;
         let is_rough = |class: usize| self.roughness.contains(&class);
         let is_equation = self.equations(state);
-        tallies.iter_mut().zip(&is_equation).filter(|(_, is)| **is).for_each(|(tally, _)| tally.used = tally.count);
+        let is_between = self.shared_with_between(state);
+        let settling = tallies.iter_mut().zip(is_equation.iter().zip(&is_between)).filter(|(_, is)| *is.0 && !is.1);
+        settling.for_each(|(tally, _)| tally.used = tally.count);
         let used: f64 =
             tallies.iter().enumerate().filter(|&(class, _)| !is_rough(class)).map(|(_, tally)| tally.used).sum();
         let rough = || judged.iter().map(|&head| self.roughness[head]);

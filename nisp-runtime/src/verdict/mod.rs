@@ -122,10 +122,12 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         }
         checks.extend(equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer)));
         checks.extend(blurred::checks(bound, at, (facts, &rows), programs, &answer.scalars));
-        // Equations hold between their points as well.
+        // Equations hold between their points as well, but for those that read what is known at these alone.
         for (_, facts) in answer.between.iter().filter(|(of, _)| *of == at) {
             let rows = facts.rows(programs, group, &answer.scalars);
-            for between in equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer)) {
+            let is_known = |check: &Check| group.terms.iter().any(|term| term.name == check.term && term.known);
+            let all = equations::checks(bound, at, (facts, &rows), programs, (&sizes, answer));
+            for between in all.into_iter().filter(|check| !is_known(check)) {
                 let place = (between.check, between.group, between.term);
                 match checks.iter_mut().find(|check| (check.check, check.group, check.term) == place) {
                     Some(check) if between.value > check.value => *check = between,

@@ -208,7 +208,8 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
         RowKind::Observation => quote!(schema::TermKind::Observation),
         RowKind::Integral(_) => quote!(schema::TermKind::Integral),
         RowKind::Chamfer { symmetric, plane } => {
-            quote!(schema::TermKind::Chamfer { symmetric: #symmetric, plane: #plane })
+            let components = describe::components(source, plan);
+            quote!(schema::TermKind::Chamfer { symmetric: #symmetric, plane: #plane, components: &[#(#components),*] })
         }
     };
     let loss = match plan.loss {
@@ -229,11 +230,12 @@ fn term(declared: &model::Scene, group: &GroupPlan, source: &model::Group, plan:
     };
     let columns = describe::observed(group, source, plan);
     let (first, rows, jets) = (plan.first, plan.rows, &plan.jets);
+    let (known, bound) = (plan.known, describe::is_bound(source, plan));
     quote! {
         schema::Term {
             name: #name, equation: #equation, latex: #latex, unit: #unit, kind: #kind, loss: #loss,
             weight: #weight, within: #within, measure: #measure, first: #first, rows: #rows,
-            jets: &[#(#jets),*], columns: &[#(#columns),*],
+            jets: &[#(#jets),*], columns: &[#(#columns),*], known: #known, bound: #bound,
         }
     }
 }

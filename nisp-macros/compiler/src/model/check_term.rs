@@ -237,9 +237,13 @@ impl TermInput<'_, '_> {
         let prefix =
             format!("{}{}chamfer", if symmetric { "symmetric " } else { "" }, if plane { "plane " } else { "" },);
         let arrow = if symmetric { r"\leftrightarrow" } else { r"\leftarrow" };
+        let names = match &point.kind {
+            ExprKind::List(entries) => entries.iter().map(print_text).collect(),
+            _ => Vec::new(),
+        };
         let entries = value.entries.into_iter().map(|entry| entry.expr).collect();
         Ok(Body {
-            kind: TermKind::Chamfer { point: entries, symmetric, plane },
+            kind: TermKind::Chamfer { point: entries, names, symmetric, plane },
             unit: Unit::si(value.dim.known().cloned().unwrap_or_default()),
             equation: format!("{prefix} {}", print_text(point)),
             latex: format!(r"{} {arrow} \mathrm{{cloud}}", self.latex(point)),

@@ -190,7 +190,14 @@ fn held(declaration: &Declaration, elaborator: &mut Elaborator<'_>) -> u32 {
             }
             None => {
                 let all: Vec<&str> = elaborator.coordinates.iter().map(|c| c.name.text.as_str()).collect();
-                elaborator.errors.push(name.span, catalogue::not_a_coordinate(&name.text, &all));
+                let found = elaborator.scope.find(&name.text).map(|symbol| symbol.meaning);
+                let message = match found {
+                    Some(Meaning::Field | Meaning::Source) => {
+                        catalogue::depends_on_a_field(&declaration.name.text, &name.text)
+                    }
+                    _ => catalogue::not_a_coordinate(&name.text, &all),
+                };
+                elaborator.errors.push(name.span, message);
             }
         }
     }

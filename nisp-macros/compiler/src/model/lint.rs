@@ -5,7 +5,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use super::elaborate::Elaborator;
 use super::orders::{Orders, Walker, merge};
 use super::scope::Meaning;
-use super::{Model, Role, Scene, Term, TermKind, build, cancel, lint_scene};
+use super::{Group, Model, Portion, Region, Role, Scene, Term, TermKind, build, cancel, lint_scene};
 use crate::error::catalogue;
 
 /// What one term reads.
@@ -30,7 +30,7 @@ pub(super) fn check(elaborator: &mut Elaborator<'_>, model: &mut Model) {
         .groups
         .iter()
         .enumerate()
-        .map(|(number, group)| group.terms.iter().map(|term| row(number, term, &mut walker)).collect())
+        .map(|(number, group)| group.terms.iter().map(|term| row((number, ends(group)), term, &mut walker)).collect())
         .collect();
     sources_without_equation(elaborator, model, &rows);
     lint_scene::check(elaborator, model);
@@ -70,7 +70,16 @@ fn shadowed_derivatives(elaborator: &mut Elaborator<'_>) {
     elaborator.warnings.extend(shadowing);
 }
 
-fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
+/// How many ends a group lies at: the boundary of an interval is two.
+fn ends(group: &Group) -> usize {
+    let both = group.place.as_ref().is_some_and(|place| {
+        let is_interval = matches!(place.domain.first(), Some(Region::Box(ranges)) if ranges.len() == 1);
+        place.portion == Portion::Boundary && is_interval
+    });
+    1 + usize::from(both)
+}
+
+fn row((group, ends): (usize, usize), term: &Term, walker: &mut Walker) -> Row {
     let mut fields = BTreeMap::new();
     let expressions = lint_scene::expressions(term);
     for expr in expressions {
@@ -83,8 +92,8 @@ fn row(group: usize, term: &Term, walker: &mut Walker) -> Row {
     let measured =
         matches!(term.kind, TermKind::Observation { .. } | TermKind::Chamfer { .. } | TermKind::Integral { .. });
     let conditions = match &term.kind {
-        TermKind::Residual(rows) => rows.len(),
-        _ => 1,
+        TermKind::Residual(rows) => ends * rows.len(),
+        _ => ends,
     };
     Row { group, fields, measured, conditions }
 }

@@ -360,6 +360,8 @@ pub enum TermKind {
     Chamfer {
         /// Deformed position, one entry per dimension of the cloud.
         point: Vec<Expr>,
+        /// The entries as people write them, where they are written one by one.
+        names: Vec<String>,
         /// Both directions, not only cloud to surface.
         symmetric: bool,
         /// Only the distance across the surface, not that along it.

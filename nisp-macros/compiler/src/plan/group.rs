@@ -66,6 +66,9 @@ pub(super) fn draft(
         let Rows { rows, targets: goal } = rows(&mut lowering, term, (place, terms.len()));
         check(&lowering.graph, &rows, model, scene, &term.name)?;
         let (first, count) = (all.len(), rows.len());
+        let reads = lowering.graph.reachable(rows.iter().copied());
+        let known =
+            reads.into_iter().any(|id| matches!(lowering.graph.node(id), Node::Leaf(Leaf::Input(Slot::Column, _))));
         terms.push(TermPlan {
             term: index,
             kind: kind(&term.kind),
@@ -73,6 +76,7 @@ pub(super) fn draft(
             first,
             rows: count,
             jets: Vec::new(),
+            known,
             target_slopes: Program::default(),
         });
         all.extend(rows);

@@ -159,6 +159,8 @@ pub struct TermPlan {
     pub rows: usize,
     /// Jets of the group that its rows read.
     pub jets: Vec<usize>,
+    /// Whether its rows read columns.
+    pub known: bool,
     /// Of an integral: the derivatives of its targets by the learned parameters, over slot Parameter only. Outputs row
     /// by row, each in the order of [`ScenePlan::learned`]. Empty for other kinds.
     pub target_slopes: Program,

@@ -251,7 +251,7 @@ pub(crate) fn membrane() -> Model {
             ("balance", TermKind::Residual(vec![balance])),
             ("inplane_a", inplane(&n_a, &n_ab)),
             ("inplane_b", inplane(&n_ab, &n_b)),
-            ("cloud", TermKind::Chamfer { point, symmetric: false, plane: false }),
+            ("cloud", TermKind::Chamfer { point, names: Vec::new(), symmetric: false, plane: false }),
         ],
     );
     m.group("rim", 0, vec![("clamp", TermKind::Residual(vec![u, v, w])), ("no_contact", TermKind::Residual(vec![f]))]);

@@ -193,7 +193,10 @@ pub(crate) fn integral_units(integrand: (&str, &Dimension), target: (&str, &Dime
 }
 
 pub(crate) fn mixed_conditions() -> String {
-    help("the conditions of one term must be of one kind", "give each kind a term of its own")
+    help(
+        "the conditions of one term must be of one kind",
+        "give each kind a term of its own; two that are not negative and one of them zero are `0 <= a _|_ b >= 0`",
+    )
 }
 
 pub(crate) fn nothing_to_solve(text: &str) -> String {

@@ -226,6 +226,19 @@ pub(crate) fn not_a_coordinate(text: &str, known: &[&str]) -> String {
     help(format!("`{}` is not a coordinate", shorten(text)), step)
 }
 
+pub(crate) fn depends_on_a_field(name: &str, field: &str) -> String {
+    let (name, field) = (shorten(name), shorten(field));
+    help(
+        format!(
+            "`{name}` depends on coordinates alone; an unknown function of the field `{field}` is not in the language"
+        ),
+        format!(
+            "write a family of functions with learned parameters, as `let {name} = {name}0 + {name}1 * {field};` (docs/language.md has \
+             the recipe), or declare `{name}` without `({field})` and plot it over `{field}` afterwards"
+        ),
+    )
+}
+
 pub(crate) fn not_a_field(name: &str, nearest: Option<&str>) -> String {
     help(format!("`{}` is not a field or source", shorten(name)), meant(nearest, "hard conditions are for those"))
 }
