@@ -249,9 +249,7 @@ impl<'a> Solver<'a> {
                 sizes.for_each(|(size, found)| *size = found / term.weight.sqrt());
             }
         }
-        if !self.is_measured() {
-            self.leave_out_levels(state);
-        }
+        self.leave_out_levels(state);
     }
 
     /// Gives all rows what they are divided by at a state.
