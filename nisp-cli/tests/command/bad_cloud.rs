@@ -44,7 +44,7 @@ fn clouds() {
     cloud("x,y,z\n", "", &["c.csv"]);
     cloud("nan,nan,nan\nnan,0,1\n", "", &["none of the 2 points is finite"]);
     cloud("x,y,depth\n1,2,3\n4,5,6\n", "", &["no column for `z`", "columns: x, y, depth"]);
-    cloud("1 2\n3 4\n", "", &["c.csv: it has two columns", "x, y and z"]);
+    cloud("1 2\n3 4\n", "", &["no number for z; each row needs `x`, `y` and `z`"]);
     cloud(&bubble(1e3, 0.0), "", &["is the cloud in millimetres? give --unit mm"]);
     cloud(&bubble(1e2, 0.0), "", &["give --unit cm"]);
     cloud(&bubble(1.0, 0.0), "--unit mm", &["the cloud spans", "another object"]);

@@ -12,18 +12,19 @@ fn answer(place: &Place, folder: &str) -> [String; 2] {
 #[test]
 fn a_resumed_run_writes_the_same_answer() {
     let place = Place::new();
-    assert_eq!(place.run("solve pendulum --iterations 30 --out straight").code, Some(0));
+    // Runs that end before their time have no error bars, and are not called right.
+    assert_eq!(place.run("solve pendulum --iterations 30 --out straight").code, Some(3));
     assert_eq!(place.run("solve pendulum --iterations 5 --checkpoint --out a").code, Some(3));
     assert_eq!(names(&place.path("a")), ["answer.nisp", "checkpoint.nisp", "plot.svg", "source.csv", "state.csv"]);
     let ran = place.run("solve pendulum --iterations 30 --resume a --out b --threads 1 --json");
-    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    assert_eq!(ran.code, Some(3), "{}", ran.stderr);
     let object: Value = serde_json::from_str(&ran.stdout).unwrap();
     assert_eq!((&object["iterations"], &object["settings"]["resume"]), (&30.into(), &"a".into()));
     assert_eq!(names(&place.path("b")), ["answer.nisp", "plot.svg", "source.csv", "state.csv"], "none was asked for");
     assert_eq!(answer(&place, "b"), answer(&place, "straight"));
     // Into the folder that it comes from, and from a configuration.
     place.put("run.toml", "resume = \"a\"\ncheckpoint = true\niterations = 30\nout = \"a\"\n");
-    assert_eq!(place.run("solve pendulum --config run.toml").code, Some(0));
+    assert_eq!(place.run("solve pendulum --config run.toml").code, Some(3));
     assert_eq!(answer(&place, "a"), answer(&place, "straight"));
 }
 

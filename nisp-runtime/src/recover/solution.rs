@@ -6,6 +6,7 @@ use super::carried::{Carried, Solved, Values};
 use super::choice::Attempt;
 use super::{Checkpoint, Optimizer, Settings, Width};
 use crate::carrier::Estimate;
+use crate::facts::Told;
 use crate::noise::{self, Noise};
 use crate::problem::Bound;
 use crate::saved::{Extent, SavedAnswer, SavedError, save_frame};
@@ -114,8 +115,18 @@ impl Solution {
         /// Size of a source in its deviations above which exact data leave nothing open of it.
         const PLAIN: f64 = 100.0;
         let noise = noise::estimate(&self.bound);
-        let answer = self.carried.answer(&self.bound);
+        let mut answer = self.carried.answer(&self.bound);
         let values = self.where_read(self.values_over_domain(), &answer);
+        self.is_met_exactly = self.meets_data_exactly(&noise)
+            && answer.told.iter().all(|told| told.size.is_some_and(|size| size > PLAIN));
+        // Deviations are of an end that the run did not come to.
+        if self.status == Status::Budget
+            && !self.is_met_exactly
+            && noise.clone().with_clouds(&self.bound).is_there(self.scene())
+        {
+            let sources = (0..self.scene().heads.len()).filter(|&head| self.scene().heads[head].source);
+            answer.told = sources.map(Told::unasked).collect();
+        }
         self.verdict = judge(&self.bound, &answer, &values, &noise);
         if let Some(prior) = self.settings.carrier.patches_everywhere(self.scene()) {
             for (head, values) in self.scene().heads.iter().zip(&values).filter(|(head, _)| head.source) {
@@ -124,8 +135,6 @@ impl Solution {
             }
         }
         self.verdict.checks.extend(self.left_open());
-        self.is_met_exactly = self.meets_data_exactly(&noise)
-            && answer.told.iter().all(|told| told.size.is_some_and(|size| size > PLAIN));
         match (self.status, self.verdict.passed()) {
             (Status::Budget, true) if self.is_met_exactly && self.has_room() => self.status = Status::Converged,
             (Status::Converged, false) => self.status = Status::Inconsistent,
