@@ -191,6 +191,14 @@ impl Group {
         1 + usize::from(self.paired) + self.held.len()
     }
 
+    /// True for what is read at the points' partners.
+    pub fn is_partner(&self, jet: &Jet) -> bool {
+        match jet.site.checked_sub(1 + usize::from(self.paired)) {
+            Some(held) => self.held[held].of == 1,
+            None => jet.site == 1,
+        }
+    }
+
     /// True for the group of what is believed of learned parameters, which the compiler adds and which is bound by itself.
     pub fn is_beliefs(&self) -> bool {
         self.name == "(beliefs)"

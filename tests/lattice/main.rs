@@ -1,6 +1,7 @@
 //! Splines on a lattice against closed forms: a conductivity from a noisy field, a source that does not change, loads from clouds,
 //! and the same answers from a compiled scene and from its text.
 
+mod across;
 mod bounded;
 mod clouds;
 mod edges;

@@ -116,7 +116,7 @@ nisp::pde! {
         coordinates: x;
         fields: w;
         sources: q;
-        on inside { balance: -d(w, x, 2) == q; total: integral(q) == 1; }
+        on inside { balance: -d(w, x, 2) == q; total: integral(q) == 1 with huber(3); }
         on gauges { observe w; }
         scene loaded { }
     }
@@ -276,7 +276,7 @@ fn what_splines_do_not_do_is_refused() {
     };
     let error = recover(&bound(scene::<summed::loaded::Scene>()), &settings(Carrier::Splines), &mut |_| Flow::Continue);
     let message = error.err().unwrap().to_string();
-    assert_eq!(message, "splines do not do integrals; choose a network");
+    assert_eq!(message, "splines do not do robust losses of integrals; choose a network");
 }
 
 /// A residual beside nothing but itself is compared with what the quantity would be elsewhere.

@@ -47,7 +47,7 @@ impl Solver {
         let (mut loss, mut rows) = (0.0, 0);
         for group in &self.groups {
             // The first step regresses data and pointwise conditions; equations come after.
-            if regress && !group.weights.is_empty() {
+            if regress && !group.tests.is_empty() {
                 continue;
             }
             if !group.has_rows() {
@@ -65,9 +65,9 @@ impl Solver {
             if regress {
                 continue;
             }
-            for integral in group.integrals(&self.heads, &evaluated, &self.scalars) {
+            for (_, integral) in group.integrals(&self.heads, &evaluated, &self.scalars, &slopes) {
                 loss += 0.5 * (integral.misfit / integral.sigma).powi(2);
-                self.normal.add_dense(&integral.slopes, integral.misfit, integral.sigma);
+                self.normal.add_dense(&integral);
             }
         }
         for surface in &self.surfaces {

@@ -8,6 +8,7 @@ use rand::SeedableRng;
 use rand::rngs::StdRng;
 
 use super::block::Block;
+use super::group::Integral;
 use crate::network::normal;
 
 /// Draws: a standard deviation is known to within `1 / sqrt(2 * 64)`, 9 %.
@@ -68,6 +69,13 @@ impl Draws {
         for at in 0..learned {
             add(&mut self.below, at, block.by_learned[row * learned + at], &z);
         }
+    }
+
+    /// Adds a row of all coefficients.
+    pub(super) fn add_dense(&mut self, row: &Integral) {
+        let z = self.numbers();
+        row.slopes.iter().enumerate().for_each(|(at, slope)| add(&mut self.right, at, slope / row.sigma, &z));
+        row.by_learned.iter().enumerate().for_each(|(at, slope)| add(&mut self.below, at, slope / row.sigma, &z));
     }
 
     /// Adds a row that sees a learned scalar only.
@@ -131,7 +139,8 @@ mod tests {
         normal.draws = Some(Draws::new(2, 0));
         normal.add_stiffness(0, 1.0);
         normal.add_stiffness(1, 1.0);
-        normal.add_dense(&[1.0, 1.0], 0.0, 1.0 / 3f64.sqrt());
+        let slopes = vec![1.0, 1.0];
+        normal.add_dense(&Integral { misfit: 0.0, slopes, by_learned: Vec::new(), sigma: 1.0 / 3f64.sqrt() });
         let draws = normal.draws.take().unwrap();
         let spread = normal.factor().unwrap().deviations(&draws).unwrap().coefficients;
         let mean = |of: &dyn Fn(&[f64]) -> f64| spread.iter().map(|x| of(x)).sum::<f64>() / COUNT as f64;

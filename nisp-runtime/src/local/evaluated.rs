@@ -22,7 +22,7 @@ impl Group {
         jets.par_chunks_mut(stride).enumerate().for_each(|(at, jets)| {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
             let is_value = jet.degree.iter().all(|&n| n == 0);
-            let (splines, lattice) = (&sites.splines[jet.head], &heads.lattices[jet.head]);
+            let (splines, lattice) = (&sites.splines[self.slots[at]], &heads.lattices[jet.head]);
             let lines = lattice.lines();
             let mut across = Vec::new();
             for (p, out) in jets.iter_mut().enumerate().take(sites.count) {
@@ -50,7 +50,9 @@ impl Group {
 
     /// Coefficients of the heads that the group reads, by the full numbers of their functions.
     pub(super) fn spread(&self, heads: &Heads, theta: &[f64]) -> Vec<Vec<f64>> {
-        heads.spread_of(&self.highest, theta)
+        let count = heads.lattices.len();
+        let is_read = |head: usize| self.highest.iter().skip(head).step_by(count).any(Option::is_some);
+        (0..count).map(|head| if is_read(head) { heads.spread(head, theta) } else { Vec::new() }).collect()
     }
 
     /// Rows of the group at other points, from [`Group::spread`], and their derivatives if `slopes`.

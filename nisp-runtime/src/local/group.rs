@@ -34,28 +34,39 @@ pub(super) struct Group {
     pub(super) growth: Vec<Vec<f64>>,
     /// By row: how its misfit counts, and what that is multiplied by (which its divisor has in it).
     pub(super) losses: Vec<(Loss, f64)>,
-    /// Weights of the points; empty if each has rows of its own.
+    /// Weights of the points in integrals, and in tests; empty if they are one.
     pub(super) weights: Vec<f64>,
-    /// What weighted points are tested with, their points cell by cell.
+    /// What weighted points are tested with, their points cell by cell; empty if each has rows of its own.
     pub(super) tests: Vec<Test>,
     /// Degree of the tests.
     pub(super) degree: usize,
     /// All points; by the cells of the first head where they are too many to be linearised together.
     pub(super) order: Vec<u32>,
-    /// By head, the highest derivative that the group reads; nothing of those that it does not read.
+    /// By head, then by head at the points' partners if there are any, the highest derivative that the group reads; nothing of those
+    /// that it does not read.
     pub(super) highest: Vec<Option<u8>>,
+    /// By jet, where it is in this order.
+    pub(super) slots: Vec<usize>,
+}
+
+/// Where a group is asked for: points and their partners, flat, known columns `[column][point]`, and what points weigh.
+#[derive(Default)]
+pub(super) struct Places<'a> {
+    pub(super) points: &'a [f64],
+    pub(super) partners: &'a [f64],
+    pub(super) columns: &'a [Vec<f64>],
+    pub(super) weights: Vec<f64>,
 }
 
 impl Group {
-    /// A group, with how its terms' misfits count, at points, given flat with columns `[column][point]`, whose weights are
-    /// given, or none.
+    /// A group, with how its terms' misfits count, at its places. Where these have weights its equations are tested with splines of a
+    /// lattice, of such a degree, if one is given.
     pub(super) fn new(
         (schema, terms): (&'static schema::Group, &[Loss]),
         kernel: GroupKernel<f64>,
         heads: &Heads,
-        (flat, columns): (&[f64], &[Vec<f64>]),
-        weights: Vec<f64>,
-        (base, degree): (&Lattice, usize),
+        places: Places<'_>,
+        tested: Option<(&Lattice, usize)>,
     ) -> Self {
         let operator = |jet: &schema::Jet| {
             let term = |(index, coefficient): &(&[u8], f64)| {
@@ -66,13 +77,19 @@ impl Group {
             jet.operator.iter().map(term).collect()
         };
         let operators: Vec<Vec<(Exponents, f64)>> = schema.jets.iter().map(operator).collect();
-        let mut highest = vec![None; heads.lattices.len()];
-        for (jet, operator) in schema.jets.iter().zip(&operators) {
+        let count = heads.lattices.len();
+        let mut highest = vec![None; if schema.paired { 2 * count } else { count }];
+        let slot = |jet: &schema::Jet| jet.head + if schema.is_partner(jet) { count } else { 0 };
+        let slots: Vec<usize> = schema.jets.iter().map(slot).collect();
+        for (&slot, operator) in slots.iter().zip(&operators) {
             let order = operator.iter().flat_map(|(exponents, _)| exponents).copied().max();
-            highest[jet.head] = highest[jet.head].max(order);
+            highest[slot] = highest[slot].max(order);
         }
-        let sites = Sites::new(heads, &highest, flat, columns);
-        let mut tests = if weights.is_empty() { Vec::new() } else { tests(base, degree, flat, &weights) };
+        let sites = Sites::new(heads, &highest, [places.points, places.partners], places.columns);
+        let weights = places.weights;
+        let tested = tested.filter(|_| !weights.is_empty());
+        let degree = tested.map_or(0, |(_, degree)| degree);
+        let mut tests = tested.map_or(Vec::new(), |(base, degree)| tests(base, degree, places.points, &weights));
         for test in &mut tests {
             test.points.sort_by(|&(p, _), &(q, _)| sites.cells(p).cmp(sites.cells(q)));
         }
@@ -86,13 +103,29 @@ impl Group {
             losses[term.first..term.first + term.rows].fill((*loss, term.weight));
         }
         let towers = Across::all(schema, |head| heads.limits[head].is_some()).unwrap_or_default();
-        Self { schema, kernel, operators, towers, sigma, growth, losses, sites, weights, tests, degree, order, highest }
+        Self {
+            schema,
+            kernel,
+            operators,
+            towers,
+            sigma,
+            growth,
+            losses,
+            sites,
+            weights,
+            tests,
+            degree,
+            order,
+            highest,
+            slots,
+        }
     }
 
-    /// Other points than the group's own, at which no measurement is known. Rows that are no observations read none.
+    /// Other points than the group's own, which has no partners, at which no measurement is known. Rows that are no observations read
+    /// none.
     pub(super) fn sites_at(&self, heads: &Heads, flat: &[f64]) -> Sites {
         let none = vec![0.0; flat.len() / heads.lattices[0].inputs()];
-        Sites::new(heads, &self.highest, flat, &vec![none; self.schema.columns.len()])
+        Sites::new(heads, &self.highest, [flat, &[]], &vec![none; self.schema.columns.len()])
     }
 
     /// Where the first row of a term that is asked for at every point is among those of [`Group::blocks`].
@@ -150,7 +183,7 @@ impl Group {
         let rows = self.own_rows();
         let at =
             |value: &dyn Fn(usize) -> f64| rows.iter().map(|&row| value(row) / self.sigma[row]).collect::<Vec<_>>();
-        match self.weights.is_empty() {
+        match self.tests.is_empty() {
             true => (0..self.sites.count).flat_map(|p| at(&|row| evaluated.row(row, p))).collect(),
             false => self.tests.iter().flat_map(|test| at(&|row| test.weight * evaluated.mean(test, row))).collect(),
         }
@@ -178,9 +211,10 @@ impl Group {
         }
     }
 
-    /// Heads that the group reads.
-    pub(super) fn read(&self) -> impl Iterator<Item = usize> + '_ {
-        (0..self.highest.len()).filter(|&head| self.highest[head].is_some())
+    /// Heads that the group reads, first at its points and then at their partners: where they are in the order of `highest`, and which.
+    pub(super) fn read(&self, heads: &Heads) -> impl Iterator<Item = (usize, usize)> + '_ {
+        let count = heads.lattices.len();
+        (0..self.highest.len()).filter(|&slot| self.highest[slot].is_some()).map(move |slot| (slot, slot % count))
     }
 
     /// What the rows over their tolerances cost, integrals among them.
@@ -191,7 +225,7 @@ impl Group {
         let evaluated = self.evaluate(heads, theta, scalars, false);
         let mut own = 0.0;
         for row in self.own_rows() {
-            own += match self.weights.is_empty() {
+            own += match self.tests.is_empty() {
                 true => (0..self.sites.count).map(|p| self.cost(row, evaluated.row(row, p))).sum::<f64>(),
                 false => self.tests.iter().map(|test| self.cost(row, test.weight * evaluated.mean(test, row))).sum(),
             };
@@ -204,6 +238,11 @@ impl Group {
     pub(super) fn sums(&self, evaluated: &Evaluated, scalars: &[f64]) -> Vec<(usize, f64)> {
         let sum = |row: usize| (0..self.sites.count).map(|p| self.weight(p) * evaluated.row(row, p)).sum::<f64>();
         self.targets(scalars).into_iter().map(|(row, target)| (row, sum(row) - target)).collect()
+    }
+
+    /// What all points weigh together.
+    pub(super) fn measure(&self) -> f64 {
+        (0..self.sites.count).map(|p| self.weight(p).abs()).sum()
     }
 
     /// Weight of a point in integrals.
@@ -223,25 +262,44 @@ impl Group {
         rows.into_iter().map(|row| (row, targets[row])).collect()
     }
 
-    /// The weighted sums of integral terms over the points, and their derivatives by every coefficient.
-    pub(super) fn integrals(&self, heads: &Heads, evaluated: &Evaluated, scalars: &[f64]) -> Vec<Integral> {
+    /// By row, the weighted sums of integral terms over the points, and their derivatives by every coefficient.
+    ///
+    /// `learned` are the derivatives of the learned scalars by their parameters.
+    pub(super) fn integrals(
+        &self,
+        heads: &Heads,
+        evaluated: &Evaluated,
+        scalars: &[f64],
+        learned: &[f64],
+    ) -> Vec<(usize, Integral)> {
+        let mut of_targets = vec![0.0; self.schema.rows * learned.len()];
+        self.kernel.programs.target_slopes(scalars, &mut of_targets);
         let integral = |(row, target): (usize, f64)| {
-            let mut sum = Integral { misfit: -target, slopes: vec![0.0; heads.len()], sigma: self.sigma[row] };
+            let of_target = of_targets[row * learned.len()..].iter().zip(learned);
+            let mut sum = Integral {
+                misfit: -target,
+                slopes: vec![0.0; heads.len()],
+                by_learned: of_target.map(|(slope, learned)| -slope * learned).collect(),
+                sigma: self.sigma[row],
+            };
             for p in 0..self.sites.count {
                 let seed = |bar| evaluated.bar(row, bar, p);
-                let block = self.at_point(heads, (&self.sites, p), &[], evaluated.row(row, p), seed);
-                sum.misfit += self.weight(p) * block.misfits[0];
-                block.kept().for_each(|(at, dof)| sum.slopes[dof as usize] += self.weight(p) * block.slopes[at]);
+                let block = self.at_point(heads, (&self.sites, p), learned, evaluated.row(row, p), seed);
+                let weight = self.weight(p);
+                sum.misfit += weight * block.misfits[0];
+                block.kept().for_each(|(at, dof)| sum.slopes[dof as usize] += weight * block.slopes[at]);
+                sum.by_learned.iter_mut().zip(&block.by_learned).for_each(|(sum, by)| *sum += weight * by);
             }
-            sum
+            (row, sum)
         };
         self.targets(scalars).into_iter().map(integral).collect()
     }
 }
 
-/// An integral's misfit, and its derivative by every coefficient.
+/// An integral's misfit, and its derivatives by every coefficient and by every learned parameter.
 pub(super) struct Integral {
     pub(super) misfit: f64,
     pub(super) slopes: Vec<f64>,
+    pub(super) by_learned: Vec<f64>,
     pub(super) sigma: f64,
 }

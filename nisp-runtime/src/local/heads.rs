@@ -84,12 +84,6 @@ impl Heads {
         self.lattices[head].spread(own)
     }
 
-    /// [`Heads::spread`] of the heads that are read, of which `highest` says something.
-    pub(super) fn spread_of(&self, highest: &[Option<u8>], theta: &[f64]) -> Vec<Vec<f64>> {
-        let spread = |(head, read): (usize, &Option<u8>)| read.map_or_else(Vec::new, |_| self.spread(head, theta));
-        highest.iter().enumerate().map(spread).collect()
-    }
-
     /// Numbers of the coefficients of a box of a head's functions; [`NONE`] for those that are not kept.
     pub(super) fn dofs(&self, head: usize, span: Span) -> impl Iterator<Item = u32> + '_ {
         let first = self.first[head] as u32;

@@ -1,7 +1,7 @@
 //! Local functions that were found: their coefficients, and draws from their posterior.
 
 use super::draws::Deviations;
-use super::group::Group;
+use super::group::{Group, Places};
 use super::heads::Heads;
 use super::lattice::{Exponents, Lattice, MOST_COORDINATES};
 use crate::bounds::limits;
@@ -96,9 +96,9 @@ impl KeptLattices {
             && let Some(kernel) = frame.scene.double().pop()
         {
             let (scalars, by) = Learned::read_all(&frame.learned, &frame.scalars, &self.learned);
-            let base = (&self.heads.lattices[0], 0);
             let losses = vec![Loss::Square; schema.terms.len()];
-            let group = Group::new((schema, &losses), kernel, &self.heads, (points, &[]), Vec::new(), base);
+            let places = Places { points, ..Places::default() };
+            let group = Group::new((schema, &losses), kernel, &self.heads, places, None);
             let found = group.evaluate(&self.heads, &self.theta, &scalars, has_bars);
             for row in heads..schema.rows {
                 for (p, point) in points.chunks_exact(self.heads.lattices[0].inputs()).enumerate() {

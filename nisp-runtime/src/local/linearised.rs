@@ -27,7 +27,7 @@ impl Group {
         if rows.is_empty() {
             return Vec::new();
         }
-        if self.weights.is_empty() {
+        if self.tests.is_empty() {
             let points: Vec<u32> = (0..self.sites.count as u32).collect();
             return self.at_points(heads, evaluated, learned, &points);
         }
@@ -39,7 +39,7 @@ impl Group {
         let record = |p: usize| &records[p * layout.len()..][..layout.len()];
         let dimensions = heads.lattices[0].dimensions();
         let tested = |sum: &mut Vec<f64>, test: &Test| {
-            let mut block = Block::new(layout, self.dofs(heads, |head| self.span(heads, test, head)));
+            let mut block = Block::new(layout, self.dofs(heads, |(_, head)| self.span(heads, test, head)));
             let cells = |p: u32| self.sites.cells(p);
             for points in test.points.chunk_by(|&(p, _), &(q, _)| cells(p).eq(cells(q))) {
                 sum.clear();
@@ -48,7 +48,7 @@ impl Group {
                     sum.iter_mut().zip(record(p as usize)).for_each(|(sum, value)| *sum += share * value);
                 }
                 let p = points[0].0 as usize;
-                let boxes = self.read().map(|head| (self.cell(heads, p, head), self.span(heads, test, head)));
+                let boxes = self.read(heads).map(|slot| (self.cell(heads, p, slot), self.span(heads, test, slot.1)));
                 block.add(layout, sum, boxes, dimensions);
             }
             block.divide(rows.iter().map(|&row| self.sigma[row] / test.weight));
@@ -88,7 +88,7 @@ impl Group {
             record.fill(0.0);
             self.record(heads, evaluated, learned, (p, &rows), (layout, record), across);
             if point.is_none_or(|other| !self.sites.cells(other).eq(self.sites.cells(p as u32))) {
-                *dofs = self.dofs(heads, |head| self.cell(heads, p, head));
+                *dofs = self.dofs(heads, |slot| self.cell(heads, p, slot));
                 *point = Some(p as u32);
             }
             let mut block = Block::of(layout, record, dofs.clone());
@@ -136,7 +136,7 @@ impl Group {
 
     /// How rows at a point lie in memory.
     fn layout(&self, heads: &Heads, rows: usize, learned: usize) -> Layout {
-        Layout { rows, learned, width: self.read().map(|head| heads.lattices[head].per_cell()).sum() }
+        Layout { rows, learned, width: self.read(heads).map(|(_, head)| heads.lattices[head].per_cell()).sum() }
     }
 
     /// Functions of a head around a test.
@@ -146,14 +146,14 @@ impl Group {
         Span { first: test.cell.map(|cell| cell * times), count: (self.degree + 1) * times + lattice.degree }
     }
 
-    /// Functions of a head on the cell of one of the group's points.
-    fn cell(&self, heads: &Heads, p: usize, head: usize) -> Span {
-        heads.lattices[head].cell_span(&self.sites.splines[head].places[p])
+    /// Functions of a head on the cell of one of the group's points, or of its partner.
+    fn cell(&self, heads: &Heads, p: usize, (slot, head): (usize, usize)) -> Span {
+        heads.lattices[head].cell_span(&self.sites.splines[slot].places[p])
     }
 
     /// Numbers of the coefficients of boxes of functions.
-    fn dofs(&self, heads: &Heads, span: impl Fn(usize) -> Span) -> Vec<u32> {
-        self.read().flat_map(|head| heads.dofs(head, span(head))).collect()
+    fn dofs(&self, heads: &Heads, span: impl Fn((usize, usize)) -> Span) -> Vec<u32> {
+        self.read(heads).flat_map(|slot| heads.dofs(slot.1, span(slot))).collect()
     }
 
     /// A row at a point of which the misfit is known, and by `seed(jet or learned scalar)` the derivatives.
@@ -169,7 +169,7 @@ impl Group {
         let mut record = vec![0.0; layout.len()];
         record[0] = misfit;
         self.add_slopes(heads, sites, p, (layout, &mut record), learned, |_, bar| seed(bar), &mut Vec::new());
-        let cell = |head: usize| heads.lattices[head].cell_span(&sites.splines[head].places[p]);
+        let cell = |(slot, head): (usize, usize)| heads.lattices[head].cell_span(&sites.splines[slot].places[p]);
         Block::of(layout, &record, self.dofs(heads, cell))
     }
 
@@ -186,22 +186,23 @@ impl Group {
         across: &mut Vec<f64>,
     ) {
         let (_, by_learned, slopes) = layout.split_mut(record);
-        let mut first = vec![0; heads.lattices.len()];
+        let mut first = vec![0; self.highest.len()];
         let mut width = 0;
-        for head in self.read() {
-            first[head] = width;
+        for (slot, head) in self.read(heads) {
+            first[slot] = width;
             width += heads.lattices[head].per_cell();
         }
         for (number, (jet, operator)) in self.schema.jets.iter().zip(&self.operators).enumerate() {
+            let slot = self.slots[number];
             for (exponents, coefficient) in operator {
-                let along = sites.splines[jet.head].factors(p, exponents, across);
+                let along = sites.splines[slot].factors(p, exponents, across);
                 let factor = coefficient * heads.scale[jet.head];
                 for row in 0..layout.rows {
                     let factor = factor * seed(row, number);
                     if factor == 0.0 {
                         continue;
                     }
-                    let slopes = &mut slopes[row * layout.width + first[jet.head]..];
+                    let slopes = &mut slopes[row * layout.width + first[slot]..];
                     for (line, across) in slopes.chunks_exact_mut(along.len()).zip(across.iter()) {
                         let factor = factor * across;
                         line.iter_mut().zip(along).for_each(|(slope, along)| *slope += factor * along);

@@ -10,6 +10,7 @@ use rayon::prelude::*;
 
 use super::block::Block;
 use super::draws::Draws;
+use super::group::Integral;
 use super::pattern::{Part, Pattern};
 use super::sorted::Sorted;
 use crate::simd::Isa;
@@ -239,15 +240,19 @@ impl Normal {
     }
 
     /// Adds a row that depends on all coefficients: `(misfit + slopes . step) / sigma`, by way of one more unknown.
-    pub(super) fn add_dense(&mut self, slopes: &[f64], misfit: f64, sigma: f64) {
+    pub(super) fn add_dense(&mut self, row: &Integral) {
+        let Integral { misfit, slopes, by_learned, sigma } = row;
         if let Some(draws) = &mut self.draws {
-            draws.add(&slopes.iter().map(|slope| slope / sigma).enumerate().collect::<Vec<_>>());
+            draws.add_dense(row);
         }
-        self.border.push(slopes.to_vec());
-        let count = self.border.len();
-        self.corner = self.corner.clone().resize(count, count, 0.0);
-        self.corner[(count - 1, count - 1)] = -sigma * sigma;
-        self.border_gradient.push(misfit);
+        self.border.push(slopes.clone());
+        let last = self.border.len() - 1;
+        self.corner = self.corner.clone().resize(last + 1, last + 1, 0.0);
+        for (at, by) in by_learned.iter().enumerate() {
+            (self.corner[(last, at)], self.corner[(at, last)]) = (*by, *by);
+        }
+        self.corner[(last, last)] = -sigma * sigma;
+        self.border_gradient.push(*misfit);
     }
 
     /// Adds to the precision of a learned scalar.

@@ -1,6 +1,6 @@
 //! A problem on its lattices: what is set up once, before any step.
 
-use super::group::Group;
+use super::group::{Group, Places};
 use super::heads::Heads;
 use super::lattice::Lattice;
 use super::meshes::{base, lattice, together};
@@ -65,10 +65,9 @@ impl Solver {
         for (at, (kernel, schema)) in kernels.into_iter().zip(schema.groups).enumerate() {
             let measure = schema.terms.iter().find_map(|term| term.measure.as_ref());
             let weights = bound.weights(at, measure);
-            let flat = &bound.coordinates[at];
-            let points = (flat.as_slice(), bound.columns[at].as_slice());
+            let places = Places { points: &bound.coordinates[at], partners: &[], columns: &bound.columns[at], weights };
             let losses = &bound.losses[at];
-            let group = Group::new((schema, losses), kernel, &heads, points, weights, (&base, settings.tests));
+            let group = Group::new((schema, losses), kernel, &heads, places, Some((&base, settings.tests)));
             surfaces.extend(Surface::of(bound, at, cell));
             groups.push(group);
         }

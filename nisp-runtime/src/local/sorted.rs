@@ -24,8 +24,11 @@ impl Sorted {
         let mut kept: Vec<(usize, u32)> = block.kept().collect();
         kept.sort_unstable_by_key(|&(_, dof)| dof);
         let rows = block.slopes.chunks_exact(block.dofs.len().max(1));
-        let slopes: Vec<f64> = rows.flat_map(|row| kept.iter().map(|&(at, _)| row[at])).collect();
-        let dofs: Vec<u32> = kept.into_iter().map(|(_, dof)| dof).collect();
+        // A point and its partner may share some of them.
+        let same = || kept.chunk_by(|(_, one), (_, other)| one == other);
+        let slopes: Vec<f64> =
+            rows.flat_map(|row| same().map(|places| places.iter().map(|&(at, _)| row[at]).sum::<f64>())).collect();
+        let dofs: Vec<u32> = same().map(|places| places[0].1).collect();
         let mut runs = vec![dofs.len() as u32; dofs.len()];
         for at in (1..dofs.len()).rev() {
             runs[at - 1] = if dofs[at - 1] + 1 == dofs[at] { runs[at] } else { at as u32 };

@@ -110,9 +110,9 @@ pub fn beyond_splines(schema: &Scene) -> Option<&'static str> {
     if is_for_lattices(schema) { smooth::refused(schema) } else { splines::refused(schema) }
 }
 
-/// Whether splines of a scene are those on a lattice: over several coordinates, and of curves that a cloud shows.
+/// Whether splines of a scene are those on a lattice: over several coordinates, and with what those along a record do not do.
 fn is_for_lattices(schema: &Scene) -> bool {
-    schema.coordinates.len() > 1 || smooth::has_clouds(schema)
+    schema.coordinates.len() > 1 || smooth::is_for_one(schema)
 }
 
 /// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. Of a source
@@ -122,7 +122,7 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
     let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
     match (beyond_splines(schema), schema.coordinates.len(), differentiated) {
         (Some(what), ..) => (Chosen::Network, format!("splines do not do {what}")),
-        (None, 1, _) if is_for_lattices(schema) => (Chosen::Lattice, "a cloud".into()),
+        (None, 1, _) if is_for_lattices(schema) => (Chosen::Lattice, "a cloud, an integral or pairs of points".into()),
         (None, 2.., _) => (Chosen::Lattice, format!("{} coordinates", schema.coordinates.len())),
         (None, _, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short")),
         (None, _, None) => (Chosen::Splines, "one coordinate".into()),

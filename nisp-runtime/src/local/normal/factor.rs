@@ -29,11 +29,13 @@ impl Factor {
         Some((step, shared))
     }
 
-    /// From a solution without the border to one with it; returns the unknowns of the border.
+    /// From a solution without the border to one with it; returns the unknowns of the border. On the right of the last ones is zero, where
+    /// `below` says nothing of them.
     fn share(&self, step: &mut [f64], below: &[f64]) -> Option<Vec<f64>> {
+        let zeros = std::iter::repeat(&0.0);
         let rest = DVector::from_iterator(
             self.border.len(),
-            self.border.iter().zip(below).map(|(column, b)| b - vector::dot(column, step)),
+            self.border.iter().zip(below.iter().chain(zeros)).map(|(column, b)| b - vector::dot(column, step)),
         );
         let shared = if rest.is_empty() { rest } else { self.schur.clone().lu().solve(&rest)? };
         for (solved, shared) in self.solved.iter().zip(shared.iter()) {
@@ -48,9 +50,7 @@ impl Factor {
         let mut deviations = Deviations::default();
         for draw in 0..solutions.ncols() {
             let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
-            let mut below = draws.below(draw);
-            below.resize(self.border.len(), 0.0);
-            let mut shared = self.share(&mut coefficients, &below)?;
+            let mut shared = self.share(&mut coefficients, &draws.below(draw))?;
             shared.truncate(self.learned);
             deviations.learned.push(shared);
             deviations.coefficients.push(coefficients);
@@ -71,24 +71,20 @@ impl Factor {
             let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
             let shared = self.share(&mut own, below)?;
             let along = own.iter().enumerate().map(|(row, x)| x * right[(row, column)]).sum::<f64>();
-            Some(along + vector::dot(&shared, below))
+            Some(along + vector::dot(&shared[..below.len()], below))
         };
         below.iter().enumerate().map(product).collect()
     }
 
-    /// Logarithm of the matrix's determinant, its border apart; nothing where rounding spoils it.
+    /// Logarithm of the determinant of the matrix with its border; nothing where rounding spoils it.
     pub(in super::super) fn log_determinant(&self) -> Option<f64> {
-        self.factor.log_determinant()
-    }
-
-    /// Unknowns of the border.
-    pub(in super::super) fn below(&self) -> usize {
-        self.border.len()
+        let border = if self.border.is_empty() { 0.0 } else { self.schur.determinant().abs().ln() };
+        Some(self.factor.log_determinant()? + border)
     }
 
     /// Variance of a sum of coefficients, each times its weight.
     pub(in super::super) fn variance_of_sum(&self, weights: &[f64]) -> Option<f64> {
-        let (solution, _) = self.solve(weights, &vec![0.0; self.border.len()])?;
+        let (solution, _) = self.solve(weights, &[])?;
         Some(vector::dot(&solution, weights))
     }
 

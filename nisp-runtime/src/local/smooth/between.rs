@@ -116,7 +116,10 @@ fn largest(bound: &Bound) -> Option<usize> {
 fn of_most_points(bound: &Bound, field: Option<usize>) -> Option<usize> {
     let schema = bound.problem.scene().schema;
     let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
-    let is_free = |group: &schema::Group| group.columns.is_empty() && group.order > 0 && is_equation(group);
+    let is_sum = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Integral);
+    let is_alone = |group: &schema::Group| !group.paired && !is_sum(group);
+    let is_free =
+        |group: &schema::Group| group.columns.is_empty() && group.order > 0 && is_equation(group) && is_alone(group);
     let differentiates = |group: &schema::Group| {
         let jets = || group.jets.iter().filter(|jet| jet.degree.iter().any(|&degree| degree > 0));
         field.is_none_or(|field| jets().any(|jet| jet.head == field))
@@ -134,7 +137,8 @@ fn count(bound: &Bound, group: usize) -> usize {
 fn measuring(schema: &schema::Scene) -> impl Iterator<Item = usize> {
     let measures = |at: &usize| {
         let kinds = || schema.groups[*at].terms.iter().map(|term| &term.kind);
-        kinds().any(|kind| *kind == TermKind::Observation)
+        !schema.groups[*at].paired
+            && kinds().any(|kind| *kind == TermKind::Observation)
             && kinds().all(|kind| matches!(kind, TermKind::Observation | TermKind::Residual))
     };
     (0..schema.groups.len()).filter(measures)

@@ -50,7 +50,7 @@ impl Freedom {
         let right = Mat::from_fn(len, PROBES, |row, column| {
             if own.contains(&row) { self.probes[(row - own.start, column)] / roughness } else { 0.0 }
         });
-        let together = factor.products(&right, &vec![vec![0.0; factor.below()]; PROBES])?;
+        let together = factor.products(&right, &vec![Vec::new(); PROBES])?;
         Some(self.alone.iter().zip(together).map(|(alone, together)| alone - together).sum::<f64>() / PROBES as f64)
     }
 }

@@ -71,6 +71,30 @@ pub(super) fn lattices(bound: &Bound, proportions: &Proportions, most: usize) ->
     ((0..schema.heads.len()).map(lattice).collect(), base.cells.clone())
 }
 
+/// Coefficients that occur in the same row of a pair: those that do not vanish around a point or around its partner.
+pub(super) fn across_pairs(heads: &Heads, bound: &Bound) -> Vec<Vec<u32>> {
+    let schema = bound.problem.scene().schema;
+    let (inputs, all) = (schema.coordinates.len(), || 0..heads.lattices.len());
+    let around = |point: &[f64]| -> Vec<u32> {
+        let of = |head: usize| heads.dofs(head, heads.lattices[head].cell_span(&heads.lattices[head].place(point)));
+        all().flat_map(of).filter(|&dof| dof != NONE).collect()
+    };
+    let pairs = (0..schema.groups.len()).filter(|&at| schema.groups[at].paired);
+    let pairs =
+        pairs.flat_map(|at| bound.coordinates[at].chunks_exact(inputs).zip(bound.partners[at].chunks_exact(inputs)));
+    let mut together: Vec<Vec<u32>> = pairs
+        .map(|(point, partner)| {
+            let mut dofs = [around(point), around(partner)].concat();
+            dofs.sort_unstable();
+            dofs.dedup();
+            dofs
+        })
+        .collect();
+    together.sort_unstable();
+    together.dedup();
+    together
+}
+
 /// Coefficients that may occur in the same row: those that do not vanish on the same cell.
 pub(super) fn together(heads: &Heads, cells: &[usize]) -> Vec<Vec<u32>> {
     let on_cell = |number: usize| {

@@ -83,19 +83,19 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
     let terms = || schema.groups.iter().flat_map(|group| group.terms);
     let heads = || 0..schema.heads.len();
     let refused = [
-        (schema.coordinates.len() < 2 && !has_clouds(schema), "one coordinate"),
+        (schema.coordinates.len() < 2 && !is_for_one(schema), "one coordinate"),
         (schema.coordinates.len() > MOST_COORDINATES, "more than four coordinates"),
-        (schema.groups.iter().any(|group| group.paired), "paired points"),
-        (terms().any(|term| matches!(term.kind, TermKind::Integral)), "integrals"),
+        (terms().any(|t| t.kind == TermKind::Integral && t.loss.is_robust()), "robust losses of integrals"),
         (heads().any(|head| meshes::degree(schema, head).is_none()), "derivatives of such an order"),
     ];
     let found = refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what);
     found.or_else(|| refuse::clouds(schema)).or_else(|| bounds::refused(schema))
 }
 
-/// Whether a scene has clouds.
-pub(crate) fn has_clouds(schema: &schema::Scene) -> bool {
-    schema.groups.iter().flat_map(|group| group.terms).any(|term| matches!(term.kind, TermKind::Chamfer { .. }))
+/// Whether a scene has what splines along a record do not do: clouds, integrals or pairs of points.
+pub(crate) fn is_for_one(schema: &schema::Scene) -> bool {
+    let is_own = |term: &schema::Term| matches!(term.kind, TermKind::Chamfer { .. } | TermKind::Integral);
+    schema.groups.iter().any(|group| group.paired || group.terms.iter().any(is_own))
 }
 
 /// Solves a bound problem within its limits, from the start or from a saved state.

@@ -4,12 +4,12 @@ use std::borrow::Cow;
 
 use super::between::{enough, filled, others, thinned};
 use super::freedom::{Freedom, Unmeasured};
-use super::meshes::{lattices, together};
+use super::meshes::{across_pairs, lattices, together};
 use super::prior::Prior;
 use super::proportions::Proportions;
 use super::state::{Phase, State};
 use crate::local::LocalError;
-use crate::local::group::Group;
+use crate::local::group::{Group, Places};
 use crate::local::heads::Heads;
 use crate::local::normal::Normal;
 use crate::local::surface::Surface;
@@ -60,8 +60,14 @@ pub(super) fn groups(bound: &Bound, heads: &Heads) -> Vec<Group> {
     let schema = bound.problem.scene().schema;
     let group = |(at, kernel)| {
         let columns = bound.filled_columns(at);
-        let points = (bound.coordinates[at].as_slice(), columns.as_slice());
-        Group::new((&schema.groups[at], &bound.losses[at]), kernel, heads, points, Vec::new(), (&heads.lattices[0], 0))
+        let measure = schema.groups[at].terms.iter().find_map(|term| term.measure.as_ref());
+        let places = Places {
+            points: &bound.coordinates[at],
+            partners: &bound.partners[at],
+            columns: &columns,
+            weights: bound.weights(at, measure),
+        };
+        Group::new((&schema.groups[at], &bound.losses[at]), kernel, heads, places, None)
     };
     bound.problem.scene().double().into_iter().take(schema.groups.len()).enumerate().map(group).collect()
 }
@@ -102,7 +108,8 @@ impl<'a> Solver<'a> {
         let freedom = |(head, prior): (usize, &Prior)| schema.heads[head].source.then(|| freedom(&heads, head, prior));
         let freedoms = priors.iter().enumerate().map(|of| freedom(of).transpose()).collect::<Result<_, _>>()?;
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
-        let together = together(&heads, &cells);
+        let mut together = together(&heads, &cells);
+        together.extend(across_pairs(&heads, &bound));
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         let shares = noise.observations.iter().map(|found| found.deviation / found.spread.max(found.deviation));
         let tolerance = (SHARE * shares.fold(0.0, f64::max)).clamp(STRICTEST, EASIEST);
@@ -246,7 +253,8 @@ impl<'a> Solver<'a> {
             for term in group.schema.terms {
                 let rows = term.first..term.first + term.rows;
                 let sizes = self.sizes[at][rows.clone()].iter_mut().zip(&found[rows]);
-                sizes.for_each(|(size, found)| *size = found / term.weight.sqrt());
+                let summed = if term.kind == TermKind::Integral { group.measure() } else { 1.0 };
+                sizes.for_each(|(size, found)| *size = summed * found / term.weight.sqrt());
             }
         }
         self.leave_out_levels(state);

@@ -123,9 +123,14 @@ impl Solver<'_> {
             for (term, loss) in group.schema.terms.iter().zip(self.losses(state, at)) {
                 for (row, counts) in counts.iter().enumerate().skip(term.first).take(term.rows) {
                     let there = (0..group.sites.count).filter(|&p| counts[p]);
-                    sum += there.map(|p| loss.rho(found.row(row, p) / group.sigma[row])).sum::<f64>();
+                    sum += match term.kind {
+                        TermKind::Integral => 0.0,
+                        _ => there.map(|p| loss.rho(found.row(row, p) / group.sigma[row])).sum::<f64>(),
+                    };
                 }
             }
+            let sums = group.sums(&found, &self.scalars).into_iter().filter(|(row, _)| counts[*row].contains(&true));
+            sum += sums.map(|(row, misfit)| 0.5 * (misfit / group.sigma[row]).powi(2)).sum::<f64>();
         }
         let priors = (0..self.priors.len()).flat_map(|head| self.prior_rows(state, head));
         sum + priors.map(|block| 0.5 * block.misfits[0].powi(2)).sum::<f64>()
@@ -160,7 +165,9 @@ impl Solver<'_> {
         let (step, shared) = self.normal.step(&factor).ok_or(LocalError::Factorisation)?;
         let tallies =
             self.tallies(state, &rows, (&step, &shared), (&factor, &unmeasured)).ok_or(LocalError::Factorisation)?;
-        let (step, shared) = self.within_bounds(state, (step, shared));
+        let (step, mut shared) = self.within_bounds(state, (step, shared));
+        // Behind the learned parameters are multipliers of integrals.
+        shared.truncate(state.learned.len());
         let mut share = shared.iter().fold(1.0, |share: f64, x| share.min(FARTHEST / x.abs().max(f64::MIN_POSITIVE)));
         let mut next = state.clone();
         next.unmeasured = unmeasured;
@@ -252,6 +259,10 @@ impl Solver<'_> {
         for Asked { at, counts, evaluated } in &rows.asked {
             let batches = self.groups[*at].batches(&self.heads, evaluated, &rows.learned, counts);
             batches.for_each(|blocks| self.normal.add_all(&blocks));
+            let integrals = self.groups[*at].integrals(&self.heads, evaluated, &self.scalars, &rows.learned);
+            for (_, integral) in integrals.iter().filter(|(row, _)| counts[*row].contains(&true)) {
+                self.normal.add_dense(integral);
+            }
         }
         rows.clouds.iter().for_each(|blocks| self.normal.add_all(blocks));
         for head in 0..self.priors.len() {
