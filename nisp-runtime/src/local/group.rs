@@ -195,13 +195,6 @@ impl Group {
         losses.zip(over).map(|((loss, times), over)| loss.weight(over / times.sqrt()).sqrt()).collect()
     }
 
-    /// What an integral's misfit is divided by.
-    pub(super) fn integral_tolerance(&self, number: usize) -> f64 {
-        let terms = self.schema.terms.iter().filter(|term| term.kind == TermKind::Integral);
-        let mut rows = terms.flat_map(|term| term.first..term.first + term.rows);
-        rows.nth(number).map_or(1.0, |row| self.sigma[row])
-    }
-
     /// What the misfit of a row costs.
     fn cost(&self, row: usize, misfit: f64) -> f64 {
         let over = misfit / self.sigma[row];

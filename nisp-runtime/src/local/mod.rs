@@ -37,6 +37,7 @@ mod refuse;
 mod resolved;
 mod resting;
 mod rows;
+mod scored;
 mod scores;
 mod shape;
 mod sites;

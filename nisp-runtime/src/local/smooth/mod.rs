@@ -20,6 +20,7 @@ mod prior;
 mod proportions;
 mod run;
 mod sampled;
+mod scores;
 mod short;
 mod solver;
 mod starts;
@@ -257,6 +258,7 @@ fn finish(
     }
     let heads = schema.heads.iter().enumerate();
     warnings.extend(heads.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
+    let scores = if is_minimum { solver.scores(&state, clock, longest) } else { Vec::new() };
     if !solver.is_measured() {
         // What finer cells hardly change is as good as resolved.
         let is_resolved = solver.strain(&state, noise) < 1.0 || changes.off() < HELD_BACK;
@@ -288,6 +290,7 @@ fn finish(
     let is_untold =
         is_noisy && kept.draws.coefficients.is_empty() && matches!(status, Status::Converged | Status::Budget);
     answer.told = told::told(bound, &kept, is_untold);
+    answer.scores = scores;
     if is_beside_sources {
         answer.leaning = leaning::facts(&kept, rougher.as_deref());
     }

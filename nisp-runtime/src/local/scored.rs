@@ -1,0 +1,71 @@
+//! Rao's score test (1948): how much likelier an answer would be if a number that its problem takes for known were unknown, too.
+//!
+//! Let `r` be all rows, `J` their derivatives by the unknowns, `b` those by the number, and `H` the normal matrix with its priors. If the
+//! number were unknown too, a Gauss-Newton step would change it by `-g / h` and lower the loss by `g^2 / 2h`, with `g = b.r - (J^T b) . H^-1
+//! (J^T r)` and `h = b.b - (J^T b) . H^-1 (J^T b)`. One more right-hand side of the factorised matrix tells. Steps are no longer than the
+//! model may be trusted.
+
+use super::block::Block;
+use super::normal::factor::Factor;
+use crate::facts::{Known, Score};
+use crate::solve::vector;
+
+/// Share of a number by which it is changed to see what rows follow it.
+pub(super) const SMALL: f64 = 1e-4;
+/// Share of what rows say of a number that must be left when the unknowns have taken theirs: below it is rounding.
+const OPEN: f64 = 1e-9;
+/// The longest step: a share of a number or of a cloud's radius, or an angle.
+const FARTHEST: f64 = 0.3;
+
+/// What rows say of a number.
+pub(super) struct Scored {
+    pub(super) known: Known,
+    /// `J^T b`, by the coefficients, then by the unknowns of the border.
+    right: Vec<f64>,
+    pub(super) below: Vec<f64>,
+    /// `b.r` and `b.b`.
+    slope: f64,
+    square: f64,
+}
+
+/// A derivative by a number from what is found with more and with less of it.
+pub(super) fn slope((more, less): (f64, f64)) -> f64 {
+    (more - less) / (2.0 * SMALL)
+}
+
+impl Scored {
+    /// Of no rows, for so many coefficients and unknowns of the border.
+    pub(super) fn new(known: Known, coefficients: usize, border: usize) -> Self {
+        Self { known, right: vec![0.0; coefficients], below: vec![0.0; border], slope: 0.0, square: 0.0 }
+    }
+
+    /// Adds the rows of a block, with their derivatives by the number.
+    pub(super) fn add(&mut self, block: &Block, by: &[f64]) {
+        for (by, misfit) in by.iter().zip(&block.misfits) {
+            self.slope += by * misfit;
+            self.square += by * by;
+        }
+        add(block, by, &mut self.right, &mut self.below);
+    }
+
+    /// The score beside what rows say of the unknowns, `J^T r`; nothing of what rows do not tell from these.
+    pub(super) fn score(&self, factor: &Factor, gradient: &[f64], below: &[f64]) -> Option<Score> {
+        let (step, shared) = factor.solve(&self.right, &self.below)?;
+        let slope = self.slope - vector::dot(gradient, &step) - vector::dot(below, &shared);
+        let square = self.square - vector::dot(&self.right, &step) - vector::dot(&self.below, &shared);
+        let is_open = square > OPEN * self.square && square.is_finite();
+        let change = (-slope / square).clamp(-FARTHEST, FARTHEST);
+        is_open.then(|| Score { known: self.known, gain: -change * (slope + 0.5 * square * change), change })
+    }
+}
+
+/// Adds to sums over the coefficients and over the learned scalars the slopes of a block's rows, each times a number.
+pub(super) fn add(block: &Block, times: &[f64], right: &mut [f64], below: &mut [f64]) {
+    let width = block.dofs.len();
+    let learned = block.by_learned.len() / block.misfits.len().max(1);
+    for (row, times) in times.iter().enumerate().filter(|(_, times)| **times != 0.0) {
+        block.kept().for_each(|(at, dof)| right[dof as usize] += times * block.slopes[row * width + at]);
+        let own = &block.by_learned[row * learned..][..learned];
+        below.iter_mut().zip(own).for_each(|(sum, slope)| *sum += times * slope);
+    }
+}
