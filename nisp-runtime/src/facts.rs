@@ -202,6 +202,18 @@ pub(crate) struct Score {
     pub(crate) change: f64,
 }
 
+impl Score {
+    /// From the slope of the loss by a number, and its curvature, where all unknowns follow; nothing where they take all. Steps are no longer
+    /// than the model may be trusted.
+    pub(crate) fn by(known: Known, slope: f64, curvature: f64) -> Option<Self> {
+        /// The longest step: a share of a number or of a cloud's radius, or an angle.
+        const FARTHEST: f64 = 0.3;
+        let change = (-slope / curvature).clamp(-FARTHEST, FARTHEST);
+        let gain = -change * (slope + 0.5 * curvature * change);
+        (curvature > 0.0 && gain.is_finite()).then_some(Self { known, gain, change })
+    }
+}
+
 /// How much is told of a source.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Told {

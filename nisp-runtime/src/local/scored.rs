@@ -14,8 +14,6 @@ use crate::solve::vector;
 pub(super) const SMALL: f64 = 1e-4;
 /// Share of what rows say of a number that must be left when the unknowns have taken theirs: below it is rounding.
 const OPEN: f64 = 1e-9;
-/// The longest step: a share of a number or of a cloud's radius, or an angle.
-const FARTHEST: f64 = 0.3;
 
 /// What rows say of a number.
 pub(super) struct Scored {
@@ -53,9 +51,7 @@ impl Scored {
         let (step, shared) = factor.solve(&self.right, &self.below)?;
         let slope = self.slope - vector::dot(gradient, &step) - vector::dot(below, &shared);
         let square = self.square - vector::dot(&self.right, &step) - vector::dot(&self.below, &shared);
-        let is_open = square > OPEN * self.square && square.is_finite();
-        let change = (-slope / square).clamp(-FARTHEST, FARTHEST);
-        is_open.then(|| Score { known: self.known, gain: -change * (slope + 0.5 * square * change), change })
+        if square > OPEN * self.square { Score::by(self.known, slope, square) } else { None }
     }
 }
 

@@ -46,9 +46,13 @@ impl Solver<'_> {
     /// Rows about a state with their classes, in the order of their unknowns, and what [`Solver::loss`] makes of them; what is
     /// not finite is a fault.
     pub(super) fn rows(&mut self, state: &State, phase: Phase) -> Result<(Rows, f64), Fault> {
+        self.rows_into(Rows::new(state.shared()), state, phase)
+    }
+
+    /// The same, kept in the way of some that are empty.
+    pub(super) fn rows_into(&mut self, mut rows: Rows, state: &State, phase: Phase) -> Result<(Rows, f64), Fault> {
         let slopes = self.set_learned(&state.learned);
-        let shared = slopes.len() + state.lines.len();
-        let mut rows = Rows::new(shared);
+        let shared = state.shared();
         let mut cost = 0.0;
         for (at, group) in self.groups.iter().enumerate() {
             let takes_part = |term: &schema::Term| self.takes_part(at, term, phase);

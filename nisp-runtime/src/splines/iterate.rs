@@ -37,6 +37,11 @@ pub(super) enum Phase {
 }
 
 impl State {
+    /// Unknowns that all rows share: learned scalars and the numbers of lines.
+    pub(super) fn shared(&self) -> usize {
+        self.learned.len() + self.lines.len()
+    }
+
     pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
         save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)

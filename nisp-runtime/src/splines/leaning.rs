@@ -23,12 +23,7 @@ impl Solver<'_> {
             return Ok(Vec::new());
         }
         self.set_smoothness(kind, end);
-        let mut state = end.clone();
-        for (amplitude, &roughness) in self.amplitude.iter().zip(&self.roughness) {
-            let Some(amplitude) = *amplitude else { continue };
-            state.classes[amplitude].size *= LARGER;
-            state.classes[roughness].size *= LARGER;
-        }
+        let mut state = self.with_larger_sources(end);
         for _ in 0..STEPS {
             let Some(found) = self.step(&state, Phase::Solve)? else { break };
             state = State { classes: state.classes, ..found.next };
@@ -37,5 +32,16 @@ impl Solver<'_> {
             }
         }
         Ok(state.learned.iter().zip(&end.learned).map(|(larger, own)| (larger - own).abs()).collect())
+    }
+
+    /// A state where sources may be [`LARGER`] times as large and as rough.
+    pub(super) fn with_larger_sources(&self, end: &State) -> State {
+        let mut state = end.clone();
+        for (amplitude, &roughness) in self.amplitude.iter().zip(&self.roughness) {
+            let Some(amplitude) = *amplitude else { continue };
+            state.classes[amplitude].size *= LARGER;
+            state.classes[roughness].size *= LARGER;
+        }
+        state
     }
 }

@@ -28,6 +28,7 @@ mod place;
 mod prior;
 mod resolved;
 mod rows;
+mod scores;
 mod solver;
 mod starts;
 mod step;
@@ -222,6 +223,16 @@ pub(crate) fn solve(
     if let Some(best) = place.best().filter(|_| status == Status::Converged && run.has_time_for(leaning::STEPS)) {
         moved = solver.leaning(KINDS[best.kind], &best.state)?;
     }
+    let given = solver.given();
+    let mut scores = Vec::new();
+    if status == Status::Converged
+        && solver.heads.len() <= MANY
+        && !given.is_empty()
+        && run.has_time_for(1 + given.len())
+        && let Some(best) = place.best()
+    {
+        scores = solver.scores(KINDS[best.kind], &best.state, &given)?;
+    }
     let mut roots = Vec::new();
     if status == Status::Converged
         && solver.heads.len() <= MANY
@@ -253,7 +264,7 @@ pub(crate) fn solve(
         between,
         clouds: Vec::new(),
         scalars,
-        scores: Vec::new(),
+        scores,
         told,
         leaning,
         ahead,

@@ -5,6 +5,8 @@ use super::triangle::{Row, Source, Triangle};
 
 /// Rows with their classes.
 pub(super) struct Rows {
+    /// Whether rows of the same few unknowns are merged.
+    is_merged: bool,
     /// Unknowns that all rows share.
     shared: usize,
     kept: Vec<Kept>,
@@ -36,7 +38,12 @@ pub(super) struct Counted<'a> {
 impl Rows {
     /// None yet.
     pub(super) fn new(shared: usize) -> Self {
-        Self { shared, kept: Vec::new(), numbers: Vec::new(), places: Vec::new() }
+        Self { is_merged: true, shared, kept: Vec::new(), numbers: Vec::new(), places: Vec::new() }
+    }
+
+    /// None yet, to be kept one by one: of two lists that are made in the same way the same number is the same row.
+    pub(super) fn one_by_one(shared: usize) -> Self {
+        Self { is_merged: false, ..Self::new(shared) }
     }
 
     /// Keeps a row.
@@ -63,7 +70,7 @@ impl Rows {
     pub(super) fn push_all(&mut self, rows: &Bundle, class: usize) {
         let seen = (0..rows.width).filter(|&at| rows.iter().any(|row| row.slopes[at] != 0.0)).count();
         let count = rows.iter().len();
-        if count <= seen + self.shared + 1 {
+        if !self.is_merged || count <= seen + self.shared + 1 {
             rows.iter().for_each(|row| self.push(row, class));
             return;
         }
@@ -74,6 +81,11 @@ impl Rows {
         for row in merged.rows() {
             self.keep(Row { first: rows.first + row.first, ..row }, class, 0);
         }
+    }
+
+    /// What all rows are at present.
+    pub(super) fn values(&self) -> Vec<f64> {
+        self.kept.iter().map(|kept| kept.value).collect()
     }
 
     /// Orders rows by their first unknown.

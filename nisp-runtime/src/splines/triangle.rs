@@ -158,6 +158,18 @@ impl Triangle {
         banded.chain(corner.enumerate().filter(|(at, row)| row.shared[*at] != 0.0).map(|(_, row)| row))
     }
 
+    /// For each of the last shared unknowns, half the slope of the rows' sum of squares along it, and half its curvature, where all unknowns
+    /// but these follow.
+    pub(super) fn beside(&self, last: usize) -> Vec<[f64; 2]> {
+        let range = self.shared - last..self.shared;
+        let of = |at: usize| {
+            let column = range.clone().map(|row| self.corner[row * self.shared + at]);
+            let slope: f64 = column.clone().zip(&self.corner_right[range.clone()]).map(|(r, right)| -r * right).sum();
+            [slope, column.map(|r| r * r).sum()]
+        };
+        range.clone().map(of).collect()
+    }
+
     /// The unknowns that make the rows least, and the shared ones; nothing if the rows leave some open.
     pub(super) fn solve(&self) -> Option<(Vec<f64>, Vec<f64>)> {
         let shared = self.solve_shared()?;

@@ -1,0 +1,63 @@
+//! Whether the data would be met better if a given number were otherwise (Rao's score test). Sources may take over what is wrong with it, as far as
+//! they can: what the data say beyond that is what counts.
+//!
+//! A prior says that sources are as small and as smooth as they may be, and any number that makes them smaller gains by it. So what is said here
+//! is said by the rows alone, and unknowns take theirs where sources may be larger.
+
+use super::iterate::{Phase, State};
+use super::prior::Smoothness;
+use super::rows::{Counted, Rows};
+use super::solver::Solver;
+use super::triangle::{Row, Triangle};
+use crate::facts::{Known, Score};
+use crate::schema::Origin;
+use crate::solve::fault::Fault;
+
+/// Share of a number by which it is changed to see what rows follow it.
+const SMALL: f64 = 1e-4;
+
+impl Solver<'_> {
+    /// Given numbers, by their slots. One that is zero has no share to be changed by.
+    pub(super) fn given(&self) -> Vec<usize> {
+        let scalars = self.bound.problem.scene().schema.scalars.iter().enumerate();
+        let given = scalars.filter(|(slot, own)| matches!(own.origin, Origin::Given(_)) && self.scalars[*slot] != 0.0);
+        given.map(|(slot, _)| slot).collect()
+    }
+
+    /// Scores of given numbers about an end.
+    pub(super) fn scores(&mut self, kind: Smoothness, end: &State, given: &[usize]) -> Result<Vec<Score>, Fault> {
+        self.set_smoothness(kind, end);
+        let state = self.with_larger_sources(end);
+        self.size(&state);
+        let known = state.shared();
+        let (rows, _) = self.rows_into(Rows::one_by_one(known), &state, Phase::Solve)?;
+        let mut by = Vec::with_capacity(given.len());
+        for &slot in given {
+            let own = self.scalars[slot];
+            let mut values = |share: f64| {
+                self.scalars[slot] = own * (1.0 + share);
+                let found = self.rows_into(Rows::one_by_one(known), &state, Phase::Solve);
+                self.scalars[slot] = own;
+                found.map(|(rows, _)| rows.values())
+            };
+            let (more, less) = (values(SMALL)?, values(-SMALL)?);
+            let slope = |(more, less): (f64, f64)| (more - less) / (2.0 * SMALL);
+            by.push(more.into_iter().zip(less).map(slope).collect::<Vec<f64>>());
+        }
+        let believed = |class: usize| {
+            class == state.classes.len() || self.roughness.contains(&class) || self.amplitude.contains(&Some(class))
+        };
+        let mut triangle = Triangle::new(self.heads.len(), self.heads.band, known + given.len());
+        let (mut walk, mut number, mut shared) = (rows.walk(), 0, Vec::new());
+        while let Some(Counted { row, class, .. }) = walk.step() {
+            shared.clear();
+            shared.extend_from_slice(row.shared);
+            shared.extend(by.iter().map(|by| by[number]));
+            number += 1;
+            let value = if believed(class) { 0.0 } else { row.value };
+            triangle.add(Row { shared: &shared, value, ..row });
+        }
+        let scores = given.iter().zip(triangle.beside(given.len()));
+        Ok(scores.filter_map(|(&slot, [slope, square])| Score::by(Known::Scalar(slot), slope, square)).collect())
+    }
+}
