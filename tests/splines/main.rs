@@ -6,6 +6,7 @@ use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 mod beside;
 mod blurred;
 mod bounded;
+mod conditions;
 mod contact;
 mod driven;
 mod equations;

@@ -26,6 +26,9 @@ struct Innovation {
     told: f64,
 }
 
+/// Variance of what cells cannot hold, beside that of what they hold, at most.
+const BEYOND: f64 = 4.0;
+
 impl Solver<'_> {
     /// The state with the roughness that its own sources show along the record; nothing where that is the one they have, or where
     /// they are clearly even.
@@ -68,9 +71,11 @@ impl Solver<'_> {
     }
 
     /// By unknown, the variance of sources that splines on the cells cannot hold. Where the data tell the innovations in most single
-    /// cells, as where every measurement has one, they tell of shorter waves too.
+    /// cells, as where every measurement has one, they tell of shorter waves too. No more than what is open of what cells do hold, about:
+    /// where a layer may be at the start, the first cells hold none of it, but a large one would be seen in the data.
     pub(super) fn unresolved(&self, state: &State, covariance: &Covariance) -> Vec<f64> {
         let mut variances = vec![0.0; self.heads.len()];
+        let shared = vec![0.0; state.shared()];
         for (head, innovations) in self.innovations(state, covariance).iter().enumerate() {
             let Some((rough, amplitude)) = self.source_sizes(state, head).filter(|_| !innovations.is_empty()) else {
                 continue;
@@ -78,8 +83,9 @@ impl Solver<'_> {
             let (basis, prior) = (&self.heads.bases[head], &self.priors[head]);
             let told = innovations.iter().map(|own| own.told).sum::<f64>() / innovations.len() as f64;
             for function in 0..basis.len() {
-                variances[self.heads.numbers(head, function)[0]] =
-                    (1.0 - told) * prior.unresolved(function, rough, amplitude) / basis.squares(function);
+                let number = self.heads.numbers(head, function)[0];
+                let unresolved = (1.0 - told) * prior.unresolved(function, rough, amplitude) / basis.squares(function);
+                variances[number] = unresolved.min(BEYOND * covariance.of(number, &[1.0], &shared).max(0.0));
             }
         }
         variances
