@@ -4,6 +4,7 @@
 mod bounded;
 mod clouds;
 mod edges;
+mod jumps;
 mod leaning;
 mod mixed;
 mod some;

@@ -96,7 +96,7 @@ impl KeptLattices {
             && let Some(kernel) = frame.scene.double().pop()
         {
             let (scalars, by) = Learned::read_all(&frame.learned, &frame.scalars, &self.learned);
-            let base = (&self.heads.lattices[0], 0);
+            let base = (&self.heads.lattices[0], 0, 0.0);
             let losses = vec![Loss::Square; schema.terms.len()];
             let group = Group::new((schema, &losses), kernel, &self.heads, (points, &[]), Vec::new(), base);
             let found = group.evaluate(&self.heads, &self.theta, &scalars, has_bars);
