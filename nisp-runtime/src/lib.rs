@@ -2,6 +2,7 @@
 //!
 //! Data flows one way: points, channels through the network, residuals, loss, step, report.
 
+mod abrupt;
 pub mod activation;
 pub mod aligned;
 mod axes;

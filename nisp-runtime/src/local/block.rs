@@ -61,18 +61,12 @@ impl Block {
         Self { misfits: vec![0.0; rows], by_learned: vec![0.0; rows * learned], dofs, slopes, excess: 0.0 }
     }
 
-    /// Adds rows of a cell; for every head, the boxes of functions of the cell and of this block.
-    pub(super) fn add(
-        &mut self,
-        layout: Layout,
-        record: &[f64],
-        boxes: impl Iterator<Item = (Span, Span)>,
-        dimensions: usize,
-    ) {
+    /// Adds rows of a cell; for every head, the boxes of functions of the cell and of this block, and their dimensions.
+    pub(super) fn add(&mut self, layout: Layout, record: &[f64], boxes: impl Iterator<Item = ((Span, Span), usize)>) {
         let (misfits, by_learned, slopes) = layout.split(record);
         let width = self.dofs.len();
         let (mut from, mut first) = (0, 0);
-        for (cell, span) in boxes {
+        for ((cell, span), dimensions) in boxes {
             let shift: usize =
                 (0..dimensions).map(|axis| (cell.first[axis] - span.first[axis]) * span.count.pow(axis as u32)).sum();
             for line in 0..cell.count.pow(dimensions as u32 - 1) {

@@ -38,9 +38,12 @@ pub(super) struct Group {
     pub(super) weights: Vec<f64>,
     /// What weighted points are tested with, their points cell by cell; empty if each has rows of its own.
     pub(super) tests: Vec<Test>,
-    /// Degree of the tests.
+    /// How many of the tests, the last ones, are points that count a little, and that nobody judges.
+    pub(super) slight: usize,
+    /// Degree of the tests, and cells of the lattice that they are splines on.
     pub(super) degree: usize,
-    /// All points; by the cells of the first head where they are too many to be linearised together.
+    pub(super) base: Vec<usize>,
+    /// All places; points by the cells of the first head where they are too many to be linearised together.
     pub(super) order: Vec<u32>,
     /// By head, then by head at the points' partners if there are any, the highest derivative that the group reads; nothing of those
     /// that it does not read.
@@ -60,13 +63,13 @@ pub(super) struct Places<'a> {
 
 impl Group {
     /// A group, with how its terms' misfits count, at its places. Where these have weights its equations are tested with splines of a
-    /// lattice, of such a degree, if one is given.
+    /// lattice, of such a degree, if one is given; tests see no less than a share of the fullest one's weight.
     pub(super) fn new(
         (schema, terms): (&'static schema::Group, &[Loss]),
         kernel: GroupKernel<f64>,
         heads: &Heads,
         places: Places<'_>,
-        tested: Option<(&Lattice, usize)>,
+        tested: Option<(&Lattice, usize, f64)>,
     ) -> Self {
         let operator = |jet: &schema::Jet| {
             let term = |(index, coefficient): &(&[u8], f64)| {
@@ -88,13 +91,15 @@ impl Group {
         let sites = Sites::new(heads, &highest, [places.points, places.partners], places.columns);
         let weights = places.weights;
         let tested = tested.filter(|_| !weights.is_empty());
-        let degree = tested.map_or(0, |(_, degree)| degree);
-        let mut tests = tested.map_or(Vec::new(), |(base, degree)| tests(base, degree, places.points, &weights));
+        let (degree, base) = tested.map_or((0, Vec::new()), |(base, degree, _)| (degree, base.cells.clone()));
+        let of = |(base, degree, least)| tests(base, (degree, least), places.points, &weights);
+        let mut tests = tested.map_or(Vec::new(), of);
         for test in &mut tests {
             test.points.sort_by(|&(p, _), &(q, _)| sites.cells(p).cmp(sites.cells(q)));
         }
-        let mut order: Vec<u32> = (0..sites.count as u32).collect();
-        if order.len() > BATCH {
+        let places = if tests.is_empty() { sites.count } else { tests.len() };
+        let mut order: Vec<u32> = (0..places as u32).collect();
+        if tests.is_empty() && order.len() > BATCH {
             order.par_sort_by_cached_key(|&p| sites.cells(p).next());
         }
         let (sigma, growth) = (vec![1.0; schema.rows], vec![Vec::new(); schema.rows]);
@@ -114,11 +119,31 @@ impl Group {
             sites,
             weights,
             tests,
+            slight: 0,
             degree,
+            base,
             order,
             highest,
             slots,
         }
+    }
+
+    /// The same with some of its weighted points asked for by themselves.
+    pub(super) fn with_slight(mut self, (base, flat): (&Lattice, &[f64]), points: &[u32]) -> Self {
+        let inputs = base.dimensions();
+        for &p in points {
+            let place = base.place(&flat[p as usize * inputs..][..inputs]);
+            let cell = base.around(&place, self.degree).next().unwrap_or_default();
+            self.tests.push(Test { points: vec![(p, 1.0)], cell, weight: 0.0 });
+        }
+        self.slight = points.len();
+        self.order.extend((self.order.len()..self.order.len() + points.len()).map(|place| place as u32));
+        self
+    }
+
+    /// Lets them count so much beside a full test.
+    pub(super) fn weigh_slight(&mut self, weight: f64) {
+        self.tests.iter_mut().rev().take(self.slight).for_each(|test| test.weight = weight);
     }
 
     /// Other points than the group's own, which has no partners, at which no measurement is known. Rows that are no observations read
@@ -142,15 +167,28 @@ impl Group {
 
     /// The points of every test with their shares; none if equations are asked of points.
     pub(super) fn means(&self) -> Vec<Vec<(u32, f64)>> {
-        self.tests.iter().map(|test| test.points.clone()).collect()
+        self.tests[..self.tests.len() - self.slight].iter().map(|test| test.points.clone()).collect()
     }
 
-    /// A row where it is asked for: at every point, or in the mean over every test.
+    /// How many places a row is asked for at: points, or tests.
+    pub(super) fn places(&self) -> usize {
+        if self.tests.is_empty() { self.sites.count } else { self.tests.len() }
+    }
+
+    /// A row at one of [`Group::places`].
+    fn at_place(&self, evaluated: &Evaluated, row: usize, place: usize) -> f64 {
+        self.tests.get(place).map_or_else(|| evaluated.row(row, place), |test| evaluated.mean(test, row))
+    }
+
+    /// A row over its tolerance at one of [`Group::places`].
+    pub(super) fn over_tolerance(&self, evaluated: &Evaluated, row: usize, place: usize) -> f64 {
+        let weight = self.tests.get(place).map_or(1.0, |test| test.weight);
+        weight * self.at_place(evaluated, row, place) / self.sigma[row]
+    }
+
+    /// A row where it is judged: at every point, or in the mean over every test.
     pub(super) fn asked(&self, evaluated: &Evaluated, row: usize) -> Vec<f64> {
-        match self.tests.is_empty() {
-            true => (0..self.sites.count).map(|p| evaluated.row(row, p)).collect(),
-            false => self.tests.iter().map(|test| evaluated.mean(test, row)).collect(),
-        }
+        (0..self.places() - self.slight).map(|place| self.at_place(evaluated, row, place)).collect()
     }
 
     /// False where a cloud is all that the group is compared with.
@@ -181,12 +219,8 @@ impl Group {
     /// Rows over their tolerances, in the order of [`Group::blocks`].
     pub(super) fn over_tolerances(&self, evaluated: &Evaluated) -> Vec<f64> {
         let rows = self.own_rows();
-        let at =
-            |value: &dyn Fn(usize) -> f64| rows.iter().map(|&row| value(row) / self.sigma[row]).collect::<Vec<_>>();
-        match self.tests.is_empty() {
-            true => (0..self.sites.count).flat_map(|p| at(&|row| evaluated.row(row, p))).collect(),
-            false => self.tests.iter().flat_map(|test| at(&|row| test.weight * evaluated.mean(test, row))).collect(),
-        }
+        let at = |place: usize| rows.iter().map(move |&row| self.over_tolerance(evaluated, row, place));
+        (0..self.places()).flat_map(at).collect()
     }
 
     /// Roots of what squares of [`Group::over_tolerances`] are multiplied by where losses are robust.
@@ -195,9 +229,8 @@ impl Group {
         losses.zip(over).map(|((loss, times), over)| loss.weight(over / times.sqrt()).sqrt()).collect()
     }
 
-    /// What the misfit of a row costs.
-    fn cost(&self, row: usize, misfit: f64) -> f64 {
-        let over = misfit / self.sigma[row];
+    /// What a row over its tolerance costs.
+    fn cost(&self, row: usize, over: f64) -> f64 {
         match self.losses[row] {
             (Loss::Square, _) => 0.5 * over.powi(2),
             (loss, times) => times * loss.rho(over / times.sqrt()),
@@ -218,12 +251,11 @@ impl Group {
         let evaluated = self.evaluate(heads, theta, scalars, false);
         let mut own = 0.0;
         for row in self.own_rows() {
-            own += match self.tests.is_empty() {
-                true => (0..self.sites.count).map(|p| self.cost(row, evaluated.row(row, p))).sum::<f64>(),
-                false => self.tests.iter().map(|test| self.cost(row, test.weight * evaluated.mean(test, row))).sum(),
-            };
+            let over = (0..self.places()).map(|place| self.over_tolerance(&evaluated, row, place));
+            own += over.map(|over| self.cost(row, over)).sum::<f64>();
         }
-        let integrals = self.sums(&evaluated, scalars).into_iter().map(|(row, misfit)| self.cost(row, misfit));
+        let integrals = self.sums(&evaluated, scalars).into_iter();
+        let integrals = integrals.map(|(row, misfit)| self.cost(row, misfit / self.sigma[row]));
         own + integrals.sum::<f64>()
     }
 

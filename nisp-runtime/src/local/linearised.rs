@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use super::block::{Block, Layout};
 use super::group::{BATCH, Group};
 use super::heads::Heads;
-use super::lattice::Span;
+use super::lattice::{MOST_COORDINATES, NONE, Span};
 use super::rows::Evaluated;
 use super::sites::Sites;
 use super::testing::Test;
@@ -22,22 +22,26 @@ struct Kept {
 impl Group {
     /// Rows over their tolerances and their derivatives: of every test, or of every point where equations are asked of points.
     pub(super) fn blocks(&self, heads: &Heads, evaluated: &Evaluated, learned: &[f64]) -> Vec<Block> {
-        let rows = self.own_rows();
-        let layout = self.layout(heads, rows.len(), learned.len());
-        if rows.is_empty() {
+        if self.own_rows().is_empty() {
             return Vec::new();
         }
         if self.tests.is_empty() {
             let points: Vec<u32> = (0..self.sites.count as u32).collect();
             return self.at_points(heads, evaluated, learned, &points);
         }
-        let mut records = vec![0.0; self.sites.count * layout.len()];
-        let record = |across: &mut Vec<f64>, (p, record): (usize, &mut [f64])| {
-            self.record(heads, evaluated, learned, (p, &rows), (layout, record), across);
+        self.at_tests(heads, evaluated, learned)
+    }
+
+    /// The same of every test.
+    fn at_tests(&self, heads: &Heads, evaluated: &Evaluated, learned: &[f64]) -> Vec<Block> {
+        let rows = self.own_rows();
+        let layout = self.layout(heads, rows.len(), learned.len());
+        let mut records = vec![0.0; self.weights.len() * layout.len()];
+        let record = |across: &mut Vec<f64>, (number, record): (usize, &mut [f64])| {
+            self.record(heads, evaluated, learned, (number, &rows), (layout, record), across);
         };
         records.par_chunks_exact_mut(layout.len()).enumerate().for_each_init(Vec::new, record);
         let record = |p: usize| &records[p * layout.len()..][..layout.len()];
-        let dimensions = heads.lattices[0].dimensions();
         let tested = |sum: &mut Vec<f64>, test: &Test| {
             let mut block = Block::new(layout, self.dofs(heads, |(_, head)| self.span(heads, test, head)));
             let cells = |p: u32| self.sites.cells(p);
@@ -49,7 +53,8 @@ impl Group {
                 }
                 let p = points[0].0 as usize;
                 let boxes = self.read(heads).map(|slot| (self.cell(heads, p, slot), self.span(heads, test, slot.1)));
-                block.add(layout, sum, boxes, dimensions);
+                let dimensions = self.read(heads).map(|(_, head)| heads.lattices[head].dimensions());
+                block.add(layout, sum, boxes.zip(dimensions));
             }
             block.divide(rows.iter().map(|&row| self.sigma[row] / test.weight));
             self.majorise(&mut block, &rows);
@@ -58,8 +63,8 @@ impl Group {
         self.tests.par_iter().map_init(Vec::new, tested).collect()
     }
 
-    /// The rows of all points and their derivatives, batch by batch, so that memory is bounded however many points there are; zeros
-    /// where `counts`, by row and point, says that a row does not count.
+    /// The rows of all points and their derivatives, batch by batch, so that memory is bounded however many points there are, or those of
+    /// all tests; zeros where `counts`, by row and place, says that a row does not count.
     pub(super) fn batches(
         &self,
         heads: &Heads,
@@ -68,10 +73,15 @@ impl Group {
         counts: &[Vec<bool>],
     ) -> impl Iterator<Item = Vec<Block>> {
         let rows = self.own_rows();
-        self.order.chunks(BATCH).map(move |points| {
-            let mut blocks = self.at_points(heads, evaluated, learned, points);
-            for (&p, block) in points.iter().zip(&mut blocks) {
-                let left_out = rows.iter().enumerate().filter(|&(_, &row)| !counts[row][p as usize]);
+        // Means are made from the rows of all points at once.
+        let together = if self.tests.is_empty() { BATCH } else { self.places() };
+        self.order.chunks(together).map(move |places| {
+            let mut blocks = match self.tests.is_empty() {
+                true => self.at_points(heads, evaluated, learned, places),
+                false => self.at_tests(heads, evaluated, learned),
+            };
+            for (&place, block) in places.iter().zip(&mut blocks) {
+                let left_out = rows.iter().enumerate().filter(|&(_, &row)| !counts[row][place as usize]);
                 left_out.for_each(|(at, _)| block.clear(at));
             }
             blocks
@@ -142,8 +152,20 @@ impl Group {
     /// Functions of a head around a test.
     fn span(&self, heads: &Heads, test: &Test, head: usize) -> Span {
         let lattice = &heads.lattices[head];
-        let times = lattice.cells[0] / heads.lattices.iter().map(|l| l.cells[0]).min().unwrap_or(1);
-        Span { first: test.cell.map(|cell| cell * times), count: (self.degree + 1) * times + lattice.degree }
+        let times = lattice.cells[0] / self.base[lattice.axes()[0]];
+        let mut first = [0; MOST_COORDINATES];
+        lattice.axes().iter().zip(&mut first).for_each(|(&axis, first)| *first = test.cell[axis] * times);
+        Span { first, count: (self.degree + 1) * times + lattice.degree }
+    }
+
+    /// Coefficients that occur together in the tests.
+    pub(super) fn together(&self, heads: &Heads) -> Vec<Vec<u32>> {
+        let of = |test: &Test| {
+            let mut dofs = self.dofs(heads, |(_, head)| self.span(heads, test, head));
+            dofs.retain(|dof| *dof != NONE);
+            dofs
+        };
+        self.tests.iter().map(of).collect()
     }
 
     /// Functions of a head on the cell of one of the group's points, or of its partner.

@@ -11,6 +11,9 @@ use super::surface::{Feet, Surface};
 use super::{Local, LocalError};
 use crate::problem::Bound;
 
+/// Tests that see less than this share of the fullest one's weight are left out: they say next to nothing.
+const LEAST_MASS: f64 = 0.05;
+
 /// How far equations may be off, as a share of their natural size: about the error of splines on their lattice. Held to less,
 /// they would take that error for a load.
 const TOLERANCE: f64 = 1e-2;
@@ -67,7 +70,7 @@ impl Solver {
             let weights = bound.weights(at, measure);
             let places = Places { points: &bound.coordinates[at], partners: &[], columns: &bound.columns[at], weights };
             let losses = &bound.losses[at];
-            let group = Group::new((schema, losses), kernel, &heads, places, Some((&base, settings.tests)));
+            let group = Group::new((schema, losses), kernel, &heads, places, Some((&base, settings.tests, LEAST_MASS)));
             surfaces.extend(Surface::of(bound, at, cell));
             groups.push(group);
         }

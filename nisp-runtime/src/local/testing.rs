@@ -5,9 +5,6 @@ use std::collections::BTreeMap;
 
 use super::lattice::{Exponents, Lattice, MOST_COORDINATES};
 
-/// Tests whose hats see less than this share of the fullest one's weight are left out.
-const LEAST_MASS: f64 = 0.05;
-
 /// A test: the points around a node with their shares, which add up to one.
 pub(super) struct Test {
     pub(super) points: Vec<(u32, f64)>,
@@ -16,8 +13,9 @@ pub(super) struct Test {
     pub(super) weight: f64,
 }
 
-/// The tests of degree `degree` that see weighted points, given flat.
-pub(super) fn tests(base: &Lattice, degree: usize, flat: &[f64], weights: &[f64]) -> Vec<Test> {
+/// The tests of degree `degree` that see weighted points, given flat; those that see less than a share of the fullest one's weight are left
+/// out.
+pub(super) fn tests(base: &Lattice, (degree, least): (usize, f64), flat: &[f64], weights: &[f64]) -> Vec<Test> {
     let splines = base.refined(degree, 1);
     let mut found: BTreeMap<usize, Test> = BTreeMap::new();
     let mut values = vec![0.0; splines.per_cell()];
@@ -32,7 +30,7 @@ pub(super) fn tests(base: &Lattice, degree: usize, flat: &[f64], weights: &[f64]
         }
     }
     let most = found.values().map(|test| test.weight).fold(0.0, f64::max);
-    let mut tests: Vec<Test> = found.into_values().filter(|test| test.weight > LEAST_MASS * most).collect();
+    let mut tests: Vec<Test> = found.into_values().filter(|test| test.weight > least * most).collect();
     for test in &mut tests {
         test.points.iter_mut().for_each(|(_, share)| *share /= test.weight);
         test.weight = (test.weight / most).sqrt();

@@ -21,8 +21,8 @@ const MUTUAL: f64 = 9.0;
 const PAIRS: usize = 40_000_000;
 const FEWEST_BASES: usize = 200;
 /// Seeds of places that equations are asked at, and of others.
-const ASKED: u64 = 0;
-const OTHERS: u64 = 1;
+pub(super) const ASKED: u64 = 0;
+pub(super) const OTHERS: u64 = 1;
 const PICKED: u64 = 2;
 /// Measurements for every point of the equations at most, exact ones, which say no more, and noisy ones while lattices are chosen:
 /// these points are twice as many as the unknowns.

@@ -1,7 +1,7 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
 use super::belief::BorneOut;
-use super::solver::{Solver, groups};
+use super::solver::{Others, Solver, groups};
 use super::state::{Phase, State};
 use super::{edges, short};
 use crate::correlation;
@@ -106,7 +106,7 @@ impl Solver<'_> {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
             let of_row = |row: usize| {
                 let is_known = |misfit: &f64| !misfit.is_nan();
-                let misfits = (0..group.sites.count).map(|p| found.row(row, p)).filter(is_known);
+                let misfits = group.asked(&found, row).into_iter().filter(is_known);
                 root_mean_square(misfits.map(|misfit| misfit / may_be(row)))
             };
             let is_equation = |term: &&schema::Term| term.kind == TermKind::Residual && term.within.is_none();
@@ -115,8 +115,8 @@ impl Solver<'_> {
         };
         let asked = self.groups.iter().map(|group| left(group, &|row| TENSE * group.sigma[row]));
         let share = if noise.is_there(self.schema()) { BETWEEN } else { EXACT };
-        let of_others = |(of, bound): &(Vec<usize>, Bound)| {
-            let groups = groups(bound, &self.heads);
+        let of_others = |(of, (bound, means)): &Others| {
+            let groups = groups(bound, &self.heads, means);
             let left = of.iter().map(|&at| left(&groups[at], &|row| share * self.sizes[at][row]));
             left.fold(0.0, f64::max)
         };
@@ -161,8 +161,8 @@ impl Solver<'_> {
             (bound.coordinates[at].clone(), where_read(&facts, groups[at].kernel.programs, &schema.groups[at], known))
         };
         let mut points: Vec<_> = (0..self.groups.len()).map(|at| at_points((at, &self.groups, &self.bound))).collect();
-        if let Some((of, others)) = self.others.as_ref().filter(|_| !self.is_measured()) {
-            let groups = groups(others, &self.heads);
+        if let Some((of, (others, means))) = self.others.as_ref().filter(|_| !self.is_measured()) {
+            let groups = groups(others, &self.heads, means);
             points.extend(of.iter().map(|&at| at_points((at, &groups, others))));
         }
         let of = |head: usize| {
@@ -200,8 +200,8 @@ impl Solver<'_> {
         self.set_learned(&state.learned);
         self.find_feet(state);
         let facts = self.groups.iter().map(|group| group.facts(&self.heads, &state.theta)).collect();
-        let of_others = |(of, bound): &(Vec<usize>, Bound)| {
-            let groups = groups(bound, &self.heads);
+        let of_others = |(of, (bound, means)): &Others| {
+            let groups = groups(bound, &self.heads, means);
             of.iter().map(|&at| (at, groups[at].facts(&self.heads, &state.theta))).collect()
         };
         let between = self.others.as_ref().map_or_else(Vec::new, of_others);
@@ -234,7 +234,8 @@ impl Solver<'_> {
                     return (cloud.misfits().collect(), Some(self.sigma(state, cloud)));
                 }
                 let places = |row: usize| {
-                    (0..group.sites.count).filter(|&p| counts[row][p]).map(|p| found.row(row, p)).collect::<Vec<f64>>()
+                    let asked = group.asked(&found, row).into_iter().zip(&counts[row]);
+                    asked.filter(|(_, counts)| **counts).map(|(misfit, _)| misfit).collect::<Vec<f64>>()
                 };
                 let is_data = term.kind == TermKind::Observation;
                 let noise = is_data.then(|| state.classes[self.classes[at][number]].size);

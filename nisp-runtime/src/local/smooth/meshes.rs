@@ -1,5 +1,6 @@
 //! Which lattices carry fields and smooth sources, and which of their coefficients meet in a row.
 
+use super::means::{TESTS, is_abrupt};
 use super::proportions::Proportions;
 use crate::local::heads::Heads;
 use crate::local::lattice::{Lattice, NONE, Place};
@@ -41,10 +42,20 @@ pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
 
 /// The lattices of all heads, over cells as fine as the points of the equations can tell; and how many cells these are along
 /// every coordinate in the given proportions. Where nothing is measured cells are no finer than `most` points can tell: coarser ones come first.
-pub(super) fn lattices(bound: &Bound, proportions: &Proportions, most: usize) -> (Vec<Lattice>, Vec<usize>) {
+/// Fields whose equations jump have splines of the least degree that these leave hats of.
+pub(super) fn lattices(
+    bound: &Bound,
+    proportions: &Proportions,
+    most: usize,
+    jumps: &[Vec<f64>],
+) -> (Vec<Lattice>, Vec<usize>) {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
-    let degrees: Vec<usize> = (0..schema.heads.len()).map(|head| degree(schema, head).unwrap_or(0)).collect();
+    let degree = |head: usize| match is_abrupt(schema, jumps, head) {
+        true => Some(order(schema, head) + TESTS),
+        false => degree(schema, head),
+    };
+    let degrees: Vec<usize> = (0..schema.heads.len()).map(|head| degree(head).unwrap_or(0)).collect();
     let highest = degrees.iter().copied().max().unwrap_or(0);
     let is_equation =
         |group: &schema::Group| group.order > 0 && group.terms.iter().any(|term| term.kind == TermKind::Residual);

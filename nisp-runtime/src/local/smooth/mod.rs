@@ -9,11 +9,13 @@ mod between;
 mod bounded;
 mod changes;
 mod crossings;
+mod domain;
 mod edges;
 mod freedom;
 mod judged;
 mod leaning;
 mod levels;
+mod means;
 mod meshes;
 mod places;
 mod prior;
@@ -52,7 +54,7 @@ use crate::solve::state::State as Saved;
 use crate::verdict::settled::HELD_BACK;
 
 use run::{Clock, Run};
-use solver::{Solver, groups};
+use solver::Solver;
 use state::State;
 
 /// Name of the method in saved states.
@@ -271,7 +273,7 @@ fn finish(
     let is_loose = state.strictest > solver.tolerance;
     let may_change = solver.is_measured() && (is_early || is_loose);
     let strain = may_change.then(|| solver.strain(&state, noise));
-    solver.groups = groups(bound, &solver.heads);
+    solver.judge_at(bound);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
     (answer.strain, answer.used) = (strain, measurements(&solver.bound) as f64 / measurements(bound).max(1) as f64);
     // Noise may fall differently on other cells; without it they are all that changes an answer.

@@ -12,7 +12,6 @@ use super::state::{Phase, State};
 use super::step::{Asked, Rows};
 use crate::facts::{Known, LARGER, Score};
 use crate::local::block::Block;
-use crate::local::group::BATCH;
 use crate::local::rows::Evaluated;
 use crate::local::scored::{SMALL, Scored, add, slope};
 use crate::schema::Origin;
@@ -72,11 +71,8 @@ impl Solver<'_> {
             let group = &self.groups[asked.at];
             let [more, less] =
                 [&more, &less].map(|scalars| (group.evaluate(&self.heads, &state.theta, scalars, false), scalars));
-            let points = group.order.chunks(BATCH);
-            for (points, blocks) in points.zip(self.batches(rows, asked)) {
-                for (&p, block) in points.iter().zip(&blocks) {
-                    scored.add(block, &self.slopes_of(asked, (&more.0, &less.0), p as usize));
-                }
+            for (&place, block) in group.order.iter().zip(self.batches(rows, asked).flatten()) {
+                scored.add(&block, &self.slopes_of(asked, (&more.0, &less.0), place as usize));
             }
             let sums = |(evaluated, scalars): (Evaluated, &Vec<f64>)| group.sums(&evaluated, scalars);
             let sums = sums(more).into_iter().zip(sums(less));
@@ -95,17 +91,18 @@ impl Solver<'_> {
         }
     }
 
-    /// By row of a point that is asked for, what a scalar changes of what it is over its tolerance.
-    fn slopes_of(&self, asked: &Asked, (more, less): (&Evaluated, &Evaluated), p: usize) -> Vec<f64> {
+    /// By row at a place that is asked for, what a scalar changes of what it is over its tolerance.
+    fn slopes_of(&self, asked: &Asked, (more, less): (&Evaluated, &Evaluated), place: usize) -> Vec<f64> {
         let group = &self.groups[asked.at];
         let of = |row: usize| {
-            if !asked.counts[row][p] {
+            if !asked.counts[row][place] {
                 return 0.0;
             }
+            let over = |evaluated: &Evaluated| group.over_tolerance(evaluated, row, place);
             let (loss, times) = group.losses[row];
-            let over = asked.evaluated.row(row, p) / group.sigma[row];
-            let weight = if loss.is_robust() { loss.weight(over / times.sqrt()).sqrt() } else { 1.0 };
-            weight * slope((more.row(row, p), less.row(row, p))) / group.sigma[row]
+            let own = over(&asked.evaluated) / times.sqrt();
+            let weight = if loss.is_robust() { loss.weight(own).sqrt() } else { 1.0 };
+            weight * slope((over(more), over(less)))
         };
         group.own_rows().into_iter().map(of).collect()
     }

@@ -2,8 +2,9 @@
 
 use std::borrow::Cow;
 
-use super::between::{enough, filled, others, thinned};
+use super::between::{ASKED, OTHERS, enough, filled, others, thinned};
 use super::freedom::{Freedom, Unmeasured};
+use super::means::{Means, TESTS, jumps, with_means};
 use super::meshes::{across_pairs, lattices, together};
 use super::prior::Prior;
 use super::proportions::Proportions;
@@ -29,6 +30,14 @@ const EASIEST: f64 = 1e-3;
 /// Least roughness, beside the natural one: below it a head is straight but for rounding.
 const STRAIGHT: f64 = 1e-4;
 
+/// Share of the fullest mean's weight that means see at least: there are hardly more of them than unknowns.
+const LEAST_MASS: f64 = 1e-6;
+/// How far such an equation may be off in the middle of cells, over its size: along a coordinate of lower order means are too few.
+const SLIGHT: f64 = 0.3;
+
+/// Numbers of groups, and the problem with their equations at other places, with the means of all groups.
+pub(super) type Others = (Vec<usize>, (Bound, Vec<Means>));
+
 /// A problem on its lattices.
 pub(super) struct Solver<'a> {
     pub(super) bound: Cow<'a, Bound>,
@@ -36,7 +45,9 @@ pub(super) struct Solver<'a> {
     pub(super) most: usize,
     pub(super) lacks: bool,
     /// Groups of equations at other places than they are asked at, and their numbers.
-    pub(super) others: Option<(Vec<usize>, Bound)>,
+    pub(super) others: Option<Others>,
+    /// By group, where its equation jumps.
+    pub(super) jumps: Vec<Vec<f64>>,
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
     pub(super) surfaces: Vec<Surface>,
@@ -55,19 +66,23 @@ pub(super) struct Solver<'a> {
     pub(super) tolerance: f64,
 }
 
-/// The groups of a problem at its points.
-pub(super) fn groups(bound: &Bound, heads: &Heads) -> Vec<Group> {
+/// The groups of a problem at its points; some are asked for in the mean.
+pub(super) fn groups(bound: &Bound, heads: &Heads, means: &[Means]) -> Vec<Group> {
     let schema = bound.problem.scene().schema;
     let group = |(at, kernel)| {
         let columns = bound.filled_columns(at);
+        let lattice = heads.lattices.iter().max_by_key(|lattice| lattice.dimensions()).unwrap_or(&heads.lattices[0]);
+        let Means { weights, middles } = means[at].clone();
         let measure = schema.groups[at].terms.iter().find_map(|term| term.measure.as_ref());
+        let tested = (!weights.is_empty()).then_some((lattice, TESTS, LEAST_MASS));
         let places = Places {
             points: &bound.coordinates[at],
             partners: &bound.partners[at],
             columns: &columns,
-            weights: bound.weights(at, measure),
+            weights: if tested.is_some() { weights } else { bound.weights(at, measure) },
         };
-        Group::new((&schema.groups[at], &bound.losses[at]), kernel, heads, places, None)
+        let own = (&schema.groups[at], bound.losses[at].as_slice());
+        Group::new(own, kernel, heads, places, tested).with_slight((lattice, &bound.coordinates[at]), &middles)
     };
     bound.problem.scene().double().into_iter().take(schema.groups.len()).enumerate().map(group).collect()
 }
@@ -90,13 +105,20 @@ impl<'a> Solver<'a> {
         let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
         let enough = enough(points, is_noisy);
         let few = thinned(&bound, enough);
-        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points);
+        let jumps = jumps(problem);
+        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points, &jumps);
         let few = most.map_or(few, |most| thinned(&bound, most));
         let lacks = few.is_some() && is_noisy;
         let bound = few.map_or(bound, Cow::Owned);
         let schema = bound.problem.scene().schema;
         let heads = Heads::new(&bound, lattices);
-        let groups = groups(&bound, &heads);
+        let others = others(&bound).map(|(of, others)| {
+            let (with, means) = with_means((&others, &bound), &heads, &jumps, OTHERS);
+            (of, (with.unwrap_or(others), means))
+        });
+        let (with, means) = with_means((&bound, &bound), &heads, &jumps, ASKED);
+        let bound = with.map_or(bound, Cow::Owned);
+        let groups = groups(&bound, &heads, &means);
         let cell = heads.lattices.iter().flat_map(|own| (0..own.dimensions()).map(|axis| own.spacing(axis)));
         let cell = cell.fold(0.0, f64::max);
         let surfaces = (0..groups.len()).flat_map(|at| Surface::of(&bound, at, cell)).collect();
@@ -110,12 +132,14 @@ impl<'a> Solver<'a> {
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
         let mut together = together(&heads, &cells);
         together.extend(across_pairs(&heads, &bound));
+        groups.iter().for_each(|group| together.extend(group.together(&heads)));
         let normal = Normal::new(heads.len(), bound.learned.len(), &together).ok_or(LocalError::Memory)?;
         let shares = noise.observations.iter().map(|found| found.deviation / found.spread.max(found.deviation));
         let tolerance = (SHARE * shares.fold(0.0, f64::max)).clamp(STRICTEST, EASIEST);
         let scalars = bound.scalars.clone();
         Ok(Self {
-            others: others(&bound),
+            others,
+            jumps,
             bound,
             most: most.unwrap_or(enough),
             lacks,
@@ -131,6 +155,12 @@ impl<'a> Solver<'a> {
             scalars,
             tolerance,
         })
+    }
+
+    /// Judges the answer at all points of a problem.
+    pub(super) fn judge_at(&mut self, bound: &Bound) {
+        let (with, means) = with_means((bound, bound), &self.heads, &self.jumps, ASKED);
+        self.groups = groups(with.as_ref().unwrap_or(bound), &self.heads, &means);
     }
 
     /// False of a problem that equations and conditions alone solve.
@@ -263,6 +293,7 @@ impl<'a> Solver<'a> {
     /// Gives all rows what they are divided by at a state.
     pub(super) fn set_sigmas(&mut self, state: &State) {
         for (at, group) in self.groups.iter_mut().enumerate() {
+            group.weigh_slight(state.tolerance / SLIGHT);
             for (number, term) in group.schema.terms.iter().enumerate() {
                 for row in term.first..term.first + term.rows {
                     group.sigma[row] = match term.kind {

@@ -72,21 +72,21 @@ pub(super) struct Rows {
 pub(super) struct Asked {
     /// The group's number.
     pub(super) at: usize,
-    /// By row and point, whether it counts.
+    /// By row and place, whether it counts.
     pub(super) counts: Vec<Vec<bool>>,
     pub(super) evaluated: Arc<Evaluated>,
 }
 
 impl Solver<'_> {
-    /// By row of a group and point, whether it counts in a phase: equations wait until data and conditions on values are
+    /// By row of a group and place, whether it counts in a phase: equations wait until data and conditions on values are
     /// regressed, and of what was not measured nothing is known.
     pub(super) fn counts(&self, at: usize, phase: Phase) -> Vec<Vec<bool>> {
         let group = &self.groups[at];
-        let mut counts = vec![vec![false; group.sites.count]; group.schema.rows];
+        let mut counts = vec![vec![false; group.places()]; group.schema.rows];
         let is_asked = |term: &&schema::Term| !matches!(term.kind, TermKind::Chamfer { .. });
         let takes_part = |term: &&schema::Term| takes_part(group.schema, term, phase);
         for term in group.schema.terms.iter().filter(is_asked).filter(takes_part) {
-            let measured = self.bound.lacking(at, term).unwrap_or_else(|| vec![true; group.sites.count]);
+            let measured = self.bound.lacking(at, term).unwrap_or_else(|| vec![true; group.places()]);
             counts[term.first..term.first + term.rows].fill(measured);
         }
         counts
@@ -122,10 +122,10 @@ impl Solver<'_> {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
             for (term, loss) in group.schema.terms.iter().zip(self.losses(state, at)) {
                 for (row, counts) in counts.iter().enumerate().skip(term.first).take(term.rows) {
-                    let there = (0..group.sites.count).filter(|&p| counts[p]);
+                    let there = (0..group.places()).filter(|&place| counts[place]);
                     sum += match term.kind {
                         TermKind::Integral => 0.0,
-                        _ => there.map(|p| loss.rho(found.row(row, p) / group.sigma[row])).sum::<f64>(),
+                        _ => there.map(|place| loss.rho(group.over_tolerance(&found, row, place))).sum::<f64>(),
                     };
                 }
             }
@@ -238,7 +238,8 @@ impl Solver<'_> {
             }
             let evaluated = Arc::new(group.evaluate(&self.heads, &state.theta, &self.scalars, true));
             for (own, row) in group.own_rows().into_iter().enumerate() {
-                let is_lost = |&p: &usize| counts[row][p] && !evaluated.row(row, p).is_finite();
+                let counts = |p: usize| !group.tests.is_empty() || counts[row][p];
+                let is_lost = |&p: &usize| counts(p) && !evaluated.row(row, p).is_finite();
                 if let Some(p) = (0..group.sites.count).find(is_lost) {
                     return Err(LocalError::Fault(Fault::residual(group.name(own), Some(p))));
                 }
