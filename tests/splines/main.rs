@@ -7,6 +7,7 @@ mod beside;
 mod blurred;
 mod bounded;
 mod contact;
+mod correlated;
 mod driven;
 mod equations;
 mod few;
