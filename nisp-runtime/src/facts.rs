@@ -282,12 +282,22 @@ pub(crate) struct Answer {
     pub(crate) moved: Option<f64>,
     /// How far the cells hold the answer back, over what may be, where the budget ended before finer ones were tried.
     pub(crate) strain: Option<f64>,
+    /// By group and term, the length over which the noise that neighbouring rows share dies away; nothing where each has its own. Empty where
+    /// the carrier knows no such noise.
+    pub(crate) shared_over: Vec<Vec<Option<f64>>>,
     /// How much the last finer lattice has changed an answer without noise, as a share; nothing where there was none.
     pub(crate) refined: Option<f64>,
     /// Share of the measurements that the answer was made from.
     pub(crate) used: f64,
     /// What to do where the carrier may be too coarse.
     pub(crate) finer: &'static str,
+}
+
+impl Answer {
+    /// The length over which an observation's noise dies away, where neighbouring rows share it.
+    pub(crate) fn shared_over(&self, group: usize, term: usize) -> Option<f64> {
+        *self.shared_over.get(group)?.get(term)?
+    }
 }
 
 /// What to do where splines, on a line or a lattice, may be too coarse: no option makes their cells finer.

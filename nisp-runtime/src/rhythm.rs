@@ -15,6 +15,8 @@ pub(crate) struct Swing {
     pub(crate) amplitude: f64,
 }
 
+/// Amplitude of a rhythm over the noise below which it does not matter.
+pub(crate) const FAINT: f64 = 0.1;
 /// Longest gap of a record that counts as evenly sampled, beside the mean.
 const LONGEST: f64 = 2.0;
 

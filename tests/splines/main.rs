@@ -8,6 +8,7 @@ mod blurred;
 mod bounded;
 mod conditions;
 mod contact;
+mod correlated;
 mod driven;
 mod equations;
 mod few;

@@ -24,6 +24,7 @@ impl Solver {
             ahead: None,
             moved: None,
             strain: None,
+            shared_over: Vec::new(),
             used: 1.0,
             refined: None,
             finer: OTHER_THAN_SPLINES,

@@ -91,6 +91,15 @@ impl Warning {
         Self { kind: WarningKind::NoBars, message }
     }
 
+    /// Rows of an observation that share noise over a length.
+    pub(crate) fn shared_noise(name: &str, length: &str) -> Self {
+        let message = format!(
+            "neighbouring rows of `{name}` share noise, which dies away over {length}: its sensor drifts, is slow, or was filtered; error \
+             bars count it, but where the sensor lags behind, so does the answer"
+        );
+        Self { kind: WarningKind::SharedNoise, message }
+    }
+
     /// A head that comes in as a square does: either sign fits.
     pub(crate) fn open_sign(name: &str) -> Self {
         let message = format!(
@@ -122,6 +131,8 @@ pub enum WarningKind {
     OutOfTime,
     /// Error bars that the carrier cannot give.
     NoBars,
+    /// Noise that neighbouring rows of an observation share.
+    SharedNoise,
     /// A direction of the answer that neither equations nor data determine.
     Undetermined,
     /// A condition that the answer rests on: the data alone would leave a direction open.

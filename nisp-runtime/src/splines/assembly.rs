@@ -65,6 +65,11 @@ impl Solver<'_> {
                 if is_unmeasured || self.left_out == Some(self.classes[at][number]) {
                     continue;
                 }
+                if let Some(length) = self.length_of(state, (at, number)) {
+                    let mut take = |row: Row<'_>| rows.push(row, self.classes[at][number]);
+                    cost += self.chained(state, (at, number), (length, &slopes), &mut take)?;
+                    continue;
+                }
                 let loss = self.loss_of(state, (at, number));
                 let lacking = self.bound.lacking(at, term);
                 let count = group.asked(term);
@@ -194,6 +199,10 @@ impl Solver<'_> {
             let found = group.evaluate(&self.heads, &state.theta, &self.scalars, None);
             for (number, term) in group.schema.terms.iter().enumerate() {
                 if !self.takes_part(at, term, phase) {
+                    continue;
+                }
+                if let Some(length) = self.length_of(state, (at, number)) {
+                    sum += self.chained_loss(state, (at, number), length);
                     continue;
                 }
                 let loss = self.loss_of(state, (at, number));

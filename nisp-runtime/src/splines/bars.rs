@@ -48,7 +48,8 @@ impl Bars {
             for ((open, mean), left) in open.iter_mut().zip(&rows[count..]).zip(&own[count..]) {
                 *open += share * left / solver.beforehand(mean, &state);
             }
-            spreads.push(Spread { share, theta: state.theta, learned: state.learned, covariance: found.covariance });
+            let covariance = found.covariance.within(solver.heads.band);
+            spreads.push(Spread { share, theta: state.theta, learned: state.learned, covariance });
             variances.push(own);
         }
         rows.truncate(count);

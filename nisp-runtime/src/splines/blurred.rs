@@ -16,10 +16,10 @@ impl Solver<'_> {
         let terms = self.groups.iter().enumerate().flat_map(|(at, group)| {
             group.schema.terms.iter().map(move |term| (term, &self.blurs[at][term.first..term.first + term.rows]))
         });
-        let priors = self.roughness.len() + self.amplitude.iter().flatten().count();
+        let others = state.classes.len() - self.classes.iter().map(Vec::len).sum::<usize>();
         let is_exact = |blurs: &[f64]| !state.blurred || blurs.iter().all(|blur| *blur == 0.0);
         let holds = terms.map(|(term, blurs)| term.kind == TermKind::Residual && is_exact(blurs));
-        holds.chain(vec![false; priors + 1]).collect()
+        holds.chain(vec![false; others + 1]).collect()
     }
 
     /// Where steps start again with equations that know no better than their columns: at the best end of those before. From the

@@ -8,6 +8,7 @@ use super::prior::KINDS;
 use super::solver::Solver;
 use super::step::TOLERANCE;
 use crate::carrier::Progress;
+use crate::noise::Noise;
 use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::fault::Fault;
 use crate::solve::state;
@@ -80,6 +81,35 @@ impl Run<'_> {
         }
         self.limits = whole;
         Ok(flow)
+    }
+
+    /// Lets neighbouring rows share noise, where the evidence grows with it and there is time.
+    pub(super) fn correlate(
+        &mut self,
+        (solver, noise, kinds): (&mut Solver<'_>, &Noise, Vec<usize>),
+        place: &mut Place,
+        save: &dyn Fn(&Place) -> state::State,
+    ) -> Result<Flow, Fault> {
+        if !place.is_correlated && self.has_time_for(2) {
+            place.is_correlated = true;
+            if let Some(state) = solver.correlated(noise, place)? {
+                place.again(state, kinds);
+                let ended = self.go(solver, place, save)?;
+                if ended == Status::Interrupted {
+                    return Ok(Flow::Stop);
+                }
+                place.kinds.clear();
+            }
+        }
+        // A run that went on from a saved state may have come from there.
+        if let Some(best) = place.best().filter(|best| best.state.correlated).cloned()
+            && place.has_both()
+            && solver.leaves_rhythm(&best.state)
+        {
+            place.tried.retain(|tried| !tried.state.correlated);
+        }
+        place.choose_correlated();
+        Ok(Flow::Continue)
     }
 
     /// Takes steps until all kinds of smoothness that are to be tried have been, or steps or time are spent.

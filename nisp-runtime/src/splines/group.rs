@@ -223,6 +223,11 @@ impl Group {
         self.cells[p]
     }
 
+    /// The first unknown that a row at a place sees, and how many from there on it may.
+    pub(super) fn span(&self, heads: &Heads, p: usize) -> (usize, usize) {
+        heads.span(&self.read, self.cells[p])
+    }
+
     /// No rows yet on a cell.
     pub(super) fn bundle(&self, heads: &Heads, cell: usize, shared: usize) -> Bundle {
         let (first, width) = heads.span(&self.read, cell);

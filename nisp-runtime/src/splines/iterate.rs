@@ -18,6 +18,8 @@ pub(super) struct State {
     pub(super) doubt: f64,
     /// Whether equations may be missed by as much as the noise of their columns puts them off.
     pub(super) blurred: bool,
+    /// Whether neighbouring rows of an observation may share noise.
+    pub(super) correlated: bool,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
@@ -42,6 +44,11 @@ impl State {
         self.learned.len() + self.lines.len()
     }
 
+    /// Which of the assumptions that are tried beside kinds of smoothness hold.
+    pub(super) fn sort(&self) -> (bool, bool) {
+        (self.blurred, self.correlated)
+    }
+
     pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
         save_classes(&self.classes, saved, prefix)
             .with(&format!("{prefix}theta"), &self.theta)
@@ -51,6 +58,7 @@ impl State {
             .with(&format!("{prefix}doubt"), &[self.doubt])
             .with(&format!("{prefix}tolerance"), &[self.tolerance])
             .with_counter(&format!("{prefix}blurred"), u64::from(self.blurred))
+            .with_counter(&format!("{prefix}correlated"), u64::from(self.correlated))
             .with_counter(&format!("{prefix}convex"), u64::from(self.convex))
             .with_counter(&format!("{prefix}held"), u64::from(self.held))
             .with_counter(&format!("{prefix}step"), self.step)
@@ -66,6 +74,7 @@ impl State {
         [self.doubt] = saved.scalars(&format!("{prefix}doubt"))?;
         [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
         self.blurred = saved.counter(&format!("{prefix}blurred"))? == 1;
+        self.correlated = saved.counter(&format!("{prefix}correlated"))? == 1;
         self.convex = saved.counter(&format!("{prefix}convex"))? == 1;
         self.held = saved.counter(&format!("{prefix}held"))? == 1;
         self.step = saved.counter(&format!("{prefix}step"))?;

@@ -13,6 +13,7 @@ mod between;
 mod blurred;
 mod bounded;
 mod cells;
+mod correlated;
 mod course;
 mod drives;
 mod expected;
@@ -22,6 +23,7 @@ mod iterate;
 mod jumps;
 mod kept;
 mod leaning;
+mod lengths;
 pub mod live;
 mod marginal;
 mod place;
@@ -29,6 +31,7 @@ mod prior;
 mod resolved;
 mod rows;
 mod scores;
+mod sharing;
 mod solver;
 mod starts;
 mod step;
@@ -146,6 +149,7 @@ pub(crate) fn solve(
             let mut trial = Place::first(solver.first(noise), kinds(solver.has_sources(), false, noise.is_exact()));
             // A run that ends here begins anew.
             let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
+            let own = kinds(solver.has_sources(), false, noise.is_exact());
             let mut ended = run.go(&mut solver, &mut trial, &save)?;
             if ended == Status::Converged
                 && let Some(blurred) = solver.blurred(noise, &trial)
@@ -155,6 +159,7 @@ pub(crate) fn solve(
                 trial.choose_blurred();
             }
             if ended == Status::Converged
+                && run.correlate((&mut solver, noise, own), &mut trial, &save)? == Flow::Continue
                 && (!solver.has_sources() || run.vary(&mut solver, &mut trial, &save)? == Flow::Continue)
                 && let Some(Tried { kind, state, .. }) = trial.best().cloned()
             {
@@ -162,6 +167,7 @@ pub(crate) fn solve(
                 place.state.classes = state.classes;
                 place.state.step = trial.state.step;
                 (place.state.blurred, place.is_blurred) = (state.blurred, trial.is_blurred);
+                (place.state.correlated, place.is_correlated) = (state.correlated, true);
                 // What one roughness describes in a part, it describes in all.
                 place.is_even = state.uneven.is_empty();
             }
@@ -186,6 +192,11 @@ pub(crate) fn solve(
     }
     if status == Status::Converged {
         place.choose_blurred();
+    }
+    let own = kinds(solver.has_sources(), cells::stretches(bound), noise.is_exact());
+    if status == Status::Converged && run.correlate((&mut solver, noise, own), &mut place, &Place::save)? == Flow::Stop
+    {
+        status = Status::Interrupted;
     }
     if status == Status::Converged
         && solver.has_sources()
@@ -249,6 +260,8 @@ pub(crate) fn solve(
         warnings.push(Warning { kind: WarningKind::Undetermined, message });
     }
     let scalars = solver.scalars(&place.state.learned).to_vec();
+    let shared_over = solver.all_lengths(&place.state);
+    warnings.extend(solver.shared_noise(&place.state));
     let misfits = solver.misfits(&place.state);
     let course = place.best().map(|best| KINDS[best.kind].course);
     let State { theta, learned, step: iterations, .. } = place.state;
@@ -270,6 +283,7 @@ pub(crate) fn solve(
         ahead,
         moved: None,
         strain: None,
+        shared_over,
         used: 1.0,
         refined: None,
         finer: OTHER_THAN_SPLINES,

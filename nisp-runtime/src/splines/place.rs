@@ -18,6 +18,9 @@ const MOST_ROUNDS: u64 = 12;
 const GAIN: f64 = 0.5;
 /// How far differences of the evidence are trusted: all kinds are approximations of what the source is like.
 const TRUST: f64 = 0.3;
+/// Logarithm of the evidence that noise which rows share has to gain: each row's own, which is its limit, makes so much once in a thousand
+/// records.
+const SHARED: f64 = 5.0;
 /// How much less a kind of smoothness counts than one of an order less, for equal evidence. Orders differ in waves that the data hardly
 /// show. The evidence cannot tell a source that steps to and fro from a smooth one, and the bars of smooth ones are then too short by half.
 const SMOOTHER: f64 = 0.25;
@@ -41,6 +44,8 @@ pub(super) struct Place {
     before: f64,
     /// Whether equations have been as uncertain as their columns, too, or need not be any more.
     pub(super) is_blurred: bool,
+    /// Whether neighbouring rows have shared noise, too, or need not any more.
+    pub(super) is_correlated: bool,
     /// Whether one roughness describes all of the record: a part of it has said so.
     pub(super) is_even: bool,
 }
@@ -64,6 +69,7 @@ impl Place {
             tried: Vec::new(),
             is_again: false,
             is_blurred: false,
+            is_correlated: false,
             varied: 0,
             rounds: 0,
             before: f64::MIN,
@@ -124,14 +130,14 @@ impl Place {
     /// the evidence rules out is not tried with other orders.
     pub(super) fn next(&mut self, evidence: f64) {
         let kind = self.kinds.remove(0);
-        let blurred = self.state.blurred;
-        let is_same = |tried: &Tried| tried.kind == kind && tried.state.blurred == blurred;
+        let sort = self.state.sort();
+        let is_same = |tried: &Tried| tried.kind == kind && tried.state.sort() == sort;
         if !self.tried.iter().any(|tried| is_same(tried) && tried.evidence >= evidence) {
             self.tried.retain(|tried| !is_same(tried));
             self.tried.push(Tried { kind, evidence, state: self.state.clone() });
         }
         let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
-        let tried = || self.tried.iter().filter(|tried| tried.state.blurred == blurred);
+        let tried = || self.tried.iter().filter(|tried| tried.state.sort() == sort);
         let best = most(&mut tried());
         // Of a course that has not been tried nothing is known.
         self.kinds.retain(|&kind| {
@@ -156,6 +162,24 @@ impl Place {
         };
         let is_kept = best(true) > f64::MIN && best(true) >= best(false) - NEAR;
         self.tried.retain(|tried| tried.state.blurred == is_kept);
+    }
+
+    /// Whether there are ends whose rows share noise and such whose rows do not.
+    pub(super) fn has_both(&self) -> bool {
+        [true, false].iter().all(|sort| self.tried.iter().any(|tried| tried.state.correlated == *sort))
+    }
+
+    /// Leaves ends of one sort where there are both: those whose rows share noise, where the evidence gains enough by it.
+    pub(super) fn choose_correlated(&mut self) {
+        if !self.has_both() {
+            return;
+        }
+        let best = |correlated: bool| {
+            let own = self.tried.iter().filter(|tried| tried.state.correlated == correlated);
+            own.map(|tried| tried.evidence).fold(f64::MIN, f64::max)
+        };
+        let is_kept = best(true) >= best(false) + SHARED;
+        self.tried.retain(|tried| tried.state.correlated == is_kept);
     }
 
     /// The kind with the largest evidence.
@@ -185,6 +209,7 @@ impl Place {
             .with_counter("iterations", self.state.step)
             .with_counter("again", u64::from(self.is_again))
             .with_counter("blurred tried", u64::from(self.is_blurred))
+            .with_counter("correlated tried", u64::from(self.is_correlated))
             .with_counter("even", u64::from(self.is_even))
             .with_counter("varied", self.varied as u64)
             .with_counter("rounds", self.rounds)
@@ -224,6 +249,7 @@ impl Place {
         }
         self.since = saved.counter("since")?;
         self.is_blurred = saved.counter("blurred tried")? == 1;
+        self.is_correlated = saved.counter("correlated tried")? == 1;
         self.is_even = saved.counter("even")? == 1;
         self.varied = saved.counter("varied")? as usize;
         [self.before] = saved.scalars("before")?;

@@ -47,7 +47,7 @@ impl Solver<'_> {
         let believed = |class: usize| {
             class == state.classes.len() || self.roughness.contains(&class) || self.amplitude.contains(&Some(class))
         };
-        let mut triangle = Triangle::new(self.heads.len(), self.heads.band, known + given.len());
+        let mut triangle = Triangle::new(self.heads.len(), self.band(&state), known + given.len());
         let (mut walk, mut number, mut shared) = (rows.walk(), 0, Vec::new());
         while let Some(Counted { row, class, .. }) = walk.step() {
             shared.clear();

@@ -7,6 +7,7 @@ use super::group::Group;
 use super::heads::Heads;
 use super::iterate::{Phase, State};
 use super::prior::{Course, Prior, Smoothness};
+use super::sharing;
 use super::straight::Belief;
 use super::triangle::Triangle;
 use crate::facts::Facts;
@@ -34,6 +35,8 @@ pub(super) struct Solver<'a> {
     pub(super) roughness: Vec<usize>,
     /// By head, the number of the class of its amplitude, where it is a source.
     pub(super) amplitude: Vec<Option<usize>>,
+    /// By group and term, the number of the class of the length over which its noise may die away.
+    pub(super) lengths: Vec<Vec<Option<usize>>>,
     /// By head, its prior: that of sources while everything is solved, that of fields while data are regressed.
     pub(super) priors: Vec<Prior>,
     /// The class of a condition that is left out.
@@ -86,6 +89,7 @@ impl<'a> Solver<'a> {
         let classes = schema.groups.iter().map(|g| g.terms.iter().map(|_| next()).collect()).collect();
         let roughness = schema.heads.iter().map(|_| next()).collect();
         let amplitude = schema.heads.iter().map(|head| head.source.then(&mut next)).collect();
+        let lengths = sharing::numbered(bound, next());
         let observed = schema.observed();
         // Of fields that are not observed conditions are all that is known at first: they are level.
         let regressed = |head: usize| if observed.contains(&head) { REGRESS } else { LEVEL };
@@ -104,6 +108,7 @@ impl<'a> Solver<'a> {
             classes,
             roughness,
             amplitude,
+            lengths,
             priors,
             left_out: None,
             is_measured: true,
@@ -233,7 +238,7 @@ impl<'a> Solver<'a> {
 
     /// A triangle of no rows.
     pub(super) fn empty(&self, state: &State) -> Triangle {
-        Triangle::new(self.heads.len(), self.heads.band, state.learned.len() + state.lines.len())
+        Triangle::new(self.heads.len(), self.band(state), state.learned.len() + state.lines.len())
     }
 
     /// Numbers of a source's line, among those of all sources.

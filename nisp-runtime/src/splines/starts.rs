@@ -31,6 +31,7 @@ impl Solver<'_> {
         });
         classes.extend(rough);
         classes.extend(self.amplitude.iter().flatten().map(|_| open(natural, LEAST_AMPLITUDE * natural)));
+        classes.extend(self.first_lengths());
         let (theta, learned) = (vec![0.0; self.heads.len()], vec![0.0; self.bound.learned.len()]);
         let convex = self.bound.losses.iter().flatten().any(|loss| loss.convex() != *loss);
         let mut state = State {
@@ -41,6 +42,7 @@ impl Solver<'_> {
             uneven: Vec::new(),
             doubt: 0.0,
             blurred: false,
+            correlated: false,
             tolerance: LOOSE,
             convex,
             held: self.is_beside_sources(),

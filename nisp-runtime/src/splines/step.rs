@@ -50,7 +50,11 @@ impl Solver<'_> {
     pub(super) fn step(&mut self, state: &State, phase: Phase) -> Result<Option<Found>, Fault> {
         self.size(state);
         let (rows, before) = self.rows(state, phase)?;
-        self.triangle.clear();
+        if self.triangle.band() == self.band(state) {
+            self.triangle.clear();
+        } else {
+            self.triangle = self.empty(state);
+        }
         self.triangle.add_all(rows.walk());
         let pull = self.pull(state, phase)?;
         if let Some(pull) = &pull {
@@ -110,10 +114,16 @@ impl Solver<'_> {
         // Equations that are loose need no source, and what is left of the data is no noise before they nearly hold.
         let is_loose = phase == Phase::Solve && state.tolerance > TOLERANCE;
         let has_strayed = phase == Phase::Solve && strayed * state.tolerance.powi(2) > STRAYED.powi(2) * asked;
+        self.count_lengths(&next, &covariance, &mut tallies)?;
         let is_prior = |class| self.roughness.contains(&class) || self.amplitude.contains(&Some(class));
         let judged: Vec<usize> = self.judged(phase).into_iter().map(|head| self.roughness[head]).collect();
+        let is_length = |class| self.is_length(state, class);
         let is_other = |class| self.roughness.contains(&class) && !judged.contains(&class);
-        renew(&mut next.classes, &tallies, |class| has_strayed || is_loose && is_prior(class) || is_other(class));
+        renew(&mut next.classes, &tallies, |class| {
+            let is_early =
+                is_loose && (is_prior(class) || is_length(class)) || phase == Phase::Regress && is_length(class);
+            has_strayed || is_early || is_other(class)
+        });
         if phase == Phase::Solve {
             next.tolerance = tolerance::after(state.tolerance, share, TOLERANCE);
         }
@@ -138,6 +148,7 @@ impl Solver<'_> {
                 let count = tallies[self.classes[at][number]].count;
                 // Terms without rows have no size.
                 sum += if count > 0.0 { count * logs / term.rows as f64 } else { 0.0 };
+                sum += self.log_rest(state, (at, number));
             }
         }
         sum
@@ -145,7 +156,8 @@ impl Solver<'_> {
 
     /// What error bars are taken from, and the step about it: sources as rough as a wave over the domain at least, and where
     /// hardly anything is told of them, as large as the evidence does not speak against. Where the evidence takes a source for
-    /// nothing, or for a polynomial, error bars should not. Third, the variances along sources.
+    /// nothing, or for a polynomial, error bars should not. Noise that rows share is as long as the evidence does not speak against, too:
+    /// what is slow in it may as well be a source. Third, the variances along sources.
     pub(super) fn doubted(&mut self, mut state: State, along: &[Along]) -> Result<Option<Doubted>, Fault> {
         let variances = |solver: &Self| along.iter().map(|along| along.variance(&solver.triangle)).collect();
         let Some(mut found) = self.step(&state, Phase::Solve)? else { return Ok(None) };
@@ -167,6 +179,12 @@ impl Solver<'_> {
                     Some(next) if next.evidence > least => (state, found, spread) = (doubted, next, variances(self)),
                     _ => break,
                 }
+            }
+        }
+        while let Some(longer) = self.longer(&state) {
+            match self.step(&longer, Phase::Solve)? {
+                Some(next) if next.evidence > least => (state, found, spread) = (longer, next, variances(self)),
+                _ => break,
             }
         }
         Ok(Some((state, found, spread)))

@@ -65,6 +65,11 @@ impl Triangle {
         }
     }
 
+    /// Unknowns that a row may see, from its first on.
+    pub(super) fn band(&self) -> usize {
+        self.band
+    }
+
     /// Forgets all rows.
     pub(super) fn clear(&mut self) {
         for part in [&mut self.rows, &mut self.border, &mut self.right, &mut self.corner, &mut self.corner_right] {

@@ -2,7 +2,7 @@
 
 use super::root_mean_square;
 use super::slow::chance;
-use crate::noise::{Noise, ObservationNoise, deviation};
+use crate::noise::{Noise, ObservationNoise, beside_those_before, by_differences, deviation, in_order};
 use crate::problem::Bound;
 use crate::schema;
 use crate::units::Number;
@@ -34,15 +34,34 @@ pub(super) struct Misfits<'a> {
 }
 
 impl<'a> Misfits<'a> {
-    /// Of the term `at` of a group, whose rows over the group's points are `left`; nothing where nothing was measured.
-    pub(super) fn of(bound: &'a Bound, (group, at): (usize, usize), left: &[Vec<f64>], noise: &Noise) -> Option<Self> {
+    /// Of the term `at` of a group, whose rows over the group's points are `left`; nothing where nothing was measured. Where
+    /// neighbouring rows share noise over a length, of misfits and values beside what those before let expect.
+    pub(super) fn of(
+        bound: &'a Bound,
+        (group, at): (usize, usize),
+        left: &[Vec<f64>],
+        (noise, shared_over): (&Noise, Option<f64>),
+    ) -> Option<Self> {
         let term = &bound.problem.scene().schema.groups[group].terms[at];
-        let rows: Vec<Vec<f64>> =
+        let mut rows: Vec<Vec<f64>> =
             left[term.first..term.first + term.rows].iter().map(|row| bound.measured(group, term, row)).collect();
         let places = bound.measured(group, term, &bound.coordinates[group]);
+        let mut noise = noise.of(group, at);
+        if let Some(length) = shared_over {
+            let own = |values: &[f64]| beside_those_before(&places, values, length);
+            rows.iter_mut().for_each(|row| *row = own(row));
+            let of = |&column: &usize| {
+                let values = own(&bound.measured(group, term, &bound.columns[group][column]));
+                by_differences(&in_order(&places, &values))
+            };
+            let found: Option<Vec<f64>> = term.columns.iter().map(of).collect();
+            noise = noise.zip(found).map(|(noise, found)| ObservationNoise {
+                deviation: noise.deviation.max(root_mean_square(found)),
+                ..noise
+            });
+        }
         let is_robust = bound.losses[group][at].is_robust();
         let size = if is_robust { middle(&rows) } else { root_mean_square(rows.iter().flatten().copied()) };
-        let noise = noise.of(group, at);
         (!places.is_empty()).then_some(Self { bound, group, at, term, rows, places, noise, is_robust, size })
     }
 

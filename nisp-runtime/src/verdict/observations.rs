@@ -32,7 +32,8 @@ const ROUNDING: f64 = 1e-5;
 pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &Noise), answer: &Answer) -> Vec<Check> {
     let terms = bound.problem.scene().schema.groups[group].terms.iter().enumerate();
     let observations = terms.filter(|(_, term)| term.kind == TermKind::Observation);
-    let left = observations.filter_map(|(at, _)| Misfits::of(bound, (group, at), rows, noise));
+    let left = observations
+        .filter_map(|(at, _)| Misfits::of(bound, (group, at), rows, (noise, answer.shared_over(group, at))));
     left.flat_map(|left| of(&left, answer)).collect()
 }
 

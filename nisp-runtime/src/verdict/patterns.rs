@@ -6,7 +6,7 @@ use super::{Check, root_mean_square, slow, smooth};
 use crate::correlation;
 use crate::facts::Answer;
 use crate::noise::in_order;
-use crate::rhythm::rhythm;
+use crate::rhythm::{FAINT, rhythm};
 
 /// Excess of slow misfits in standard deviations.
 const PATTERN: f64 = 4.0;
@@ -17,8 +17,6 @@ const SMOOTH: f64 = 3.5;
 const SLIGHT: f64 = 0.05;
 /// Misfit over the noise below which it has no pattern to speak of.
 pub(super) const BELOW: f64 = 0.5;
-/// Amplitude of a rhythm over the noise below which it does not matter.
-const FAINT: f64 = 0.1;
 /// Values that say something of a correlation, at least.
 const FEW: usize = 16;
 /// Mean of a misfit over its size above which it is a constant.

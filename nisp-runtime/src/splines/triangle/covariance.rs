@@ -77,6 +77,12 @@ impl Triangle {
 }
 
 impl Covariance {
+    /// The same within a band that is no wider.
+    pub(in super::super) fn within(&self, band: usize) -> Self {
+        let rows = self.rows.chunks_exact(self.band).flat_map(|row| &row[..band.min(self.band)]);
+        Self { band: band.min(self.band), rows: rows.copied().collect(), ..self.clone() }
+    }
+
     /// Over the unknowns of so many coefficients, from the numbers of [`Covariance::parts`]; nothing if there are not as many
     /// as there should be.
     pub(in super::super) fn restored(

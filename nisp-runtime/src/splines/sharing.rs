@@ -1,0 +1,37 @@
+//! Which observations may have noise that neighbouring rows share.
+//!
+//! Equations and observations together are no more than fields and sources: some source follows whatever the data show. Of more, as of two
+//! sensors or of a stop that pushes only where it is met, or beside a source that may not be negative, what is left may be an equation that is
+//! wrong, and is judged as such.
+
+use super::cells::MANY;
+use crate::problem::Bound;
+use crate::schema::{self, TermKind};
+
+/// By group and term, whether neighbouring rows may share noise.
+fn may_share(bound: &Bound) -> Vec<Vec<bool>> {
+    let schema = bound.problem.scene().schema;
+    let lasting = schema.groups.iter().zip(&bound.coordinates).filter(|(_, places)| places.len() >= MANY);
+    // Conditions of a few rows say where a record begins, and no more.
+    let asked = |(group, _): (&'static schema::Group, _)| group.terms.iter().map(|term| term.rows).sum::<usize>();
+    let is_bounded = |head: &schema::Head| head.source && (head.lower.is_some() || head.upper.is_some());
+    let is_followed = lasting.map(asked).sum::<usize>() <= schema.heads.len() && !schema.heads.iter().any(is_bounded);
+    let may = |(group, at): (usize, usize), term: &schema::Term| {
+        is_followed && is_data(term) && term.within.is_none() && !bound.losses[group][at].is_robust()
+    };
+    let of = |(group, own): (usize, &schema::Group)| {
+        own.terms.iter().enumerate().map(|(at, term)| may((group, at), term)).collect()
+    };
+    schema.groups.iter().enumerate().map(of).collect()
+}
+
+fn is_data(term: &schema::Term) -> bool {
+    term.kind == TermKind::Observation
+}
+
+/// By group and term, the numbers of the classes of lengths, from `first` on.
+pub(super) fn numbered(bound: &Bound, first: usize) -> Vec<Vec<Option<usize>>> {
+    let mut next = first..;
+    let may = may_share(bound).into_iter();
+    may.map(|terms| terms.into_iter().map(|may| if may { next.next() } else { None }).collect()).collect()
+}

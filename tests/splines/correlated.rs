@@ -1,0 +1,117 @@
+//! Noise that neighbouring rows share: a sensor that drifts, or that is slow.
+
+use nisp::solve::driver::{Flow, Status};
+use nisp::{Carrier, Problem, Solution, recover, resume, scene};
+
+use crate::{normals, of, settings, simulated, solve};
+
+nisp::pde! {
+    /// A vessel that drains, and what flows into it.
+    mod vessel {
+        units: off;
+        coordinates: t;
+        fields: h;
+        sources: f;
+        on motion { level: 2 * d(h, t) == f - h; }
+        on samples { observe h; }
+    }
+}
+
+nisp::pde! {
+    /// A mass on a spring, moved by what nobody measures.
+    mod swing {
+        units: off;
+        coordinates: t;
+        fields: x;
+        sources: f;
+        on motion { balance: 1.5 * d(x, t, 2) + 0.8 * d(x, t) + 4 * x == f; }
+        on samples { observe x; }
+    }
+}
+
+const ROWS: usize = 300;
+
+fn times() -> Vec<f64> {
+    (0..ROWS).map(|row| row as f64 / 15.0).collect()
+}
+
+fn source(t: f64) -> f64 {
+    3.0 + 1.2 * (0.9 * t).sin() + 0.8 * (1.7 * t + 1.0).cos()
+}
+
+/// Noise of which a row has so much from the row before.
+fn noise(seed: u64, deviation: f64, shared: f64) -> Vec<f64> {
+    let mut normal = normals(seed);
+    let mut own = normal();
+    let next = |_| {
+        let now = own;
+        own = shared * own + (1.0 - shared * shared).sqrt() * normal();
+        deviation * now
+    };
+    (0..ROWS).map(next).collect()
+}
+
+fn with(mut problem: Problem, truth: Vec<f64>, noise: &[f64]) -> Problem {
+    let measured = truth.iter().zip(noise).map(|(truth, noise)| truth + noise).collect();
+    problem.set_group("motion", times().into(), vec![]).unwrap();
+    problem.set_group("samples", times().into(), vec![measured]).unwrap();
+    problem
+}
+
+fn levels() -> Vec<f64> {
+    simulated(&times(), [2.0], |t, [h]| [(source(t) - h) / 2.0]).iter().map(|[h]| *h).collect()
+}
+
+fn places() -> Vec<f64> {
+    simulated(&times(), [0.5, 0.0], |t, [x, v]| [v, (source(t) - 0.8 * v - 4.0 * x) / 1.5])
+        .iter()
+        .map(|[x, _]| *x)
+        .collect()
+}
+
+/// Mean error of the source, and the shares of it beyond two and four deviations.
+fn missed(solution: &mut Solution) -> (f64, [f64; 2]) {
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
+    let estimates = solution.evaluate_with_errors(&times());
+    let found = of(&estimates, "f");
+    let bars = found.deviations.as_ref().expect("a sound answer has error bars");
+    let off: Vec<f64> = times().iter().zip(&found.values).map(|(t, found)| (found - source(*t)).abs()).collect();
+    let share = |deviations: f64| off.iter().zip(bars).filter(|(off, bar)| **off > deviations * **bar).count() as f64;
+    (off.iter().sum::<f64>() / ROWS as f64, [2.0, 4.0].map(|deviations| share(deviations) / ROWS as f64))
+}
+
+/// A source that follows the noise is several times as far off: noise of single rows that changes as fast makes as much of it.
+#[test]
+fn noise_that_rows_share_is_not_followed() {
+    for seed in 1..4 {
+        for shared in [0.6, 0.9] {
+            let noise = noise(seed, 0.02, shared);
+            let vessel = with(Problem::new(scene::<vessel::all::Scene>()), levels(), &noise);
+            let (off, [two, four]) = missed(&mut solve(&vessel, Carrier::Splines));
+            assert!(off < 0.06 && two < 0.15 && four < 0.01, "vessel {seed} {shared}: {off} {two} {four}");
+            let swing = with(Problem::new(scene::<swing::all::Scene>()), places(), &noise);
+            let (_, [two, four]) = missed(&mut solve(&swing, Carrier::Splines));
+            assert!(two < 0.15 && four < 0.01, "swing {seed} {shared}: {two} {four}");
+        }
+    }
+}
+
+/// The steps are tried again with noise that rows share. Wherever they are stopped, they go on with the same bits.
+#[test]
+fn a_run_is_resumed_while_noise_may_be_shared() {
+    let problem = with(Problem::new(scene::<vessel::all::Scene>()), levels(), &noise(2, 0.02, 0.9));
+    let whole = solve(&problem, Carrier::Splines);
+    let all = settings(Carrier::Splines);
+    for part in 1..8 {
+        let (stop, mut steps) = (whole.iterations * part / 8, 0);
+        let part = recover(&problem, &all, &mut |_| {
+            steps += 1;
+            if steps == stop { Flow::Stop } else { Flow::Continue }
+        });
+        let part = part.unwrap();
+        assert_eq!(part.status, Status::Interrupted);
+        let resumed = resume(&problem, &all, &part.checkpoint, &mut |_| Flow::Continue).unwrap();
+        let values = |solution: &Solution| of(&solution.evaluate(&times()), "f").values.clone();
+        assert_eq!(values(&resumed), values(&whole), "stopped after {stop}");
+    }
+}
