@@ -5,6 +5,7 @@ mod across;
 mod bounded;
 mod clouds;
 mod edges;
+mod given;
 mod jumps;
 mod leaning;
 mod mixed;

@@ -15,6 +15,7 @@ mod few;
 #[expect(deprecated, reason = "a lint says that nothing pins a field, which is what is asked here")]
 mod free;
 mod gaps;
+mod given;
 mod leaning;
 mod levels;
 mod measured;
