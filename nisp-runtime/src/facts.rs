@@ -196,6 +196,8 @@ pub(crate) enum Known {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Score {
     pub(crate) known: Known,
+    /// Whether a prior for few sources has a part in it.
+    pub(crate) by_prior: bool,
     /// What the loss would be less.
     pub(crate) gain: f64,
     /// By how much it would be otherwise: a share of a value, of a cloud's size or of its radius, or an angle.
@@ -205,12 +207,12 @@ pub(crate) struct Score {
 impl Score {
     /// From the slope of the loss by a number, and its curvature, where all unknowns follow; nothing where they take all. Steps are no longer
     /// than the model may be trusted.
-    pub(crate) fn by(known: Known, slope: f64, curvature: f64) -> Option<Self> {
+    pub(crate) fn by((known, by_prior): (Known, bool), slope: f64, curvature: f64) -> Option<Self> {
         /// The longest step: a share of a number or of a cloud's radius, or an angle.
         const FARTHEST: f64 = 0.3;
         let change = (-slope / curvature).clamp(-FARTHEST, FARTHEST);
         let gain = -change * (slope + 0.5 * curvature * change);
-        (curvature > 0.0 && gain.is_finite()).then_some(Self { known, gain, change })
+        (curvature > 0.0 && gain.is_finite()).then_some(Self { known, by_prior, gain, change })
     }
 }
 

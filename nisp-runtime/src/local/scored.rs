@@ -46,12 +46,12 @@ impl Scored {
         add(block, by, &mut self.right, &mut self.below);
     }
 
-    /// The score beside what rows say of the unknowns, `J^T r`; nothing of what rows do not tell from these.
-    pub(super) fn score(&self, factor: &Factor, gradient: &[f64], below: &[f64]) -> Option<Score> {
+    /// The score beside what rows say of the unknowns, `J^T r`, to which a prior may belong; nothing of what rows do not tell from these.
+    pub(super) fn score(&self, factor: &Factor, (gradient, below): (&[f64], &[f64]), by_prior: bool) -> Option<Score> {
         let (step, shared) = factor.solve(&self.right, &self.below)?;
         let slope = self.slope - vector::dot(gradient, &step) - vector::dot(below, &shared);
         let square = self.square - vector::dot(&self.right, &step) - vector::dot(&self.below, &shared);
-        if square > OPEN * self.square { Score::by(self.known, slope, square) } else { None }
+        if square > OPEN * self.square { Score::by((self.known, by_prior), slope, square) } else { None }
     }
 }
 

@@ -46,7 +46,7 @@ impl Solver {
         for surface in &self.surfaces {
             self.add_surface(surface, state, &learned, &mut all);
         }
-        all.iter().map(|sums| sums.score(factor, &self.normal.gradient, &self.normal.border_gradient)).collect()
+        all.iter().map(|sums| sums.score(factor, (&self.normal.gradient, &self.normal.border_gradient), true)).collect()
     }
 
     /// What the problem takes for known: given numbers, and the place, the direction and the size of every cloud that has a

@@ -58,6 +58,8 @@ impl Solver<'_> {
             triangle.add(Row { shared: &shared, value, ..row });
         }
         let scores = given.iter().zip(triangle.beside(given.len()));
-        Ok(scores.filter_map(|(&slot, [slope, square])| Score::by(Known::Scalar(slot), slope, square)).collect())
+        Ok(scores
+            .filter_map(|(&slot, [slope, square])| Score::by((Known::Scalar(slot), false), slope, square))
+            .collect())
     }
 }

@@ -54,7 +54,7 @@ impl Solver<'_> {
         let score = |&slot: &usize| {
             let mut scored = Scored::new(Known::Scalar(slot), coefficients, border);
             self.score_rows(&rows, slot, &state, &mut scored);
-            scored.score(&factor, &gradient, &below)
+            scored.score(&factor, (&gradient, &below), false)
         };
         Some(known.par_iter().filter_map(score).collect())
     }
