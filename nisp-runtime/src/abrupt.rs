@@ -95,7 +95,8 @@ fn narrowed(bound: &Bound, group: usize, row: usize, mut pieces: Vec<Piece>) -> 
     pieces.into_iter().flat_map(|piece| piece.ends.into_iter().next_back()).flatten().collect()
 }
 
-/// Rows of a group at points, given flat, with the same fields and sources everywhere, none of them zero.
+/// Rows of a group at points, given flat, with the same fields and sources everywhere, none of them zero and no two the same: what multiplies a
+/// difference must not vanish with it.
 fn rows(bound: &Bound, group: usize, points: &[f64]) -> Vec<Vec<f64>> {
     let schema = bound.problem.scene().schema;
     let (own, inputs) = (&schema.groups[group], schema.coordinates.len());
@@ -106,7 +107,10 @@ fn rows(bound: &Bound, group: usize, points: &[f64]) -> Vec<Vec<f64>> {
         let over = jet.degree.iter().zip(&bound.scaling.half).map(|(&n, half)| half.powi(i32::from(n)));
         bound.head_scale(jet.head) / over.product::<f64>()
     };
-    let jets: Vec<f64> = own.jets.iter().flat_map(|own| std::iter::repeat_n(jet(own), stride)).collect();
+    // Multiples of the golden ratio, without their whole parts.
+    let apart = |number: usize| 1.0 + (number as f64 * 0.618_033_988_749_895).fract();
+    let jets = own.jets.iter().enumerate();
+    let jets: Vec<f64> = jets.flat_map(|(at, own)| std::iter::repeat_n(apart(at) * jet(own), stride)).collect();
     let along = |axis: usize| (0..stride).map(move |p| points[p.min(count - 1) * inputs + axis]);
     let coordinates: Vec<f64> = (0..inputs).flat_map(along).collect();
     let mut scalars = bound.scalars.clone();

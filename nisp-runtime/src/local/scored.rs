@@ -51,7 +51,12 @@ impl Scored {
         let (step, shared) = factor.solve(&self.right, &self.below)?;
         let slope = self.slope - vector::dot(gradient, &step) - vector::dot(below, &shared);
         let square = self.square - vector::dot(&self.right, &step) - vector::dot(&self.below, &shared);
-        if square > OPEN * self.square { Score::by((self.known, by_prior), slope, square) } else { None }
+        // Of a number that only integrals read nothing is said: the border has their squares.
+        if self.square > 0.0 && square > OPEN * self.square {
+            Score::by((self.known, by_prior), slope, square)
+        } else {
+            None
+        }
     }
 }
 

@@ -236,11 +236,12 @@ pub(crate) fn solve(
     }
     let given = solver.given();
     let mut scores = Vec::new();
+    // Noise of a column that a number multiplies makes the number look too large.
     if status == Status::Converged
         && solver.heads.len() <= MANY
         && !given.is_empty()
         && run.has_time_for(1 + given.len())
-        && let Some(best) = place.best()
+        && let Some(best) = place.best().filter(|best| !best.state.blurred)
     {
         scores = solver.scores(KINDS[best.kind], &best.state, &given)?;
     }

@@ -15,10 +15,16 @@ use crate::solve::fault::Fault;
 
 /// Share of a number by which it is changed to see what rows follow it.
 const SMALL: f64 = 1e-4;
+/// Share of what rows say of a number that must be left when the unknowns have taken theirs: below it is rounding.
+const OPEN: f64 = 1e-20;
 
 impl Solver<'_> {
-    /// Given numbers, by their slots. One that is zero has no share to be changed by.
+    /// Given numbers that can be asked about, by their slots. One that is zero has no share to be changed by. Under robust losses rows change
+    /// with their weights, which must not.
     pub(super) fn given(&self) -> Vec<usize> {
+        if self.bound.losses.iter().flatten().any(|loss| loss.is_robust()) {
+            return Vec::new();
+        }
         let scalars = self.bound.problem.scene().schema.scalars.iter().enumerate();
         let given = scalars.filter(|(slot, own)| matches!(own.origin, Origin::Given(_)) && self.scalars[*slot] != 0.0);
         given.map(|(slot, _)| slot).collect()
@@ -57,9 +63,12 @@ impl Solver<'_> {
             let value = if believed(class) { 0.0 } else { row.value };
             triangle.add(Row { shared: &shared, value, ..row });
         }
-        let scores = given.iter().zip(triangle.beside(given.len()));
-        Ok(scores
-            .filter_map(|(&slot, [slope, square])| Score::by((Known::Scalar(slot), false), slope, square))
-            .collect())
+        let wholes = by.iter().map(|by| by.iter().map(|by| by * by).sum::<f64>());
+        let all = given.iter().zip(triangle.beside(given.len())).zip(wholes);
+        let told = all.filter(|((_, [_, square]), whole)| *square > OPEN * whole);
+        let score = |((&slot, [slope, square]), _): ((&usize, [f64; 2]), f64)| {
+            Score::by((Known::Scalar(slot), false), slope, square)
+        };
+        Ok(told.filter_map(score).collect())
     }
 }

@@ -55,10 +55,9 @@ impl<'a> Misfits<'a> {
                 by_differences(&in_order(&places, &values))
             };
             let found: Option<Vec<f64>> = term.columns.iter().map(of).collect();
-            noise = noise.zip(found).map(|(noise, found)| ObservationNoise {
-                deviation: noise.deviation.max(root_mean_square(found)),
-                ..noise
-            });
+            if let (Some(noise), Some(found)) = (&mut noise, found) {
+                noise.deviation = noise.deviation.max(root_mean_square(found));
+            }
         }
         let is_robust = bound.losses[group][at].is_robust();
         let size = if is_robust { middle(&rows) } else { root_mean_square(rows.iter().flatten().copied()) };

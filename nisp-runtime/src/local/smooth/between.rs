@@ -97,7 +97,7 @@ pub(crate) fn others(bound: &Bound) -> Option<(Vec<usize>, Bound)> {
 
 /// Groups that state what fields obey: of those that may have more points the largest that differentiates a field, for each. There is
 /// one for fields that live together, and one for each part of a domain whose fields end where another's begin.
-fn stating(bound: &Bound) -> Vec<usize> {
+pub(super) fn stating(bound: &Bound) -> Vec<usize> {
     let schema = bound.problem.scene().schema;
     let fields = (0..schema.heads.len()).filter(|&head| !schema.heads[head].source);
     let mut groups: Vec<usize> = fields.filter_map(|field| of_most_points(bound, Some(field))).collect();

@@ -7,7 +7,8 @@ use crate::schema::{self, TermKind};
 const AROUND: f64 = 2.0;
 const FEW: usize = 800;
 
-/// A domain, by the points of a group in it and those of conditions on its sides; lengths over its range.
+/// A domain, by the points of a group in it and those of conditions on its sides. Lengths are over the largest range of those that share a scale:
+/// points are even in these, however long and narrow the domain is.
 pub(super) struct Domain {
     low: Vec<f64>,
     widths: Vec<f64>,
@@ -26,19 +27,19 @@ impl Domain {
             values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
         };
         let ranges: Vec<(f64, f64)> = (0..inputs).map(range).collect();
-        let around = AROUND * ((own.len() / inputs).min(FEW) as f64).powf(-(inputs as f64).recip());
+        let width = |axis: usize| (ranges[axis].1 - ranges[axis].0).max(f64::MIN_POSITIVE);
+        let scale = |axis: usize| schema.coordinates[axis].scale_group;
+        let tied = |axis: usize| (0..inputs).filter(move |&other| scale(other) == scale(axis));
+        let widths: Vec<f64> = (0..inputs).map(|axis| tied(axis).map(width).fold(0.0, f64::max)).collect();
+        let volume = (0..inputs).map(|axis| width(axis) / widths[axis]).product::<f64>();
+        let around = AROUND * (volume / (own.len() / inputs).min(FEW) as f64).powf((inputs as f64).recip());
         let is_condition = |at: &usize| {
             let other = &schema.groups[*at];
             let is_residual = |term: &schema::Term| term.kind == TermKind::Residual;
             other.order < schema.groups[group].order && other.terms.iter().all(is_residual)
         };
         let conditions = (0..schema.groups.len()).filter(is_condition).flat_map(|at| &bound.coordinates[at]);
-        let mut domain = Self {
-            low: ranges.iter().map(|range| range.0).collect(),
-            widths: ranges.iter().map(|(low, high)| (high - low).max(f64::MIN_POSITIVE)).collect(),
-            points: Vec::new(),
-            around,
-        };
+        let mut domain = Self { low: ranges.iter().map(|range| range.0).collect(), widths, points: Vec::new(), around };
         let all: Vec<f64> = own.iter().chain(conditions).copied().collect();
         domain.points = all.chunks_exact(inputs).flat_map(|point| domain.scaled(point)).collect();
         domain

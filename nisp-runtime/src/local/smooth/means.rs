@@ -7,6 +7,7 @@ use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
+use super::between::stating;
 use super::domain::Domain;
 use crate::abrupt;
 use crate::local::heads::Heads;
@@ -25,8 +26,24 @@ const GAUSS: [(f64, f64); 3] =
 /// Where the equations of a problem jump, by group, flat; nothing of others.
 pub(super) fn jumps(bound: &Bound) -> Vec<Vec<f64>> {
     let schema = bound.problem.scene().schema;
-    let of = |(at, group)| if is_equation(schema, group) { abrupt::jumps(bound, at) } else { Vec::new() };
+    let stating = stating(bound);
+    let is_asked = |(at, group): &(usize, &schema::Group)| stating.contains(at) && is_equation(schema, group);
+    let of = |own: (usize, &schema::Group)| {
+        if is_asked(&own) && is_of_the_whole(bound, own.0) { abrupt::jumps(bound, own.0) } else { Vec::new() }
+    };
     schema.groups.iter().enumerate().map(of).collect()
+}
+
+/// Whether a group has points along most of every coordinate: a condition on a wall or at the start has not.
+fn is_of_the_whole(bound: &Bound, group: usize) -> bool {
+    let inputs = bound.problem.scene().schema.coordinates.len();
+    let range = |points: &[Vec<f64>], axis: usize| {
+        let values = points.iter().flat_map(|points| points.iter().skip(axis).step_by(inputs));
+        let ends = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+        ends.1 - ends.0
+    };
+    let own = &bound.coordinates[group..=group];
+    (0..inputs).all(|axis| range(own, axis) > 0.5 * range(&bound.coordinates, axis))
 }
 
 /// Whether a head is differentiated in an equation that jumps.
@@ -67,8 +84,12 @@ pub(super) fn with_means(
     let mut random = StdRng::seed_from_u64(seed);
     let Some(lattice) = heads.lattices.iter().max_by_key(|lattice| lattice.dimensions()) else { return (with, means) };
     for at in (0..jumps.len()).filter(|&at| !jumps[at].is_empty()) {
-        let with = with.get_or_insert_with(|| bound.clone());
-        (with.coordinates[at], means[at]) = points(lattice, (within, at), &jumps[at], &mut random);
+        let (points, own) = points(lattice, (within, at), &jumps[at], &mut random);
+        // Where none of them is known to be in the domain, it is asked for at its own.
+        if !points.is_empty() {
+            with.get_or_insert_with(|| bound.clone()).coordinates[at] = points;
+            means[at] = own;
+        }
     }
     (with, means)
 }

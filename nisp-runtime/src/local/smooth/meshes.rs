@@ -65,9 +65,10 @@ pub(super) fn lattices(
     let points = if is_measured { points } else { points.min(most) };
     let to_unknown = if is_measured || inputs > 2 { POINTS } else { DENSE };
     let functions = |lattice: &Lattice| lattice.cells.iter().map(|n| (n + highest) as f64).product::<f64>();
-    let meshes = (1..=MOST_CELLS).map(|cells| base(bound, &proportions.cells(cells), 0));
+    let tests = if jumps.iter().any(|own| !own.is_empty()) { TESTS } else { 0 };
+    let meshes = (1..=MOST_CELLS).map(|cells| base(bound, &proportions.cells(cells), tests));
     let resolved = |mesh: &Lattice| to_unknown * functions(mesh) <= points as f64;
-    let base = meshes.take_while(resolved).last().unwrap_or_else(|| self::base(bound, &proportions.cells(1), 0));
+    let base = meshes.take_while(resolved).last().unwrap_or_else(|| self::base(bound, &proportions.cells(1), tests));
     let lattice = |head: usize| {
         let mut lattice = base.refined(degrees[head], 1).along(schema.axes(head));
         let seen =

@@ -283,7 +283,9 @@ impl<'a> Solver<'a> {
             for term in group.schema.terms {
                 let rows = term.first..term.first + term.rows;
                 let sizes = self.sizes[at][rows.clone()].iter_mut().zip(&found[rows]);
-                let summed = if term.kind == TermKind::Integral { group.measure() } else { 1.0 };
+                // What is declared is of the sum.
+                let is_sum = term.kind == TermKind::Integral && term.within.is_none();
+                let summed = if is_sum { group.measure() } else { 1.0 };
                 sizes.for_each(|(size, found)| *size = summed * found / term.weight.sqrt());
             }
         }
