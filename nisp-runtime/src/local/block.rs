@@ -104,7 +104,10 @@ impl Block {
     pub(super) fn after(&self, row: usize, step: &[f64], shared: &[f64]) -> f64 {
         let slopes = &self.slopes[row * self.dofs.len()..];
         let along: f64 = self.kept().map(|(at, dof)| slopes[at] * step[dof as usize]).sum();
-        let beside: f64 = self.by_learned[row * shared.len()..].iter().zip(shared).map(|(a, x)| a * x).sum();
+        // Behind the learned scalars are unknowns that no row of a block sees.
+        let learned = self.by_learned.len() / self.misfits.len();
+        let own = &self.by_learned[row * learned..][..learned];
+        let beside: f64 = own.iter().zip(shared).map(|(a, x)| a * x).sum();
         self.misfits[row] + along + beside
     }
 
@@ -122,7 +125,8 @@ impl Block {
         let sign = if negative { -1.0 } else { 1.0 };
         let slopes = &self.slopes[row * self.dofs.len()..];
         self.kept().for_each(|(at, dof)| by[dof as usize] += sign * slopes[at]);
-        let by_learned = &self.by_learned[row * below.len()..];
+        let learned = self.by_learned.len() / self.misfits.len();
+        let by_learned = &self.by_learned[row * learned..][..learned];
         below.iter_mut().zip(by_learned).for_each(|(sum, slope)| *sum += sign * slope);
     }
 

@@ -2,6 +2,7 @@
 
 use super::build;
 use super::elaborate::Elaborator;
+use super::jumps;
 use super::scope::Meaning;
 use super::value::{Dim, Extent, Reads, Scalar, Value};
 use crate::error::{Checked, Place, catalogue};
@@ -19,6 +20,9 @@ impl Elaborator<'_> {
         }
         if value.reads().any(Reads::PARTNER) {
             return Err(self.errors.report(place, catalogue::derivative_of_partner()));
+        }
+        if value.entries.iter().any(|entry| jumps::jumps(&entry.expr, coordinate)) {
+            self.warnings.push((catalogue::derivative_of_jump(), place.start));
         }
         let by = self.dim(&self.coordinates[coordinate].unit.dimension);
         let dim = value.dim.combine(&by, Dimension::over);

@@ -28,6 +28,7 @@ mod constant;
 mod declare;
 mod differentiate;
 mod elaborate;
+mod jumps;
 mod lint;
 mod lint_scene;
 mod orders;

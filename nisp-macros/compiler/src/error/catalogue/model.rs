@@ -136,6 +136,13 @@ pub(crate) fn derivative_is_zero(text: &str) -> String {
     format!("this derivative is zero: `{}` does not depend on the coordinates", shorten(text))
 }
 
+pub(crate) fn derivative_of_jump() -> String {
+    help(
+        "what jumps is differentiated: its derivative is taken to be zero there, and the jump's own part is left out",
+        "for two materials declare two fields, and say at their interface what goes on across it",
+    )
+}
+
 pub(crate) fn order_too_high(order: u32, limit: u32) -> String {
     help(
         format!("this is a derivative of order {order}; the highest is {limit}"),
