@@ -12,14 +12,14 @@ nisp::pde! {
         sources: q;
         parameters: tension = 1, weight = 1, area = 1;
         on span {
-            balance: tension * bend == -q;
+            balance: tension * d(w, x, 2) == -q;
             curve: bend == d(w, x, 2);
             whole: integral(q) == weight;
             under: integral(w) == area;
         }
         on posts { held: w == 0; }
         on probes { observe w; }
-        scene stiffness { only span.balance, span.curve, span.whole, posts, probes; learn tension; }
+        scene stiffness { only span.balance, span.whole, posts, probes; learn tension; }
         scene volume { only span.balance, span.curve, span.under, posts, probes; }
     }
 }
