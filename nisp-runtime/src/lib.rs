@@ -15,6 +15,7 @@ pub mod engine;
 mod facts;
 pub mod functions;
 pub mod gemm;
+mod given;
 pub mod kernel;
 pub mod layer;
 pub mod local;

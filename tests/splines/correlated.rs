@@ -3,6 +3,7 @@
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Carrier, Problem, Solution, recover, resume, scene};
 
+use crate::steps::swing;
 use crate::{normals, of, settings, simulated, solve};
 
 nisp::pde! {
@@ -14,18 +15,6 @@ nisp::pde! {
         sources: f;
         on motion { level: 2 * d(h, t) == f - h; }
         on samples { observe h; }
-    }
-}
-
-nisp::pde! {
-    /// A mass on a spring, moved by what nobody measures.
-    mod swing {
-        units: off;
-        coordinates: t;
-        fields: x;
-        sources: f;
-        on motion { balance: 1.5 * d(x, t, 2) + 0.8 * d(x, t) + 4 * x == f; }
-        on samples { observe x; }
     }
 }
 
@@ -89,7 +78,7 @@ fn noise_that_rows_share_is_not_followed() {
             let vessel = with(Problem::new(scene::<vessel::all::Scene>()), levels(), &noise);
             let (off, [two, four]) = missed(&mut solve(&vessel, Carrier::Splines));
             assert!(off < 0.06 && two < 0.15 && four < 0.01, "vessel {seed} {shared}: {off} {two} {four}");
-            let swing = with(Problem::new(scene::<swing::all::Scene>()), places(), &noise);
+            let swing = with(Problem::new(scene::<swing::loaded::Scene>()), places(), &noise);
             let (_, [two, four]) = missed(&mut solve(&swing, Carrier::Splines));
             assert!(two < 0.15 && four < 0.01, "swing {seed} {shared}: {two} {four}");
         }

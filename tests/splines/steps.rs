@@ -34,7 +34,7 @@ nisp::pde! {
 
 nisp::pde! {
     /// A mass on a spring, moved by what nobody measures.
-    mod swing {
+    pub mod swing {
         units: off;
         coordinates: t;
         fields: x;

@@ -10,8 +10,6 @@ use super::normal::factor::Factor;
 use crate::facts::{Known, Score};
 use crate::solve::vector;
 
-/// Share of a number by which it is changed to see what rows follow it.
-pub(super) const SMALL: f64 = 1e-4;
 /// Share of what rows say of a number that must be left when the unknowns have taken theirs: below it is rounding.
 const OPEN: f64 = 1e-9;
 
@@ -24,11 +22,6 @@ pub(super) struct Scored {
     /// `b.r` and `b.b`.
     slope: f64,
     square: f64,
-}
-
-/// A derivative by a number from what is found with more and with less of it.
-pub(super) fn slope((more, less): (f64, f64)) -> f64 {
-    (more - less) / (2.0 * SMALL)
 }
 
 impl Scored {

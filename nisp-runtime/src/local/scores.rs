@@ -7,11 +7,11 @@ use super::course::End;
 use super::normal::factor::Factor;
 use super::phase::Phase;
 use super::place::State;
-use super::scored::{SMALL, Scored, slope};
+use super::scored::Scored;
 use super::solver::Solver;
 use super::surface::Surface;
 use crate::facts::{Known, Score};
-use crate::schema::Origin;
+use crate::given::{SMALL, given, slope};
 
 impl Solver {
     /// Scores of all that is [known](Solver::known), from the last step's equations if they are those of the answer; none where the matrix
@@ -52,10 +52,7 @@ impl Solver {
     /// What the problem takes for known: given numbers, and the place, the direction and the size of every cloud that has a
     /// frame of its own.
     pub(super) fn known(&self) -> Vec<Known> {
-        let scalars = self.bound.problem.scene().schema.scalars.iter().enumerate();
-        let given =
-            scalars.filter(|(slot, scalar)| matches!(scalar.origin, Origin::Given(_)) && self.scalars[*slot] != 0.0);
-        let given = given.map(|(slot, _)| Known::Scalar(slot));
+        let given = given(self.bound.problem.scene().schema, &self.scalars).into_iter().map(Known::Scalar);
         let clouds = 0..self.surfaces.len();
         let moved = clouds.flat_map(|cloud| {
             let axes = (0..3).flat_map(move |axis| [Known::Place { cloud, axis }, Known::Direction { cloud, axis }]);

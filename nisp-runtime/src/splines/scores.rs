@@ -10,24 +10,19 @@ use super::rows::{Counted, Rows};
 use super::solver::Solver;
 use super::triangle::{Row, Triangle};
 use crate::facts::{Known, Score};
-use crate::schema::Origin;
+use crate::given::{SMALL, given, slope};
 use crate::solve::fault::Fault;
 
-/// Share of a number by which it is changed to see what rows follow it.
-const SMALL: f64 = 1e-4;
 /// Share of what rows say of a number that must be left when the unknowns have taken theirs: below it is rounding.
 const OPEN: f64 = 1e-20;
 
 impl Solver<'_> {
-    /// Given numbers that can be asked about, by their slots. One that is zero has no share to be changed by. Under robust losses rows change
-    /// with their weights, which must not.
+    /// Given numbers that can be asked about, by their slots. Under robust losses rows change with their weights, which must not.
     pub(super) fn given(&self) -> Vec<usize> {
         if self.bound.losses.iter().flatten().any(|loss| loss.is_robust()) {
             return Vec::new();
         }
-        let scalars = self.bound.problem.scene().schema.scalars.iter().enumerate();
-        let given = scalars.filter(|(slot, own)| matches!(own.origin, Origin::Given(_)) && self.scalars[*slot] != 0.0);
-        given.map(|(slot, _)| slot).collect()
+        given(self.bound.problem.scene().schema, &self.scalars)
     }
 
     /// Scores of given numbers about an end.
@@ -47,7 +42,6 @@ impl Solver<'_> {
                 found.map(|(rows, _)| rows.values())
             };
             let (more, less) = (values(SMALL)?, values(-SMALL)?);
-            let slope = |(more, less): (f64, f64)| (more - less) / (2.0 * SMALL);
             by.push(more.into_iter().zip(less).map(slope).collect::<Vec<f64>>());
         }
         let believed = |class: usize| {

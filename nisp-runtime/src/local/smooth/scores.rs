@@ -11,10 +11,10 @@ use super::solver::Solver;
 use super::state::{Phase, State};
 use super::step::{Asked, Rows};
 use crate::facts::{Known, LARGER, Score};
+use crate::given::{SMALL, given, slope};
 use crate::local::block::Block;
 use crate::local::rows::Evaluated;
-use crate::local::scored::{SMALL, Scored, add, slope};
-use crate::schema::Origin;
+use crate::local::scored::{Scored, add};
 
 /// Steps that scores take, about, and those of a few numbers more.
 const STEPS: f64 = 2.0;
@@ -23,9 +23,7 @@ const EACH: f64 = 0.3;
 impl Solver<'_> {
     /// Scores of given numbers about an end; none where steps of so many seconds leave no time for them.
     pub(super) fn scores(&mut self, end: &State, clock: &Clock, seconds: f64) -> Vec<Score> {
-        let scalars = self.schema().scalars.iter().enumerate();
-        let given = scalars.filter(|(slot, own)| matches!(own.origin, Origin::Given(_)) && self.scalars[*slot] != 0.0);
-        let known: Vec<usize> = given.map(|(slot, _)| slot).collect();
+        let known = given(self.schema(), &self.scalars);
         let has_time = clock.has_time((STEPS + EACH * known.len() as f64) * seconds);
         if known.is_empty() || !self.is_measured() || !has_time {
             return Vec::new();
