@@ -1,8 +1,8 @@
 //! Which observations may have noise that neighbouring rows share.
 //!
-//! Equations and observations together are no more than fields and sources: some source follows whatever the data show. Of more, as of two
-//! sensors or of a stop that pushes only where it is met, or beside a source that may not be negative, what is left may be an equation that is
-//! wrong, and is judged as such.
+//! Only where equations and observations together are no more than fields and sources: there some source follows whatever the data show. Where
+//! they are more (two sensors, a stop that pushes only where it is met), or where a source may not be negative, what is left may come of a wrong
+//! equation, and is judged as that.
 
 use super::cells::MANY;
 use crate::problem::Bound;

@@ -3,7 +3,7 @@
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
-/// How far points around may be, over the mean distance between those of an equation that has hardly any.
+/// How far a neighbour may be, over the mean distance of the points; and how many points at most that distance is taken from.
 const AROUND: f64 = 2.0;
 const FEW: usize = 800;
 

@@ -16,7 +16,7 @@ use crate::local::block::Block;
 use crate::local::rows::Evaluated;
 use crate::local::scored::{Scored, add};
 
-/// Steps that scores take, about, and those of a few numbers more.
+/// Steps that all scores take, about, and that each number adds.
 const STEPS: f64 = 2.0;
 const EACH: f64 = 0.3;
 
