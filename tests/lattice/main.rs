@@ -3,6 +3,7 @@
 
 mod across;
 mod bounded;
+mod clashes;
 mod clouds;
 mod edges;
 mod given;

@@ -100,6 +100,15 @@ impl Warning {
         Self { kind: WarningKind::SharedNoise, message }
     }
 
+    /// Conditions of groups that contradict each other where they meet.
+    pub(crate) fn clash(groups: &str) -> Self {
+        let message = format!(
+            "conditions of {groups} contradict each other where they meet, as where a wall is suddenly heated: near there they and the \
+             equations hold in the mean over cells"
+        );
+        Self { kind: WarningKind::Clash, message }
+    }
+
     /// A head that comes in as a square does: either sign fits.
     pub(crate) fn open_sign(name: &str) -> Self {
         let message = format!(
@@ -133,6 +142,8 @@ pub enum WarningKind {
     NoBars,
     /// Noise that neighbouring rows of an observation share.
     SharedNoise,
+    /// Conditions that contradict each other where they meet.
+    Clash,
     /// A direction of the answer that neither equations nor data determine.
     Undetermined,
     /// A condition that the answer rests on: the data alone would leave a direction open.

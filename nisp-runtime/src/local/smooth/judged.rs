@@ -1,6 +1,7 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
 use super::belief::BorneOut;
+use super::means::Asked;
 use super::solver::{Others, Solver, groups};
 use super::state::{Phase, State};
 use super::{edges, short};
@@ -113,8 +114,12 @@ impl Solver<'_> {
             let equations = group.schema.terms.iter().filter(is_equation);
             equations.flat_map(|term| term.first..term.first + term.rows).map(of_row).fold(0.0, f64::max)
         };
-        let asked = self.groups.iter().map(|group| left(group, &|row| TENSE * group.sigma[row]));
         let share = if noise.is_there(self.schema()) { BETWEEN } else { EXACT };
+        let asked = self.groups.iter().enumerate().map(|(at, group)| match self.asked[at] {
+            // Cells meet conditions that contradict each other as closely as they can.
+            Asked::InMean => left(group, &|row| share * self.sizes[at][row]),
+            _ => left(group, &|row| TENSE * group.sigma[row]),
+        });
         let of_others = |(of, (bound, means)): &Others| {
             let groups = groups(bound, &self.heads, means);
             let left = of.iter().map(|&at| left(&groups[at], &|row| share * self.sizes[at][row]));

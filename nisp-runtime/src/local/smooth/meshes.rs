@@ -1,6 +1,6 @@
 //! Which lattices carry fields and smooth sources, and which of their coefficients meet in a row.
 
-use super::means::{TESTS, is_abrupt};
+use super::means::{Asked, TESTS, is_in_means};
 use super::proportions::Proportions;
 use crate::local::heads::Heads;
 use crate::local::lattice::{Lattice, NONE, Place};
@@ -42,16 +42,16 @@ pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
 
 /// The lattices of all heads, over cells as fine as the points of the equations can tell; and how many cells these are along
 /// every coordinate in the given proportions. Where nothing is measured cells are no finer than `most` points can tell: coarser ones come first.
-/// Fields whose equations jump have splines of the least degree that these leave hats of.
+/// Fields whose equations are asked in the mean have splines of the least degree that these leave hats of.
 pub(super) fn lattices(
     bound: &Bound,
     proportions: &Proportions,
     most: usize,
-    jumps: &[Vec<f64>],
+    asked: &[Asked],
 ) -> (Vec<Lattice>, Vec<usize>) {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
-    let degree = |head: usize| match is_abrupt(schema, jumps, head) {
+    let degree = |head: usize| match is_in_means(schema, asked, head) {
         true => Some(order(schema, head) + TESTS),
         false => degree(schema, head),
     };
@@ -65,7 +65,7 @@ pub(super) fn lattices(
     let points = if is_measured { points } else { points.min(most) };
     let to_unknown = if is_measured || inputs > 2 { POINTS } else { DENSE };
     let functions = |lattice: &Lattice| lattice.cells.iter().map(|n| (n + highest) as f64).product::<f64>();
-    let tests = if jumps.iter().any(|own| !own.is_empty()) { TESTS } else { 0 };
+    let tests = if asked.iter().any(|own| !matches!(own, Asked::AtPoints)) { TESTS } else { 0 };
     let meshes = (1..=MOST_CELLS).map(|cells| base(bound, &proportions.cells(cells), tests));
     let resolved = |mesh: &Lattice| to_unknown * functions(mesh) <= points as f64;
     let base = meshes.take_while(resolved).last().unwrap_or_else(|| self::base(bound, &proportions.cells(1), tests));

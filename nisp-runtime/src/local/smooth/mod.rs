@@ -8,6 +8,7 @@ mod belief;
 mod between;
 mod bounded;
 mod changes;
+mod clashes;
 mod crossings;
 mod domain;
 mod edges;
@@ -23,6 +24,7 @@ mod proportions;
 mod run;
 mod sampled;
 mod scores;
+mod shares;
 mod short;
 mod solver;
 mod starts;
@@ -260,6 +262,7 @@ fn finish(
     }
     let heads = schema.heads.iter().enumerate();
     warnings.extend(heads.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
+    warnings.extend(solver.clashes.warning(schema));
     let scores = if is_minimum { solver.scores(&state, clock, longest) } else { Vec::new() };
     if !solver.is_measured() {
         // What finer cells hardly change is as good as resolved.

@@ -3,8 +3,9 @@
 use std::borrow::Cow;
 
 use super::between::{ASKED, OTHERS, enough, filled, others, thinned};
+use super::clashes::Clashes;
 use super::freedom::{Freedom, Unmeasured};
-use super::means::{Means, TESTS, jumps, with_means};
+use super::means::{Asked, Means, TESTS, asked, with_means};
 use super::meshes::{across_pairs, lattices, together};
 use super::prior::Prior;
 use super::proportions::Proportions;
@@ -46,8 +47,10 @@ pub(super) struct Solver<'a> {
     pub(super) lacks: bool,
     /// Groups of equations at other places than they are asked at, and their numbers.
     pub(super) others: Option<Others>,
-    /// By group, where its equation jumps.
-    pub(super) jumps: Vec<Vec<f64>>,
+    /// By group, how it is asked.
+    pub(super) asked: Vec<Asked>,
+    /// Where conditions contradict each other.
+    pub(super) clashes: Clashes,
     pub(super) heads: Heads,
     pub(super) groups: Vec<Group>,
     pub(super) surfaces: Vec<Surface>,
@@ -105,18 +108,18 @@ impl<'a> Solver<'a> {
         let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
         let enough = enough(points, is_noisy);
         let few = thinned(&bound, enough);
-        let jumps = jumps(problem);
-        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points, &jumps);
+        let (asked, clashes) = asked(problem);
+        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points, &asked);
         let few = most.map_or(few, |most| thinned(&bound, most));
         let lacks = few.is_some() && is_noisy;
         let bound = few.map_or(bound, Cow::Owned);
         let schema = bound.problem.scene().schema;
         let heads = Heads::new(&bound, lattices);
         let others = others(&bound).map(|(of, others)| {
-            let (with, means) = with_means((&others, &bound), &heads, &jumps, OTHERS);
+            let (with, means) = with_means((&others, &bound), &heads, &asked, OTHERS);
             (of, (with.unwrap_or(others), means))
         });
-        let (with, means) = with_means((&bound, &bound), &heads, &jumps, ASKED);
+        let (with, means) = with_means((&bound, &bound), &heads, &asked, ASKED);
         let bound = with.map_or(bound, Cow::Owned);
         let groups = groups(&bound, &heads, &means);
         let cell = heads.lattices.iter().flat_map(|own| (0..own.dimensions()).map(|axis| own.spacing(axis)));
@@ -139,7 +142,8 @@ impl<'a> Solver<'a> {
         let scalars = bound.scalars.clone();
         Ok(Self {
             others,
-            jumps,
+            asked,
+            clashes,
             bound,
             most: most.unwrap_or(enough),
             lacks,
@@ -159,7 +163,7 @@ impl<'a> Solver<'a> {
 
     /// Judges the answer at all points of a problem.
     pub(super) fn judge_at(&mut self, bound: &Bound) {
-        let (with, means) = with_means((bound, bound), &self.heads, &self.jumps, ASKED);
+        let (with, means) = with_means((bound, bound), &self.heads, &self.asked, ASKED);
         self.groups = groups(with.as_ref().unwrap_or(bound), &self.heads, &means);
     }
 
