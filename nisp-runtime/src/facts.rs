@@ -2,6 +2,7 @@
 
 use nalgebra::Vector3;
 
+use crate::noise::SharedNoise;
 use crate::residual::Points;
 use crate::residual::Programs;
 use crate::schema;
@@ -284,9 +285,8 @@ pub(crate) struct Answer {
     pub(crate) moved: Option<f64>,
     /// How far the cells hold the answer back, over what may be, where the budget ended before finer ones were tried.
     pub(crate) strain: Option<f64>,
-    /// By group and term, the length over which the noise that neighbouring rows share dies away; nothing where each has its own. Empty where
-    /// the carrier knows no such noise.
-    pub(crate) shared_over: Vec<Vec<Option<f64>>>,
+    /// By group and term, the noise that neighbouring rows share; nothing where each has its own. Empty where the carrier knows no such noise.
+    pub(crate) shared: Vec<Vec<Option<SharedNoise>>>,
     /// How much the last finer lattice has changed an answer without noise, as a share; nothing where there was none.
     pub(crate) refined: Option<f64>,
     /// Share of the measurements that the answer was made from.
@@ -296,9 +296,9 @@ pub(crate) struct Answer {
 }
 
 impl Answer {
-    /// The length over which an observation's noise dies away, where neighbouring rows share it.
-    pub(crate) fn shared_over(&self, group: usize, term: usize) -> Option<f64> {
-        *self.shared_over.get(group)?.get(term)?
+    /// The noise that neighbouring rows of an observation share.
+    pub(crate) fn shared(&self, group: usize, term: usize) -> Option<SharedNoise> {
+        *self.shared.get(group)?.get(term)?
     }
 }
 

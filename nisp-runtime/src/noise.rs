@@ -9,7 +9,7 @@ use rayon::prelude::*;
 
 pub(crate) use self::differences::{EIGHT, by_differences, differences, of_differences};
 pub(crate) use self::given::of_given;
-pub(crate) use self::shared::{beside_those_before, shared, spacing};
+pub(crate) use self::shared::{Alike, Expected, SharedNoise, beside_those_before, spacing};
 
 use self::fits::{FEW_CLEAN, HALF, by_fits, quantile};
 use crate::facts::spread;

@@ -85,6 +85,37 @@ fn noise_that_rows_share_is_not_followed() {
     }
 }
 
+/// Noise through two equal low-pass filters of first order, one after the other, as a controlled amplifier smooths it.
+fn filtered(seed: u64, deviation: f64) -> Vec<f64> {
+    let mut normal = normals(seed);
+    let (mut first, mut second) = (0.0, 0.0);
+    let mut next = |_| {
+        first += 0.3 * (normal() - first);
+        second += 0.3 * (first - second);
+        second
+    };
+    let all: Vec<f64> = (0..ROWS + 50).map(&mut next).collect();
+    let own = &all[50..];
+    let size = (own.iter().map(|x| x * x).sum::<f64>() / ROWS as f64).sqrt();
+    own.iter().map(|x| deviation / size * x).collect()
+}
+
+/// What a filter leaves of noise looks like a source, which nothing but the smoothness of what is left betrays.
+#[test]
+fn rows_that_were_filtered_are_doubted() {
+    for seed in 1..4 {
+        let noise = filtered(seed, 0.05);
+        let vessel = with(Problem::new(scene::<vessel::all::Scene>()), levels(), &noise);
+        let swing = with(Problem::new(scene::<swing::loaded::Scene>()), places(), &noise);
+        for problem in [vessel, swing] {
+            let solution = solve(&problem, Carrier::Splines);
+            let failed: Vec<&str> = solution.verdict.failed().map(|check| check.check).collect();
+            assert_eq!(solution.status, Status::Inconsistent, "{seed}");
+            assert!(failed.contains(&"filtered"), "{seed}: {failed:?}");
+        }
+    }
+}
+
 /// The steps are tried again with noise that rows share. Wherever they are stopped, they go on with the same bits.
 #[test]
 fn a_run_is_resumed_while_noise_may_be_shared() {

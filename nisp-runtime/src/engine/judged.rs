@@ -33,7 +33,7 @@ impl Engine<f64> {
             ahead: None,
             moved: None,
             strain: None,
-            shared_over: Vec::new(),
+            shared: Vec::new(),
             used: 1.0,
             refined: None,
             finer: "more --budget, more --width or another --seed",

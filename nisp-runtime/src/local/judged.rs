@@ -24,7 +24,7 @@ impl Solver {
             ahead: None,
             moved: None,
             strain: None,
-            shared_over: Vec::new(),
+            shared: Vec::new(),
             used: 1.0,
             refined: None,
             finer: OTHER_THAN_SPLINES,

@@ -65,9 +65,9 @@ impl Solver<'_> {
                 if is_unmeasured || self.left_out == Some(self.classes[at][number]) {
                     continue;
                 }
-                if let Some(length) = self.length_of(state, (at, number)) {
+                if let Some(noise) = self.shared(state, (at, number)) {
                     let mut take = |row: Row<'_>| rows.push(row, self.classes[at][number]);
-                    cost += self.chained(state, (at, number), (length, &slopes), &mut take)?;
+                    cost += self.chained(state, (at, number), (noise, &slopes), &mut take)?;
                     continue;
                 }
                 let loss = self.loss_of(state, (at, number));
@@ -201,8 +201,8 @@ impl Solver<'_> {
                 if !self.takes_part(at, term, phase) {
                     continue;
                 }
-                if let Some(length) = self.length_of(state, (at, number)) {
-                    sum += self.chained_loss(state, (at, number), length);
+                if let Some(noise) = self.shared(state, (at, number)) {
+                    sum += self.chained_loss(state, (at, number), noise);
                     continue;
                 }
                 let loss = self.loss_of(state, (at, number));

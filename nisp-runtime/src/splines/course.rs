@@ -90,25 +90,34 @@ impl Run<'_> {
         place: &mut Place,
         save: &dyn Fn(&Place) -> state::State,
     ) -> Result<Flow, Fault> {
-        if !place.is_correlated && self.has_time_for(2) {
-            place.is_correlated = true;
-            if let Some(state) = solver.correlated(noise, place)? {
+        if place.shared == 0 && self.has_time_for(2) {
+            place.shared = 1;
+            if let Some(state) = solver.sharing(noise, place)? {
                 place.again(state, kinds);
-                let ended = self.go(solver, place, save)?;
-                if ended == Status::Interrupted {
+                if self.go(solver, place, save)? == Status::Interrupted {
+                    return Ok(Flow::Stop);
+                }
+                place.kinds.clear();
+            }
+        }
+        if place.shared == 1 && self.has_time_for(2) {
+            place.shared = 2;
+            if let Some(rough) = place.shares_noise().cloned() {
+                place.go_on(&rough, solver.smooth(&rough.state));
+                if self.go(solver, place, save)? == Status::Interrupted {
                     return Ok(Flow::Stop);
                 }
                 place.kinds.clear();
             }
         }
         // A run that went on from a saved state may have come from there.
-        if let Some(best) = place.best().filter(|best| best.state.correlated).cloned()
-            && place.has_both()
-            && solver.leaves_rhythm(&best.state)
-        {
-            place.tried.retain(|tried| !tried.state.correlated);
+        while let Some(alike) = place.likeliest_sharing() {
+            let likeliest = place.best_of(Some(alike)).cloned();
+            if !likeliest.is_some_and(|best| solver.leaves_rhythm(&best.state)) || !place.leave_out(alike) {
+                break;
+            }
         }
-        place.choose_correlated();
+        place.choose_sharing();
         Ok(Flow::Continue)
     }
 

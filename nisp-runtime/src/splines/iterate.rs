@@ -1,8 +1,12 @@
 //! An iterate, and that as plain numbers.
 
+use crate::noise::Alike;
 use crate::solve::fault::Fault;
 use crate::solve::state;
 use crate::weighed::{Class, restore_classes, save_classes};
+
+/// Kinds of noise that rows may share, by their numbers in saved states.
+const SHARING: [Alike; 2] = [Alike::Rough, Alike::Smooth];
 
 /// An iterate.
 #[derive(Clone, Debug)]
@@ -18,8 +22,8 @@ pub(super) struct State {
     pub(super) doubt: f64,
     /// Whether equations may be missed by as much as the noise of their columns puts them off.
     pub(super) blurred: bool,
-    /// Whether neighbouring rows of an observation may share noise.
-    pub(super) correlated: bool,
+    /// How the noise that neighbouring rows of an observation share changes; nothing where each row has its own.
+    pub(super) sharing: Option<Alike>,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
@@ -45,8 +49,8 @@ impl State {
     }
 
     /// Which of the assumptions that are tried beside kinds of smoothness hold.
-    pub(super) fn sort(&self) -> (bool, bool) {
-        (self.blurred, self.correlated)
+    pub(super) fn sort(&self) -> (bool, Option<Alike>) {
+        (self.blurred, self.sharing)
     }
 
     pub(super) fn save(&self, saved: state::State, prefix: &str) -> state::State {
@@ -58,7 +62,7 @@ impl State {
             .with(&format!("{prefix}doubt"), &[self.doubt])
             .with(&format!("{prefix}tolerance"), &[self.tolerance])
             .with_counter(&format!("{prefix}blurred"), u64::from(self.blurred))
-            .with_counter(&format!("{prefix}correlated"), u64::from(self.correlated))
+            .with_counter(&format!("{prefix}sharing"), self.sharing.map_or(0, |own| 1 + own as u64))
             .with_counter(&format!("{prefix}convex"), u64::from(self.convex))
             .with_counter(&format!("{prefix}held"), u64::from(self.held))
             .with_counter(&format!("{prefix}step"), self.step)
@@ -74,7 +78,10 @@ impl State {
         [self.doubt] = saved.scalars(&format!("{prefix}doubt"))?;
         [self.tolerance] = saved.scalars(&format!("{prefix}tolerance"))?;
         self.blurred = saved.counter(&format!("{prefix}blurred"))? == 1;
-        self.correlated = saved.counter(&format!("{prefix}correlated"))? == 1;
+        self.sharing = match saved.counter(&format!("{prefix}sharing"))? {
+            0 => None,
+            number => Some(*SHARING.get(number as usize - 1).ok_or_else(|| Fault::state("sharing"))?),
+        };
         self.convex = saved.counter(&format!("{prefix}convex"))? == 1;
         self.held = saved.counter(&format!("{prefix}held"))? == 1;
         self.step = saved.counter(&format!("{prefix}step"))?;

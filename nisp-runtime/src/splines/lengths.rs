@@ -6,12 +6,12 @@
 
 use super::correlated::Link;
 use super::iterate::{Phase, State};
-use super::place::Place;
+use super::place::{Place, Tried};
 use super::prior::KINDS;
 use super::solver::Solver;
 use super::triangle::Row;
 use super::triangle::covariance::Covariance;
-use crate::noise::{Noise, ObservationNoise, beside_those_before, spacing};
+use crate::noise::{Alike, Noise, ObservationNoise, SharedNoise, beside_those_before, spacing};
 use crate::rhythm::{FAINT, rhythm};
 use crate::solve::driver::Warning;
 use crate::solve::fault::Fault;
@@ -25,6 +25,8 @@ const LEAST: f64 = 0.1;
 const LONGER: f64 = 1.5;
 /// Longest length, as a share of the record.
 const LONGEST: f64 = 0.25;
+/// Length of smooth noise over that of a walk which is as alike at half of its size.
+const SMOOTHER: f64 = 1.4;
 /// Correlation of neighbouring rows at which it is asked whether the evidence grows with it.
 const SLIGHT: f64 = 0.02;
 /// Change of the logarithm of a length over which the slope of the evidence is taken, and the farthest step of it.
@@ -51,24 +53,37 @@ impl Solver<'_> {
     /// The slope of the logarithm of the evidence by the logarithm of a term's length, about an iterate with its covariance, and what is
     /// known of that logarithm where the noise is seen as it is (the inverse of its variance).
     fn slope(&mut self, state: &State, at: (usize, usize), covariance: &Covariance) -> Result<(f64, f64), Fault> {
-        let Some(class) = self.lengths[at.0][at.1] else { return Ok((0.0, 0.0)) };
+        let (Some(class), Some(shared)) = (self.lengths[at.0][at.1], self.shared(state, at)) else {
+            return Ok((0.0, 0.0));
+        };
         let slopes = self.set_learned(&state.learned);
-        let length = state.classes[class].size;
-        let worth = |length: f64| {
+        let longer = SharedNoise { length: shared.length * STEP.exp(), ..shared };
+        let worth = |noise: SharedNoise| {
             let mut other = state.clone();
-            other.classes[class].size = length;
+            other.classes[class].size = noise.length;
             let mut used = 0.0;
             let mut count = |row: Row<'_>| used += covariance.of(row.first, row.slopes, row.shared);
-            let half = self.chained(&other, at, (length, &slopes), &mut count)?;
+            let half = self.chained(&other, at, (noise, &slopes), &mut count)?;
             Ok::<f64, Fault>(-half - 0.5 * used - self.log_rest(&other, at))
         };
-        let slope = (worth(length * STEP.exp())? - worth(length)?) / STEP;
-        let known = |link: Link| {
-            let shared = link.before.map_or(0.0, |(_, shared)| shared);
-            if shared == 0.0 { 0.0 } else { (shared * shared.ln() / link.rest()).powi(2) * (1.0 + shared * shared) }
+        let slope = (worth(longer)? - worth(shared)?) / STEP;
+        // Of a row beside those before it, the noise's size and what is expected change with the length (Fisher's information).
+        let places = &self.groups[at.0].coordinates;
+        let known = |(own, other): (Link, Link)| {
+            let weights = own.expected.weights.iter().zip(&other.expected.weights);
+            let change: Vec<f64> = weights.map(|(from, to)| (to - from) / STEP).collect();
+            let alike = |(i, j): (usize, usize)| match i == j {
+                true => 1.0,
+                false => shared.correlation((places[own.before[i]] - places[own.before[j]]).abs()),
+            };
+            let all = (0..change.len()).flat_map(|i| (0..change.len()).map(move |j| (i, j)));
+            let expected: f64 = all.map(|(i, j)| change[i] * alike((i, j)) * change[j]).sum();
+            let size = (other.expected.rest / own.expected.rest).ln() / STEP;
+            0.5 * size * size + expected / own.expected.rest
         };
+        let links = self.links(at, shared).into_iter().zip(self.links(at, longer));
         let rows = self.groups[at.0].schema.terms[at.1].rows as f64;
-        Ok((slope, rows * self.links(at, length).into_iter().map(known).sum::<f64>()))
+        Ok((slope, rows * links.map(known).sum::<f64>()))
     }
 
     /// Counts the classes of lengths so that they are renewed as other sizes are.
@@ -80,7 +95,7 @@ impl Solver<'_> {
     ) -> Result<(), Fault> {
         for group in 0..self.lengths.len() {
             for term in 0..self.lengths[group].len() {
-                let Some(class) = self.lengths[group][term].filter(|_| state.correlated) else { continue };
+                let Some(class) = self.lengths[group][term].filter(|_| state.sharing.is_some()) else { continue };
                 let (slope, known) = self.slope(state, (group, term), covariance)?;
                 let left = 0.5 * known;
                 let is_longest = state.classes[class].size >= LONGEST * self.length && slope > 0.0;
@@ -97,15 +112,12 @@ impl Solver<'_> {
     pub(super) fn longer(&self, state: &State) -> Option<State> {
         let mut longer = state.clone();
         let mut is_longer = false;
-        for (group, terms) in self.all_lengths(state).into_iter().enumerate() {
-            for (term, length) in terms.into_iter().enumerate() {
-                let Some(length) = length.map(|length| LONGER * length).filter(|own| *own <= LONGEST * self.length)
-                else {
-                    continue;
-                };
+        for (group, terms) in self.all_shared(state).into_iter().enumerate() {
+            for (term, noise) in terms.into_iter().enumerate() {
+                let Some(noise) = noise.filter(|own| LONGER * own.length <= LONGEST * self.length) else { continue };
                 let Some(class) = self.lengths[group][term] else { continue };
-                longer.classes[class].size = length;
-                longer.classes[self.classes[group][term]].size *= LONGER.sqrt();
+                longer.classes[class].size = LONGER * noise.length;
+                longer.classes[self.classes[group][term]].size *= LONGER.powf(noise.alike.growth());
                 is_longer = true;
             }
         }
@@ -120,9 +132,9 @@ impl Solver<'_> {
             let unit = coordinate.unit.behind();
             Warning::shared_noise(self.groups[group].schema.terms[term].name, &format!("{length:.2e}{unit}"))
         };
-        let lengths = self.all_lengths(state).into_iter().enumerate();
-        let of = |(group, terms): (usize, Vec<Option<f64>>)| {
-            let own = terms.into_iter().enumerate().filter_map(|(term, length)| Some(words(group, term, length?)));
+        let lengths = self.all_shared(state).into_iter().enumerate();
+        let of = |(group, terms): (usize, Vec<Option<SharedNoise>>)| {
+            let own = terms.into_iter().enumerate().filter_map(|(term, noise)| Some(words(group, term, noise?.length)));
             own.collect::<Vec<Warning>>()
         };
         lengths.flat_map(of).collect()
@@ -132,54 +144,38 @@ impl Solver<'_> {
     /// is likelier than it, but makes none.
     pub(super) fn leaves_rhythm(&mut self, state: &State) -> bool {
         let misfits = self.misfits(state);
-        let leaves = |(group, term): (usize, usize), length: f64| {
+        let leaves = |(group, term): (usize, usize), shared: SharedNoise| {
             let declared = &self.groups[group].schema.terms[term];
             let places = self.bound.measured(group, declared, &self.bound.coordinates[group]);
             let deviation = state.classes[self.classes[group][term]].size;
             let noise = ObservationNoise { group, term, deviation, spread: deviation };
             misfits[group][term].0.chunks_exact(places.len().max(1)).any(|row| {
-                let own = beside_those_before(&places, row, length);
+                let own = beside_those_before(&places, row, shared);
                 rhythm(&places, &own, noise).is_some_and(|swing| swing.amplitude > FAINT * deviation)
             })
         };
-        let lengths = self.all_lengths(state);
+        let shared = self.all_shared(state);
         let all =
-            lengths.iter().enumerate().flat_map(|(group, terms)| terms.iter().enumerate().map(move |at| (group, at)));
-        all.filter_map(|(group, (term, length))| Some(((group, term), (*length)?)))
-            .any(|(at, length)| leaves(at, length))
+            shared.iter().enumerate().flat_map(|(group, terms)| terms.iter().enumerate().map(move |at| (group, at)));
+        all.filter_map(|(group, (term, shared))| Some(((group, term), (*shared)?)))
+            .any(|(at, shared)| leaves(at, shared))
     }
 
-    /// Where steps start again with noise that neighbouring rows share; nothing where the evidence does not grow with it at the best end,
-    /// and where the data are exact.
-    pub(super) fn correlated(&mut self, noise: &Noise, place: &Place) -> Result<Option<State>, Fault> {
-        let Some(best) = place.best().filter(|best| !best.state.correlated && !noise.is_exact()).cloned() else {
-            return Ok(None);
-        };
+    /// Where steps start again with noise that neighbouring rows share, as walks do; nothing where the evidence does not grow with it at the
+    /// best end of those whose rows share none, and where the data are exact.
+    pub(super) fn sharing(&mut self, noise: &Noise, place: &Place) -> Result<Option<State>, Fault> {
+        let Some(best) = place.best_of(None).filter(|_| !noise.is_exact()).cloned() else { return Ok(None) };
         let lengths = self.lengths.iter().enumerate().flat_map(|(group, terms)| {
             terms.iter().enumerate().filter_map(move |(term, class)| Some(((group, term), (*class)?)))
         });
         let lengths: Vec<((usize, usize), usize)> = lengths.collect();
-        if lengths.is_empty() {
-            return Ok(None);
-        }
-        let mut slight = State { correlated: true, ..best.state.clone() };
-        for &(_, class) in &lengths {
-            let length = slight.classes[class].size / BEGINS / -SLIGHT.ln();
-            slight.classes[class].restart(length);
-        }
-        self.set_smoothness(KINDS[best.kind], &best.state);
-        let Some(found) = self.step(&slight, Phase::Solve)? else { return Ok(None) };
-        let slight = State { classes: slight.classes, ..found.next };
-        let mut grows = false;
-        for &(at, _) in &lengths {
-            grows |= self.slope(&slight, at, &found.covariance)?.0 > 0.0;
-        }
-        if !grows {
+        if lengths.is_empty() || !self.grows(&best, &lengths)? {
             return Ok(None);
         }
         // Sources begin as smooth as those of the first start.
         self.set_smoothness(KINDS[0], &State { uneven: Vec::new(), ..best.state.clone() });
-        let mut first = State { correlated: true, blurred: best.state.blurred, ..self.first(noise) };
+        let first = self.first(noise);
+        let mut first = State { sharing: Some(Alike::Rough), blurred: best.state.blurred, ..first };
         for &((group, term), _) in &lengths {
             // Differences of neighbours see what they do not share.
             let alike = (-BEGINS.recip()).exp();
@@ -188,5 +184,32 @@ impl Solver<'_> {
             first.classes[own].restart(size * ((1.0 + alike) / (1.0 - alike)).sqrt());
         }
         Ok(Some(State { step: place.state.step, ..first }))
+    }
+
+    /// The same state with noise that is smooth from row to row.
+    pub(super) fn smooth(&self, state: &State) -> State {
+        let mut smooth = State { sharing: Some(Alike::Smooth), ..state.clone() };
+        for class in self.lengths.iter().flatten().flatten() {
+            smooth.classes[*class].restart(SMOOTHER * state.classes[*class].size);
+        }
+        smooth
+    }
+
+    /// Whether the evidence at an end whose rows share no noise grows with a slight correlation.
+    fn grows(&mut self, best: &Tried, lengths: &[((usize, usize), usize)]) -> Result<bool, Fault> {
+        let mut slight = State { sharing: Some(Alike::Rough), ..best.state.clone() };
+        for &(_, class) in lengths {
+            let length = slight.classes[class].size / BEGINS / -SLIGHT.ln();
+            slight.classes[class].restart(length);
+        }
+        self.set_smoothness(KINDS[best.kind], &best.state);
+        let Some(found) = self.step(&slight, Phase::Solve)? else { return Ok(false) };
+        let slight = State { classes: slight.classes, ..found.next };
+        for &(at, _) in lengths {
+            if self.slope(&slight, at, &found.covariance)?.0 > 0.0 {
+                return Ok(true);
+            }
+        }
+        Ok(false)
     }
 }

@@ -61,7 +61,7 @@ pub(crate) use triangle::Triangle;
 
 use course::Run;
 use iterate::State;
-use place::{Place, Tried};
+use place::{ALL_SHARED, Place, Tried};
 use solver::Solver;
 
 /// Coefficients up to which it is looked for what is open.
@@ -160,14 +160,16 @@ pub(crate) fn solve(
             }
             if ended == Status::Converged
                 && run.correlate((&mut solver, noise, own), &mut trial, &save)? == Flow::Continue
-                && (!solver.has_sources() || run.vary(&mut solver, &mut trial, &save)? == Flow::Continue)
+                && (!solver.has_sources()
+                    || trial.is_filtered()
+                    || run.vary(&mut solver, &mut trial, &save)? == Flow::Continue)
                 && let Some(Tried { kind, state, .. }) = trial.best().cloned()
             {
                 place.kinds = vec![kind];
                 place.state.classes = state.classes;
                 place.state.step = trial.state.step;
                 (place.state.blurred, place.is_blurred) = (state.blurred, trial.is_blurred);
-                (place.state.correlated, place.is_correlated) = (state.correlated, true);
+                (place.state.sharing, place.shared) = (state.sharing, ALL_SHARED);
                 // What one roughness describes in a part, it describes in all.
                 place.is_even = state.uneven.is_empty();
             }
@@ -200,6 +202,7 @@ pub(crate) fn solve(
     }
     if status == Status::Converged
         && solver.has_sources()
+        && !place.is_filtered()
         && run.vary(&mut solver, &mut place, &Place::save)? == Flow::Stop
     {
         status = Status::Interrupted;
@@ -261,7 +264,7 @@ pub(crate) fn solve(
         warnings.push(Warning { kind: WarningKind::Undetermined, message });
     }
     let scalars = solver.scalars(&place.state.learned).to_vec();
-    let shared_over = solver.all_lengths(&place.state);
+    let shared = solver.all_shared(&place.state);
     warnings.extend(solver.shared_noise(&place.state));
     let misfits = solver.misfits(&place.state);
     let course = place.best().map(|best| KINDS[best.kind].course);
@@ -284,7 +287,7 @@ pub(crate) fn solve(
         ahead,
         moved: None,
         strain: None,
-        shared_over,
+        shared,
         used: 1.0,
         refined: None,
         finer: OTHER_THAN_SPLINES,

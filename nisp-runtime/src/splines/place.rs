@@ -3,6 +3,7 @@
 use super::METHOD;
 use super::iterate::{Phase, State};
 use super::prior::{Course, KINDS, Smoothness};
+use crate::noise::Alike;
 use crate::solve::fault::Fault;
 use crate::solve::state;
 
@@ -21,6 +22,8 @@ const TRUST: f64 = 0.3;
 /// Logarithm of the evidence that noise which rows share has to gain: each row's own, which is its limit, makes so much once in a thousand
 /// records.
 const SHARED: f64 = 5.0;
+/// All kinds of noise that neighbouring rows share.
+pub(super) const ALL_SHARED: usize = 2;
 /// How much less a kind of smoothness counts than one of an order less, for equal evidence. Orders differ in waves that the data hardly
 /// show. The evidence cannot tell a source that steps to and fro from a smooth one, and the bars of smooth ones are then too short by half.
 const SMOOTHER: f64 = 0.25;
@@ -44,8 +47,8 @@ pub(super) struct Place {
     before: f64,
     /// Whether equations have been as uncertain as their columns, too, or need not be any more.
     pub(super) is_blurred: bool,
-    /// Whether neighbouring rows have shared noise, too, or need not any more.
-    pub(super) is_correlated: bool,
+    /// How many kinds of noise that neighbouring rows share have been tried, or need not be any more: none, walks, or all.
+    pub(super) shared: usize,
     /// Whether one roughness describes all of the record: a part of it has said so.
     pub(super) is_even: bool,
 }
@@ -69,7 +72,7 @@ impl Place {
             tried: Vec::new(),
             is_again: false,
             is_blurred: false,
-            is_correlated: false,
+            shared: 0,
             varied: 0,
             rounds: 0,
             before: f64::MIN,
@@ -118,10 +121,15 @@ impl Place {
         self.leave_varied();
     }
 
-    /// Goes on from an end with sources that are as rough along the record as this state says.
-    pub(super) fn vary(&mut self, from: &Tried, state: State) {
+    /// Goes on from an end with a state that is like it.
+    pub(super) fn go_on(&mut self, from: &Tried, state: State) {
         (self.kinds, self.phase, self.since) = (vec![from.kind], Phase::Solve, 0);
         self.state = State { step: self.state.step, ..state };
+    }
+
+    /// Goes on from an end with sources that are as rough along the record as this state says.
+    pub(super) fn vary(&mut self, from: &Tried, state: State) {
+        self.go_on(from, state);
         // Another start now would begin with even sources.
         (self.is_again, self.rounds, self.before) = (true, self.rounds + 1, from.evidence);
     }
@@ -164,22 +172,52 @@ impl Place {
         self.tried.retain(|tried| tried.state.blurred == is_kept);
     }
 
-    /// Whether there are ends whose rows share noise and such whose rows do not.
-    pub(super) fn has_both(&self) -> bool {
-        [true, false].iter().all(|sort| self.tried.iter().any(|tried| tried.state.correlated == *sort))
+    /// The end with the largest evidence of those whose rows share noise in a way, or not.
+    pub(super) fn best_of(&self, sharing: Option<Alike>) -> Option<&Tried> {
+        let own = self.tried.iter().filter(|tried| tried.state.sharing == sharing);
+        own.max_by(|a, b| a.evidence.total_cmp(&b.evidence))
     }
 
-    /// Leaves ends of one sort where there are both: those whose rows share noise, where the evidence gains enough by it.
-    pub(super) fn choose_correlated(&mut self) {
-        if !self.has_both() {
-            return;
+    fn most(&self, sharing: Option<Alike>) -> Option<f64> {
+        self.best_of(sharing).map(|best| best.evidence)
+    }
+
+    /// The best end whose rows share noise as walks do, where the evidence has gained anything by it.
+    pub(super) fn shares_noise(&self) -> Option<&Tried> {
+        let best = self.best_of(Some(Alike::Rough))?;
+        Some(best).filter(|best| self.most(None).is_none_or(|without| best.evidence > without + GAIN))
+    }
+
+    /// The way in which rows share noise where the evidence is largest; smooth noise has to be likelier than a walk.
+    pub(super) fn likeliest_sharing(&self) -> Option<Alike> {
+        match (self.most(Some(Alike::Rough)), self.most(Some(Alike::Smooth))) {
+            (Some(rough), Some(smooth)) if smooth < rough + GAIN => Some(Alike::Rough),
+            (_, Some(_)) => Some(Alike::Smooth),
+            (rough, None) => rough.map(|_| Alike::Rough),
         }
-        let best = |correlated: bool| {
-            let own = self.tried.iter().filter(|tried| tried.state.correlated == correlated);
-            own.map(|tried| tried.evidence).fold(f64::MIN, f64::max)
+    }
+
+    /// Leaves out ends whose rows share noise in a way; false, and none, where there are no others.
+    pub(super) fn leave_out(&mut self, sharing: Alike) -> bool {
+        let has_others = self.tried.iter().any(|tried| tried.state.sharing != Some(sharing));
+        self.tried.retain(|tried| !has_others || tried.state.sharing != Some(sharing));
+        has_others
+    }
+
+    /// Leaves ends of one sort: those whose rows share noise in the likeliest way, where the evidence gains enough by it.
+    pub(super) fn choose_sharing(&mut self) {
+        let shared = self.likeliest_sharing();
+        let gains = |own: &Alike| match (self.most(Some(*own)), self.most(None)) {
+            (Some(with), Some(without)) => with >= without + SHARED,
+            _ => true,
         };
-        let is_kept = best(true) >= best(false) + SHARED;
-        self.tried.retain(|tried| tried.state.correlated == is_kept);
+        let kept = shared.filter(gains);
+        self.tried.retain(|tried| tried.state.sharing == kept);
+    }
+
+    /// Whether noise is smooth at the likeliest end: such an answer is doubted, and nothing more is asked of it.
+    pub(super) fn is_filtered(&self) -> bool {
+        self.best().is_some_and(|best| best.state.sharing == Some(Alike::Smooth))
     }
 
     /// The kind with the largest evidence.
@@ -209,7 +247,7 @@ impl Place {
             .with_counter("iterations", self.state.step)
             .with_counter("again", u64::from(self.is_again))
             .with_counter("blurred tried", u64::from(self.is_blurred))
-            .with_counter("correlated tried", u64::from(self.is_correlated))
+            .with_counter("shared", self.shared as u64)
             .with_counter("even", u64::from(self.is_even))
             .with_counter("varied", self.varied as u64)
             .with_counter("rounds", self.rounds)
@@ -249,7 +287,7 @@ impl Place {
         }
         self.since = saved.counter("since")?;
         self.is_blurred = saved.counter("blurred tried")? == 1;
-        self.is_correlated = saved.counter("correlated tried")? == 1;
+        self.shared = saved.counter("shared")? as usize;
         self.is_even = saved.counter("even")? == 1;
         self.varied = saved.counter("varied")? as usize;
         [self.before] = saved.scalars("before")?;

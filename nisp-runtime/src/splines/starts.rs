@@ -42,7 +42,7 @@ impl Solver<'_> {
             uneven: Vec::new(),
             doubt: 0.0,
             blurred: false,
-            correlated: false,
+            sharing: None,
             tolerance: LOOSE,
             convex,
             held: self.is_beside_sources(),

@@ -2,7 +2,7 @@
 
 use super::root_mean_square;
 use super::slow::chance;
-use crate::noise::{Noise, ObservationNoise, beside_those_before, by_differences, deviation, in_order};
+use crate::noise::{Noise, ObservationNoise, SharedNoise, beside_those_before, by_differences, deviation, in_order};
 use crate::problem::Bound;
 use crate::schema;
 use crate::units::Number;
@@ -40,15 +40,15 @@ impl<'a> Misfits<'a> {
         bound: &'a Bound,
         (group, at): (usize, usize),
         left: &[Vec<f64>],
-        (noise, shared_over): (&Noise, Option<f64>),
+        (noise, shared): (&Noise, Option<SharedNoise>),
     ) -> Option<Self> {
         let term = &bound.problem.scene().schema.groups[group].terms[at];
         let mut rows: Vec<Vec<f64>> =
             left[term.first..term.first + term.rows].iter().map(|row| bound.measured(group, term, row)).collect();
         let places = bound.measured(group, term, &bound.coordinates[group]);
         let mut noise = noise.of(group, at);
-        if let Some(length) = shared_over {
-            let own = |values: &[f64]| beside_those_before(&places, values, length);
+        if let Some(shared) = shared {
+            let own = |values: &[f64]| beside_those_before(&places, values, shared);
             rows.iter_mut().for_each(|row| *row = own(row));
             let of = |&column: &usize| {
                 let values = own(&bound.measured(group, term, &bound.columns[group][column]));

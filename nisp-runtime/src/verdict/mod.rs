@@ -9,6 +9,7 @@ mod believed;
 mod blurred;
 mod clouds;
 mod equations;
+mod filtered;
 mod gathered;
 mod held;
 mod known;
@@ -39,7 +40,7 @@ const FIRM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
-    /// `rhythm`, `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
+    /// `rhythm`, `filtered`, `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
     /// `leaning`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
@@ -73,7 +74,7 @@ impl Verdict {
     /// answer could only fit them by bending the equations. Also where the data leave a source or a learned scalar open: so does any
     /// other answer.
     pub(crate) fn contradicts(&self) -> bool {
-        if self.failed().any(|check| matches!(check.check, "determined" | "leaning")) {
+        if self.failed().any(|check| matches!(check.check, "determined" | "leaning" | "filtered")) {
             return true;
         }
         let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");

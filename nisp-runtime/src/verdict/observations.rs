@@ -2,7 +2,7 @@
 
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
-use super::{Check, held, outliers, parts, patterns, root_mean_square, taken};
+use super::{Check, filtered, held, outliers, parts, patterns, root_mean_square, taken};
 use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
@@ -32,9 +32,14 @@ const ROUNDING: f64 = 1e-5;
 pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &Noise), answer: &Answer) -> Vec<Check> {
     let terms = bound.problem.scene().schema.groups[group].terms.iter().enumerate();
     let observations = terms.filter(|(_, term)| term.kind == TermKind::Observation);
-    let left = observations
-        .filter_map(|(at, _)| Misfits::of(bound, (group, at), rows, (noise, answer.shared_over(group, at))));
-    left.flat_map(|left| of(&left, answer)).collect()
+    let of = |(at, _)| {
+        let shared = answer.shared(group, at);
+        let left = Misfits::of(bound, (group, at), rows, (noise, shared))?;
+        let mut checks = of(&left, answer);
+        checks.extend(filtered::check(&left, shared));
+        Some(checks)
+    };
+    observations.filter_map(of).flatten().collect()
 }
 
 /// Checks of one observation.
