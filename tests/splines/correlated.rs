@@ -85,14 +85,19 @@ fn noise_that_rows_share_is_not_followed() {
     }
 }
 
-/// Noise through two equal low-pass filters of first order, one after the other, as a controlled amplifier smooths it.
+/// Noise through a Butterworth filter of second order with its corner at a tenth of the highest frequency that rows show, by the bilinear
+/// transform: `k = tan(pi / 20)`.
 fn filtered(seed: u64, deviation: f64) -> Vec<f64> {
     let mut normal = normals(seed);
-    let (mut first, mut second) = (0.0, 0.0);
+    let k = (std::f64::consts::PI / 20.0).tan();
+    let whole = 1.0 + 2.0_f64.sqrt() * k + k * k;
+    let (gain, one, two) = (k * k / whole, 2.0 * (k * k - 1.0) / whole, (1.0 - 2.0_f64.sqrt() * k + k * k) / whole);
+    let (mut put, mut out) = ([0.0; 2], [0.0; 2]);
     let mut next = |_| {
-        first += 0.3 * (normal() - first);
-        second += 0.3 * (first - second);
-        second
+        let own = normal();
+        let now = gain * (own + 2.0 * put[0] + put[1]) - one * out[0] - two * out[1];
+        (put, out) = ([own, put[0]], [now, out[0]]);
+        now
     };
     let all: Vec<f64> = (0..ROWS + 50).map(&mut next).collect();
     let own = &all[50..];
