@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand::rngs::StdRng;
 
 use super::block::Block;
-use super::group::Integral;
+use super::integrals::Integral;
 use crate::network::normal;
 
 /// Draws: a standard deviation is known to within `1 / sqrt(2 * 64)`, 9 %.

@@ -4,9 +4,9 @@ use rand::SeedableRng;
 use rand::rngs::StdRng;
 use rand::seq::index::sample;
 
+use super::rows::is_of_values;
 use super::solver::Solver;
 use super::state::State;
-use super::step::is_of_values;
 use crate::noise::deviation;
 use crate::schema::{self, Term, TermKind};
 use crate::solve::vector::root_mean_square;

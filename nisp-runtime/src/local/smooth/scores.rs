@@ -6,10 +6,10 @@
 
 use rayon::prelude::*;
 
+use super::rows::{Asked, Rows};
 use super::run::Clock;
 use super::solver::Solver;
 use super::state::{Phase, State};
-use super::step::{Asked, Rows};
 use crate::facts::{Known, LARGER, Score};
 use crate::given::{SMALL, given, slope};
 use crate::local::block::Block;

@@ -1,6 +1,7 @@
 //! Covariances of a triangle's unknowns, as far as rows see them.
 
-use super::{Triangle, dot};
+use super::Triangle;
+use super::rotation::dot;
 
 /// Covariances of the unknowns: those of neighbours within the band, and those with the shared ones.
 #[derive(Clone, Debug)]

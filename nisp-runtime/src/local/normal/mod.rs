@@ -1,6 +1,8 @@
 //! Normal equations of sparse rows, bordered by the few unknowns that all rows share.
 
 pub(super) mod factor;
+mod products;
+mod steps;
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -10,15 +12,9 @@ use rayon::prelude::*;
 
 use super::block::Block;
 use super::draws::Draws;
-use super::group::Integral;
+use super::integrals::Integral;
 use super::pattern::{Part, Pattern};
 use super::sorted::Sorted;
-use crate::simd::Isa;
-use crate::solve::vector;
-use factor::Factor;
-
-/// Pieces that the matrix is summed up in, at the same time: a fixed number, many enough for all threads.
-const PIECES: usize = 32;
 
 /// The normal matrix's lower triangle with its pattern, its gradient and its border.
 pub(super) struct Normal {
@@ -138,57 +134,6 @@ impl Normal {
         self.add_products(&Sorted::together(sorted));
     }
 
-    /// Adds the products of the rows' slopes with each other, and with what is on the right and in the border, piece by piece of the
-    /// matrix: every entry is summed up in the order of the blocks.
-    fn add_products(&mut self, blocks: &[Sorted]) {
-        let (starts, indices) = (self.pattern.starts(), self.pattern.rows());
-        let columns = self.gradient.len();
-        let mut pieces = Vec::new();
-        let (mut rest, mut first) = (self.values.as_mut_slice(), 0);
-        let mut beside: Vec<&mut [f64]> = vec![&mut self.gradient];
-        beside.extend(self.border.iter_mut().take(self.learned).map(Vec::as_mut_slice));
-        for piece in 1..=PIECES {
-            let end = starts.partition_point(|&start| start < indices.len() * piece / PIECES).min(columns);
-            let (own, others) = rest.split_at_mut(starts[end] - starts[first]);
-            let sums: Vec<&mut [f64]> =
-                beside.iter_mut().map(|rest| rest.split_off_mut(..end - first).unwrap_or_default()).collect();
-            pieces.push((first..end, own, sums));
-            (rest, first) = (others, end);
-        }
-        let isa = Isa::detect();
-        pieces.into_par_iter().for_each(|(columns, values, mut sums)| {
-            let origin = starts[columns.start];
-            let mut line = Vec::new();
-            for block in blocks {
-                let from = block.dofs.partition_point(|&dof| (dof as usize) < columns.start);
-                for at in from..block.dofs.len() {
-                    let column = block.dofs[at] as usize;
-                    if column >= columns.end {
-                        break;
-                    }
-                    block.beside(at, sums.iter_mut().map(|sum| &mut sum[column - columns.start]));
-                    block.products(isa, at, &mut line);
-                    let range = starts[column]..starts[column + 1];
-                    let values = &mut values[range.start - origin..range.end - origin];
-                    block.scatter(at, &line, &indices[range], values);
-                }
-            }
-        });
-    }
-
-    /// Adds what rows say of the learned scalars alone.
-    fn add_corner(&mut self, block: &Block) {
-        for (row, misfit) in block.misfits.iter().enumerate() {
-            let by = &block.by_learned[row * self.learned..(row + 1) * self.learned];
-            for (i, a) in by.iter().enumerate() {
-                self.border_gradient[i] += a * misfit;
-                for (j, b) in by.iter().enumerate() {
-                    self.corner[(i, j)] += a * b;
-                }
-            }
-        }
-    }
-
     /// Adds `weight / 2` times the square of a coefficient to the quadratic form.
     pub(super) fn add_stiffness(&mut self, at: usize, weight: f64) {
         self.add_diagonal(at, weight);
@@ -262,58 +207,5 @@ impl Normal {
         if let Some(draws) = &mut self.draws {
             draws.add_learned(at, precision.sqrt());
         }
-    }
-
-    /// Factorises; nothing if the matrix is not positive definite.
-    pub(super) fn factor(&self) -> Option<Factor> {
-        let part = self.part.clone();
-        let factor = match &part {
-            Some(part) => part.factor(&self.values),
-            None => self.pattern.factor(&self.values),
-        }?;
-        let mut found = Factor {
-            factor,
-            part,
-            solved: Vec::new(),
-            border: self.border.clone(),
-            schur: self.corner.clone(),
-            learned: self.learned,
-        };
-        found.solved = found.solve_free(&self.border)?;
-        for i in 0..self.border.len() {
-            for j in 0..self.border.len() {
-                found.schur[(i, j)] -= vector::dot(&self.border[i], &found.solved[j]);
-            }
-        }
-        Some(found)
-    }
-
-    /// The step to the minimum of the quadratic model: of the coefficients, and of the learned scalars.
-    pub(super) fn step(&self, factor: &Factor) -> Option<(Vec<f64>, Vec<f64>)> {
-        self.step_with(factor, &vec![0.0; self.gradient.len()])
-    }
-
-    /// The same where unknowns that are not free take the steps `held`, which is zero for those that are free.
-    pub(super) fn step_with(&self, factor: &Factor, held: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let slopes = self.slopes_after(held, &[]);
-        let right: Vec<f64> = slopes.iter().map(|g| -g).collect();
-        let along = self.border.iter().map(|column| vector::dot(column, held));
-        let below: Vec<f64> = self.border_gradient.iter().zip(along).map(|(g, along)| -g - along).collect();
-        let (mut step, shared) = factor.solve(&right, &below)?;
-        step.iter_mut().zip(held).for_each(|(step, held)| *step += held);
-        Some((step, shared))
-    }
-
-    /// The model's gradient after a step of the coefficients and of the border's unknowns.
-    pub(super) fn slopes_after(&self, step: &[f64], shared: &[f64]) -> Vec<f64> {
-        let mut slopes = self.gradient.clone();
-        if step.iter().any(|step| *step != 0.0) {
-            let product = self.pattern.times(&self.values, step);
-            slopes.iter_mut().zip(product).for_each(|(slope, product)| *slope += product);
-        }
-        for (column, shared) in self.border.iter().zip(shared) {
-            slopes.iter_mut().zip(column).for_each(|(slope, entry)| *slope += entry * shared);
-        }
-        slopes
     }
 }

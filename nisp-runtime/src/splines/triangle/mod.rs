@@ -7,8 +7,10 @@
 
 pub(super) mod covariance;
 mod lag;
+mod rotation;
+mod solved;
 
-use nalgebra::DMatrix;
+use rotation::{rotation, turn, turned};
 
 use crate::simd::{self, Isa, Kernel, Simd};
 
@@ -163,94 +165,9 @@ impl Triangle {
         banded.chain(corner.enumerate().filter(|(at, row)| row.shared[*at] != 0.0).map(|(_, row)| row))
     }
 
-    /// For each of the last shared unknowns, half the slope of the rows' sum of squares along it, and half its curvature, where all unknowns
-    /// but these follow.
-    pub(super) fn beside(&self, last: usize) -> Vec<[f64; 2]> {
-        let range = self.shared - last..self.shared;
-        let of = |at: usize| {
-            let column = range.clone().map(|row| self.corner[row * self.shared + at]);
-            let slope: f64 = column.clone().zip(&self.corner_right[range.clone()]).map(|(r, right)| -r * right).sum();
-            [slope, column.map(|r| r * r).sum()]
-        };
-        range.clone().map(of).collect()
-    }
-
-    /// The unknowns that make the rows least, and the shared ones; nothing if the rows leave some open.
-    pub(super) fn solve(&self) -> Option<(Vec<f64>, Vec<f64>)> {
-        let shared = self.solve_shared()?;
-        let mut x = vec![0.0; self.len];
-        for at in (0..self.len).rev() {
-            let row = &self.rows[at * self.band..][..self.band];
-            let border = &self.border[at * self.shared..][..self.shared];
-            let after: f64 = row[1..].iter().zip(&x[at + 1..]).map(|(r, x)| r * x).sum();
-            let beside: f64 = border.iter().zip(&shared).map(|(r, x)| r * x).sum();
-            x[at] = (self.right[at] - after - beside) / row[0];
-        }
-        x.iter().all(|x| x.is_finite()).then_some((x, shared))
-    }
-
     /// Unknowns that every row may have.
     pub(super) fn shared(&self) -> usize {
         self.shared
-    }
-
-    /// `R^-T v` of a row `v` of the unknowns: products of two such are covariances of what the rows say.
-    pub(super) fn root(&self, first: usize, slopes: &[f64], shared: &[f64]) -> Vec<f64> {
-        let mut found = vec![0.0; self.len + self.shared];
-        found[first..first + slopes.len()].copy_from_slice(slopes);
-        found[self.len..].copy_from_slice(shared);
-        let (banded, beside) = found.split_at_mut(self.len);
-        for at in first..self.len {
-            let row = &self.rows[at * self.band..][..self.band];
-            let own = banded[at] / row[0];
-            banded[at] = own;
-            banded[at + 1..].iter_mut().zip(&row[1..]).for_each(|(x, r)| *x -= r * own);
-            beside.iter_mut().zip(&self.border[at * self.shared..]).for_each(|(x, r)| *x -= r * own);
-        }
-        for at in 0..self.shared {
-            let row = &self.corner[at * self.shared..][..self.shared];
-            let own = beside[at] / row[at];
-            beside[at] = own;
-            beside[at + 1..].iter_mut().zip(&row[at + 1..]).for_each(|(x, r)| *x -= r * own);
-        }
-        found
-    }
-
-    fn solve_shared(&self) -> Option<Vec<f64>> {
-        let mut x = vec![0.0; self.shared];
-        for at in (0..self.shared).rev() {
-            let row = &self.corner[at * self.shared..][..self.shared];
-            let after: f64 = row[at + 1..].iter().zip(&x[at + 1..]).map(|(r, x)| r * x).sum();
-            x[at] = (self.corner_right[at] - after) / row[at];
-        }
-        x.iter().all(|x| x.is_finite()).then_some(x)
-    }
-
-    /// Sum of the logarithms of the diagonal: half that of the normal matrix's determinant.
-    pub(super) fn log_determinant(&self) -> f64 {
-        self.log_determinant_of_band()
-            + (0..self.shared).map(|at| self.corner[at * (self.shared + 1)].abs().ln()).sum::<f64>()
-    }
-
-    /// The same where the first shared unknowns have a value.
-    pub(super) fn log_determinant_beside(&self, given: usize) -> f64 {
-        let (shared, open) = (self.shared, self.shared - given);
-        let rest = DMatrix::from_fn(shared, open, |i, j| self.corner[i * shared + given + j]).qr().unpack_r();
-        self.log_determinant_of_band() + (0..open).map(|at| rest[(at, at)].abs().ln()).sum::<f64>()
-    }
-
-    fn log_determinant_of_band(&self) -> f64 {
-        self.rows.iter().step_by(self.band).map(|x| x.abs().ln()).sum()
-    }
-
-    /// Draws the first shared unknowns along slopes: what is made least is half the sum of squares less the slopes times the unknowns.
-    pub(super) fn draw(&mut self, slopes: &[f64]) {
-        let mut drawn = vec![0.0; self.shared];
-        for at in 0..self.shared {
-            let before: f64 = (0..at).map(|row| self.corner[row * self.shared + at] * drawn[row]).sum();
-            drawn[at] = (slopes.get(at).unwrap_or(&0.0) - before) / self.corner[at * (self.shared + 1)];
-        }
-        self.corner_right.iter_mut().zip(&drawn).for_each(|(right, drawn)| *right += drawn);
     }
 }
 
@@ -271,44 +188,10 @@ impl<S: Source> Kernel<f64> for TurnIn<'_, S> {
     }
 }
 
-/// A sum of products, four of them side by side.
-#[inline(always)]
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    let (a, b) = (&a[..a.len().min(b.len())], &b[..a.len().min(b.len())]);
-    let (pairs, rest) = (a.chunks_exact(4).zip(b.chunks_exact(4)), a.len() / 4 * 4);
-    let mut sums = [0.0; 4];
-    for (a, b) in pairs {
-        (0..4).for_each(|lane| sums[lane] += a[lane] * b[lane]);
-    }
-    let tail: f64 = a[rest..].iter().zip(&b[rest..]).map(|(a, b)| a * b).sum();
-    (sums[0] + sums[2]) + (sums[1] + sums[3]) + tail
-}
-
-/// Cosine and sine that turn `(a, b)` into `(r, 0)`.
-#[inline(always)]
-fn rotation(a: f64, b: f64) -> (f64, f64) {
-    let square = a * a + b * b;
-    // Squares of tiny numbers vanish.
-    let r = if square > f64::MIN_POSITIVE / f64::EPSILON { square.sqrt() } else { a.hypot(b) };
-    (a / r, b / r)
-}
-
-#[inline(always)]
-fn turned(cosine: f64, sine: f64, a: f64, b: f64) -> (f64, f64) {
-    (cosine * a + sine * b, cosine * b - sine * a)
-}
-
-#[inline(always)]
-fn turn(cosine: f64, sine: f64, a: &mut [f64], b: &mut [f64]) {
-    for (a, b) in a.iter_mut().zip(b) {
-        (*a, *b) = turned(cosine, sine, *a, *b);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use nalgebra::DVector;
+    use nalgebra::{DMatrix, DVector};
 
     /// Rows over ten unknowns, three of them in each, and two shared ones.
     fn rows() -> Vec<(usize, [f64; 3], [f64; 2], f64)> {

@@ -1,6 +1,9 @@
 //! A head as a sum of tensor-product B-splines on a regular lattice of cells.
 
-use super::bspline::on_cell;
+mod cell;
+mod neighbours;
+
+pub(super) use cell::contracted;
 
 /// Most coordinates of a lattice.
 pub(super) const MOST_COORDINATES: usize = 4;
@@ -156,19 +159,6 @@ impl Lattice {
         site
     }
 
-    /// Functions that do not vanish on a cell.
-    pub(super) fn per_cell(&self) -> usize {
-        (self.degree + 1).pow(self.dimensions() as u32)
-    }
-
-    /// Standard deviation in the middle of a cell, where all coefficients are off by one independently.
-    pub(super) fn smoothing(&self) -> f64 {
-        let middle = Place { cell: [0; MOST_COORDINATES], within: [0.5; MOST_COORDINATES] };
-        let mut values = vec![0.0; self.per_cell()];
-        self.values(&middle, &Exponents::default(), &mut values);
-        values.iter().map(|value| value * value).sum::<f64>().sqrt()
-    }
-
     /// Size of a cell along a coordinate.
     pub(super) fn spacing(&self, axis: usize) -> f64 {
         self.spacing[axis]
@@ -200,105 +190,6 @@ impl Lattice {
             cell
         })
     }
-
-    /// The functions that do not vanish on a place's cell.
-    pub(super) fn cell_span(&self, place: &Place) -> Span {
-        Span { first: place.cell, count: self.degree + 1 }
-    }
-
-    /// Full numbers of a box's functions, the first coordinate fastest.
-    pub(super) fn numbers(&self, span: Span) -> impl Iterator<Item = usize> + '_ {
-        let dimensions = self.dimensions();
-        (0..span.count.pow(dimensions as u32)).map(move |mut at| {
-            let (mut number, mut stride) = (0, 1);
-            for axis in 0..dimensions {
-                number += (span.first[axis] + at % span.count) * stride;
-                at /= span.count;
-                stride *= self.cells[axis] + self.degree;
-            }
-            number
-        })
-    }
-
-    /// Numbers of a box's functions among those kept.
-    pub(super) fn kept(&self, span: Span) -> impl Iterator<Item = u32> + '_ {
-        self.numbers(span).map(|at| self.kept[at])
-    }
-
-    /// Values by the numbers of the functions that are kept, as values by full numbers; zero for the others.
-    pub(super) fn spread(&self, values: &[f64]) -> Vec<f64> {
-        let mut all = vec![0.0; self.full_len()];
-        self.full.iter().zip(values).for_each(|(&at, &value)| all[at] = value);
-        all
-    }
-
-    /// Full number of the first function that does not vanish on a place's cell.
-    pub(super) fn first(&self, place: &Place) -> usize {
-        self.numbers(Span { first: place.cell, count: 1 }).next().unwrap_or(0)
-    }
-
-    /// Where the lines of a cell's functions along the first coordinate begin, as full numbers from the cell's first.
-    pub(super) fn lines(&self) -> Vec<usize> {
-        let cell = Span { first: [0; MOST_COORDINATES], count: self.degree + 1 };
-        self.numbers(cell).step_by(self.degree + 1).collect()
-    }
-
-    /// A derivative of the functions of a cell, in the order of [`Lattice::numbers`].
-    pub(super) fn values(&self, place: &Place, exponents: &Exponents, out: &mut [f64]) {
-        let count = self.degree + 1;
-        let mut line = [0.0; 16];
-        out[0] = 1.0;
-        let mut filled = 1;
-        for (axis, &coordinate) in self.axes.iter().enumerate() {
-            let order = usize::from(exponents[coordinate]);
-            on_cell(self.degree, order, place.within[axis], &mut line);
-            let scale = self.spacing[axis].powi(-(order as i32));
-            for j in (0..count).rev() {
-                let factor = line[j] * scale;
-                for i in (0..filled).rev() {
-                    out[j * filled + i] = out[i] * factor;
-                }
-            }
-            filled *= count;
-        }
-    }
-
-    /// Pairs of kept neighbours along a coordinate: the number of a function, and that of the next.
-    pub(super) fn neighbours(&self, axis: usize) -> impl Iterator<Item = (u32, u32)> + '_ {
-        (0..self.full.len()).filter_map(move |number| {
-            let next = self.beside(number, axis, 1)?;
-            Some((number as u32, next))
-        })
-    }
-
-    /// The kept function that is so many further than another along a coordinate, if there is one.
-    fn beside(&self, number: usize, axis: usize, further: isize) -> Option<u32> {
-        let stride: usize = (0..axis).map(|a| self.cells[a] + self.degree).product();
-        let along = self.cells[axis] + self.degree;
-        let at = self.full[number];
-        let is_inside = ((at / stride) % along).checked_add_signed(further).is_some_and(|place| place < along);
-        let next = is_inside.then(|| self.kept[at.wrapping_add_signed(further * stride as isize)])?;
-        (next != NONE).then_some(next)
-    }
-
-    /// Lines of functions that share a cell: along each coordinate, from every outermost function inwards.
-    pub(super) fn ends(&self) -> impl Iterator<Item = Vec<u32>> + '_ {
-        let ways = (0..self.dimensions()).flat_map(|axis| [(axis, -1), (axis, 1)]);
-        ways.flat_map(move |(axis, inwards)| {
-            let outermost = (0..self.full.len()).filter(move |&number| self.beside(number, axis, -inwards).is_none());
-            outermost.filter_map(move |number| {
-                (0..=self.degree as isize).map(|further| self.beside(number, axis, further * inwards)).collect()
-            })
-        })
-    }
-}
-
-/// Sum of a cell's coefficients, of which `lines` says where each line begins, times splines along and across the lines.
-pub(super) fn contracted(cell: &[f64], lines: &[usize], across: &[f64], along: &[f64]) -> f64 {
-    let line = |(&first, across): (&usize, &f64)| {
-        across * cell[first..first + along.len()].iter().zip(along).map(|(c, value)| c * value).sum::<f64>()
-    };
-    lines.iter().zip(across).map(line).sum()
 }
 
 #[cfg(test)]
