@@ -1,12 +1,16 @@
 //! The syntax tree.
 
+mod domain;
+mod expression;
+
+pub use domain::{Domain, FileKind, Location, Portion, Region, RegionKind};
+pub use expression::{Expr, ExprKind, Number, Path};
 use std::collections::BTreeSet;
 
 use proc_macro2::{Span, TokenStream};
 
 use crate::error::Place;
 use crate::loss::Robust;
-use crate::rational::Rational;
 use crate::unit::Unit;
 
 /// A name and where the user wrote it.
@@ -120,80 +124,6 @@ pub struct Hard {
     pub value: Expr,
     /// Zero on the boundary.
     pub distance: Expr,
-}
-
-/// A domain: regions over the coordinates in their order, as a product.
-#[derive(Clone, Debug)]
-pub struct Domain {
-    /// Its name.
-    pub name: Name,
-    /// Its factors.
-    pub regions: Vec<Region>,
-}
-
-/// A region over one or more coordinates.
-#[derive(Clone, Debug)]
-pub struct Region {
-    /// What it is.
-    pub kind: RegionKind,
-    /// Where it stands.
-    pub place: Place,
-}
-
-/// What a region is, as written.
-#[derive(Clone, Debug)]
-pub enum RegionKind {
-    /// `a .. b` or `box(a .. b, ...)`.
-    Box(Vec<(Expr, Expr)>),
-    /// `disc(x, y, radius)`.
-    Disc(Vec<Expr>),
-    /// `ellipse(x, y, a, b)`.
-    Ellipse(Vec<Expr>),
-    /// `polygon([x, y], ...)`.
-    Polygon(Vec<Expr>),
-    /// `ball(x, y, z, radius)`.
-    Ball(Vec<Expr>),
-    /// `cylinder(x, y, radius, a .. b)`, its axis along the third coordinate.
-    Cylinder(Vec<Expr>, Option<(Expr, Expr)>),
-    /// `polygon("outline.csv")` or `solid("tank.stl" [mm])`: one of the file's unit, as an expression.
-    File(FileKind, String, Expr),
-    /// `a plus b`: what is in either.
-    Plus(Box<Region>, Box<Region>),
-    /// `a minus b`: what is in the first and not in the second.
-    Minus(Box<Region>, Box<Region>),
-}
-
-/// What a file holds that a region is read from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FileKind {
-    /// The corners of a polygon, as a table of two columns.
-    Polygon,
-    /// A closed surface of triangles, as STL.
-    Solid,
-}
-
-/// Which part of a domain a group lies in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Portion {
-    /// Everywhere in it.
-    Inside,
-    /// On the edge of its first factor.
-    Boundary,
-    /// Where the last factor, an interval, begins.
-    Start,
-    /// Where the last factor ends.
-    End,
-}
-
-/// `in D`, `boundary of D`, `start of D` or `end of D`.
-#[derive(Clone, Debug)]
-pub struct Location {
-    /// Which part.
-    pub portion: Portion,
-    /// The domain's name.
-    pub domain: Name,
-    /// `with 2000 points`: about how many, where that is written.
-    pub points: Option<usize>,
 }
 
 /// `on NAME { ... }`
@@ -332,56 +262,4 @@ pub enum SceneItem {
     Only(Path),
     /// `weight PATH = NUMBER;`
     Weight(Path, f64),
-}
-
-/// `group` or `group.term`.
-#[derive(Clone, Debug)]
-pub struct Path {
-    /// The group.
-    pub group: Name,
-    /// The term; None for all of the group's.
-    pub term: Option<Name>,
-}
-
-/// An expression and where it stands.
-#[derive(Clone, Debug)]
-pub struct Expr {
-    /// What it is.
-    pub kind: ExprKind,
-    /// Its first and last token.
-    pub place: Place,
-}
-
-/// An expression. Sums and products are flat, so that long ones nest no deeper than short ones.
-#[derive(Clone, Debug)]
-pub enum ExprKind {
-    /// A literal, perhaps with a unit.
-    Number(Number, Option<Box<Unit>>),
-    /// A name.
-    Name(String),
-    /// `-a`
-    Negate(Box<Expr>),
-    /// `a + b - c`: true where subtracted.
-    Sum(Vec<(bool, Expr)>),
-    /// `a * b / c`: true where divided by.
-    Product(Vec<(bool, Expr)>),
-    /// `a ^ b`
-    Power(Box<Expr>, Box<Expr>),
-    /// `f(a, b)`
-    Call(Name, Vec<Expr>),
-    /// `[a, b]`
-    List(Vec<Expr>),
-    /// `a[i, j]`
-    Index(Box<Expr>, Vec<Expr>),
-}
-
-/// A literal.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Number {
-    /// Its exact value, unless it has too many digits.
-    pub exact: Option<Rational>,
-    /// Its value.
-    pub value: f64,
-    /// As written.
-    pub text: String,
 }
