@@ -58,10 +58,19 @@ impl Group {
     /// is stated of values. Where a bound sets in or lets go a field has a kink, and a spline that keeps to its bound at the places
     /// goes to and fro between them from there on.
     pub(crate) fn asks_between(&self, term: &Term) -> bool {
-        let is_value = |jet: &usize| self.jets[*jet].degree.iter().all(|&degree| degree == 0);
         let has_bounds = self.terms.iter().any(|term| term.bound);
         let is_equation = term.kind == TermKind::Residual && term.within.is_none() && !term.known;
-        is_equation && has_bounds && (term.bound || term.jets.iter().all(is_value))
+        is_equation && has_bounds && (term.bound || self.is_of_values(term))
+    }
+
+    /// True for a term that reads no derivatives.
+    pub(crate) fn is_of_values(&self, term: &Term) -> bool {
+        term.jets.iter().all(|&jet| self.jets[jet].is_value())
+    }
+
+    /// True for a condition on what groups of such an order state: it is of a lower order, and has nothing but residuals.
+    pub(crate) fn is_condition_of(&self, order: usize) -> bool {
+        self.order < order && self.terms.iter().all(|term| term.kind == TermKind::Residual)
     }
 
     /// True for a column that one observation compares with alone: where it is NaN, nothing was measured, and the observation
@@ -111,6 +120,13 @@ pub struct Jet {
     pub operator: &'static [(&'static [u8], f64)],
     /// 0 for the point itself, then its partner if the group is paired, then [`Group::held`].
     pub site: usize,
+}
+
+impl Jet {
+    /// True for what is no derivative.
+    pub fn is_value(&self) -> bool {
+        self.degree.iter().all(|&degree| degree == 0)
+    }
 }
 
 /// Per-point data of a group.

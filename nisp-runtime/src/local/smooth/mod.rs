@@ -24,6 +24,7 @@ mod meshes;
 mod places;
 mod prior;
 mod proportions;
+mod quadrature;
 mod rows;
 mod run;
 mod sampled;
@@ -45,8 +46,10 @@ use std::time::Instant;
 use between::measurements;
 pub(crate) use between::others;
 use changes::Changes;
+use clashes::Clashes;
 use finish::finish;
 use judged::{FAR, MISSED};
+use means::Asked;
 use proportions::Proportions;
 
 use super::{LocalError, LocalSolution, refuse};
@@ -120,14 +123,15 @@ pub(crate) fn solve(
     let mut points = from.map_or(Ok(between::first(bound)), saved_points).map_err(LocalError::Fault)?;
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     let schema = bound.problem.scene().schema;
+    let asked = means::asked(bound);
     let proportions = match from {
         Some(saved) => Proportions::restored(saved, schema).map_err(LocalError::Fault)?,
-        None => crossings::proportions(bound, points, noise, &clock)?,
+        None => crossings::proportions(bound, points, &asked, noise, &clock)?,
     };
     if from.is_none() {
         points = (points as f64 * proportions.functions()) as usize;
     }
-    let mut solver = Solver::new(bound, (points, &proportions), noise, None)?;
+    let mut solver = Solver::new(bound, (points, &proportions), &asked, noise, None)?;
     let mut state = solver.first(noise);
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
@@ -162,7 +166,7 @@ pub(crate) fn solve(
             break;
         };
         // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
-        let Ok(mut finer) = Solver::new(bound, (more, &proportions), noise, None) else { break };
+        let Ok(mut finer) = Solver::new(bound, (more, &proportions), &asked, noise, None) else { break };
         if finer.cells() <= solver.cells() {
             break;
         }
@@ -185,7 +189,8 @@ pub(crate) fn solve(
         }
     }
     while solver.lacks && run.status == Status::Converged {
-        let Some((more, found)) = with_more(bound, (&solver, &run), noise, ((points, &proportions), &clock), monitor)
+        let Some((more, found)) =
+            with_more(bound, (&solver, &run, &asked), noise, ((points, &proportions), &clock), monitor)
         else {
             break;
         };
@@ -206,7 +211,7 @@ pub(crate) fn solve(
 /// these would be hardly more.
 fn with_more<'a>(
     bound: &'a Bound,
-    (solver, run): (&Solver<'_>, &Run),
+    (solver, run, asked): (&Solver<'_>, &Run, &(Vec<Asked>, Clashes)),
     noise: &Noise,
     (points, clock): ((usize, &Proportions), &Clock),
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
@@ -219,7 +224,7 @@ fn with_more<'a>(
         return None;
     }
     let most = if longer < times { (longer * solver.most as f64) as usize } else { usize::MAX };
-    let mut more = Solver::new(bound, points, noise, Some(most)).ok()?;
+    let mut more = Solver::new(bound, points, asked, noise, Some(most)).ok()?;
     let state = State { classes: run.state.known(), since: 0, ..run.state.clone() };
     let found = Run::go(&mut more, state, noise, points, clock, BARS * longer * run.longest, monitor).ok()?;
     Some((more, found))

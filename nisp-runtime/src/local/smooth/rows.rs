@@ -86,12 +86,7 @@ impl Solver<'_> {
 
 /// Whether a term takes part in a phase: those with derivatives wait until data and conditions on values are regressed.
 fn takes_part(group: &schema::Group, term: &schema::Term, phase: Phase) -> bool {
-    phase.has_equations() || is_of_values(group, term)
-}
-
-/// Whether a term reads no derivatives.
-pub(super) fn is_of_values(group: &schema::Group, term: &schema::Term) -> bool {
-    term.jets.iter().all(|&jet| group.jets[jet].degree.iter().all(|&degree| degree == 0))
+    phase.has_equations() || group.is_of_values(term)
 }
 
 /// Whether any row of a group counts at any of its points.

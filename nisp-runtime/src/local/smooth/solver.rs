@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::between::{ASKED, OTHERS, enough, filled, others, thinned};
 use super::clashes::Clashes;
 use super::freedom::{Freedom, Unmeasured};
-use super::means::{Asked, Means, TESTS, asked, with_means};
+use super::means::{Asked, Means, TESTS, asked_on, with_means};
 use super::meshes::{across_pairs, lattices, together};
 use super::prior::Prior;
 use super::proportions::Proportions;
@@ -93,11 +93,12 @@ fn freedom(heads: &Heads, head: usize, prior: &Prior) -> Result<Freedom, LocalEr
 }
 
 impl<'a> Solver<'a> {
-    /// With equations asked at so many points at least, on lattices of such proportions, and with so many measurements of a group at most; with nothing said of these,
+    /// With equations asked at so many points at least, on lattices of such proportions, as the problem's groups are asked, and with so many measurements of a group at most; with nothing said of these,
     /// with as many as choose a lattice. The scene must not be refused.
     pub(super) fn new(
         problem: &'a Bound,
         (points, proportions): (usize, &Proportions),
+        (asked, clashes): &(Vec<Asked>, Clashes),
         noise: &Noise,
         most: Option<usize>,
     ) -> Result<Self, LocalError> {
@@ -105,8 +106,8 @@ impl<'a> Solver<'a> {
         let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
         let enough = enough(points, is_noisy);
         let few = thinned(&bound, enough);
-        let (asked, clashes) = asked(problem);
-        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points, &asked);
+        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points, asked);
+        let asked = asked_on(problem, asked, &cells);
         let few = most.map_or(few, |most| thinned(&bound, most));
         let lacks = few.is_some() && is_noisy;
         let bound = few.map_or(bound, Cow::Owned);
@@ -140,7 +141,7 @@ impl<'a> Solver<'a> {
         Ok(Self {
             others,
             asked,
-            clashes,
+            clashes: clashes.clone(),
             bound,
             most: most.unwrap_or(enough),
             lacks,

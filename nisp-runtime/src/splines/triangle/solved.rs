@@ -90,3 +90,42 @@ impl Triangle {
         self.rows.iter().step_by(self.band).map(|x| x.abs().ln()).sum()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::splines::triangle::Row;
+    use nalgebra::DVector;
+    use rand::{RngExt, SeedableRng, rngs::StdRng};
+
+    /// Slope and curvature of what is left of the rows when the other unknowns have taken theirs: a projection, by dense linear algebra.
+    #[test]
+    fn what_rows_say_of_the_last_unknowns_is_beside_what_the_others_take() {
+        let (len, band, shared, rows) = (6, 2, 4, 30);
+        let mut random = StdRng::seed_from_u64(2);
+        let mut triangle = Triangle::new(len, band, shared);
+        let mut dense = DMatrix::zeros(rows, len + shared);
+        let mut values = DVector::zeros(rows);
+        for row in 0..rows {
+            let first = row * (len - band + 1) / rows;
+            let mut numbers = |count: usize| (0..count).map(|_| random.random::<f64>() - 0.5).collect::<Vec<f64>>();
+            let (slopes, beside, value) = (numbers(band), numbers(shared), numbers(1)[0]);
+            triangle.add(Row { first, slopes: &slopes, shared: &beside, value });
+            slopes.iter().enumerate().for_each(|(k, x)| dense[(row, first + k)] = *x);
+            beside.iter().enumerate().for_each(|(k, x)| dense[(row, len + k)] = *x);
+            values[row] = value;
+        }
+        for last in 1..=shared {
+            let others = dense.columns(0, len + shared - last).clone_owned();
+            let inverse = (others.transpose() * &others).try_inverse().unwrap();
+            let left = |of: &DVector<f64>| of - &others * (&inverse * (others.transpose() * of));
+            let found = triangle.beside(last);
+            assert_eq!(found.len(), last);
+            for (at, [slope, curvature]) in found.into_iter().enumerate() {
+                let column = dense.column(len + shared - last + at).clone_owned();
+                assert!((slope - column.dot(&left(&values))).abs() < 1e-12, "{last} {at}: {slope}");
+                assert!((curvature - column.dot(&left(&column))).abs() < 1e-12, "{last} {at}: {curvature}");
+            }
+        }
+    }
+}

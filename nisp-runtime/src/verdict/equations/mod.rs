@@ -8,7 +8,6 @@ mod parts;
 mod sums;
 
 pub(super) use parts::Sizes;
-use parts::is_value;
 
 use super::{Check, root_mean_square};
 use crate::facts::{Answer, Facts};
@@ -139,7 +138,7 @@ impl Judged<'_> {
         let read = &self.schema.jets[jet];
         let head = &self.bound.problem.scene().schema.heads[read.head];
         // Equations hold a field to what it is stated to be, and data to what it becomes; a source may be anything next to it.
-        if !is_value(read) || head.transformed || !head.source {
+        if !read.is_value() || head.transformed || !head.source {
             return None;
         }
         let slopes = self.facts.slopes(self.programs, self.schema, row, self.scalars);

@@ -1,7 +1,8 @@
 //! How large the parts are that a row adds up.
 
 use super::{FEW_POINTS, Judged, NOTHING, root_mean_square};
-use crate::schema::{Jet, Term};
+use crate::ends::ends;
+use crate::schema::Term;
 
 /// Network output that puts a bounded quantity on its bound.
 const ON_BOUND: f64 = -40.0;
@@ -19,8 +20,8 @@ impl Sizes {
     pub(in crate::verdict) fn of(values: &[Vec<f64>]) -> Self {
         let mean = |values: &Vec<f64>| values.iter().sum::<f64>() / values.len().max(1) as f64;
         let half = |values: &Vec<f64>| {
-            let ends = values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
-            (ends.1 - ends.0).max(0.0) / 2.0
+            let (low, high) = ends(values.iter().copied());
+            (high - low).max(0.0) / 2.0
         };
         Self { mean: values.iter().map(mean).collect(), spread: values.iter().map(half).collect() }
     }
@@ -34,10 +35,6 @@ pub(super) struct Parts {
     pub(super) stated: bool,
 }
 
-pub(super) fn is_value(jet: &Jet) -> bool {
-    jet.degree.iter().all(|&degree| degree == 0)
-}
-
 impl Judged<'_> {
     /// Sizes of the parts of a row.
     pub(super) fn parts(&self, term: &Term, row: usize) -> Parts {
@@ -45,7 +42,7 @@ impl Judged<'_> {
         let slopes = self.facts.slopes(self.programs, self.schema, row, self.scalars);
         let is_bounded = |at: usize| {
             let jet = &self.schema.jets[at];
-            is_value(jet) && heads[jet.head].transformed && !heads[jet.head].hard
+            jet.is_value() && heads[jet.head].transformed && !heads[jet.head].hard
         };
         // On its bound a quantity has no slope, and is read all the same.
         let is_read = |jet: &usize| match is_bounded(*jet) {
@@ -113,13 +110,13 @@ impl Judged<'_> {
         let is_derived = |at: usize| {
             let mut own = read.iter().filter(|&&other| head(other) == head(at));
             self.bound.problem.scene().schema.heads[head(at)].transformed
-                && own.any(|&other| !is_value(&self.schema.jets[other]))
+                && own.any(|&other| !self.schema.jets[other].is_value())
         };
         let sizes = read.iter().filter(|&&at| !is_derived(at)).map(|&at| {
             let jet = &self.schema.jets[at];
             let head = &self.bound.problem.scene().schema.heads[jet.head];
             let over: f64 = jet.degree.iter().zip(half).map(|(&degree, half)| half.powi(i32::from(degree))).product();
-            let slope = if head.transformed && !head.hard && is_value(jet) {
+            let slope = if head.transformed && !head.hard && jet.is_value() {
                 self.slope_within_bounds(at, row)
             } else {
                 root_mean_square(slopes[at].iter().copied())
@@ -156,7 +153,7 @@ impl Judged<'_> {
         for &at in taken {
             let jet = &self.schema.jets[at];
             let head = &heads[jet.head];
-            let value = match (is_value(jet), head.source) {
+            let value = match (jet.is_value(), head.source) {
                 (true, _) if head.transformed && !head.hard => ON_BOUND,
                 (true, false) => self.sizes.mean[jet.head],
                 _ => 0.0,
