@@ -24,7 +24,7 @@ pub(crate) fn even(inputs: usize) -> Vec<usize> {
     vec![NODES.powf((inputs as f64).recip()).ceil() as usize; inputs]
 }
 
-/// The same where cells ask for more; nothing where they do not.
+/// Pieces where so many cells ask for more than [`even`] has; nothing where they do not.
 pub(crate) fn finer(cells: &[usize]) -> Option<Vec<usize>> {
     let even = even(cells.len());
     let pieces: Vec<usize> = even.iter().zip(cells).map(|(&even, cells)| even.max(TO_A_CELL * cells)).collect();

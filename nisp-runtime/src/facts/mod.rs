@@ -38,7 +38,7 @@ pub(crate) struct Told {
 }
 
 impl Told {
-    /// Of a source without deviations.
+    /// What is told of a source that has no deviations.
     pub(crate) fn unasked(head: usize) -> Self {
         Self { head, size: None, nearer: 0.0, open: 0.0 }
     }

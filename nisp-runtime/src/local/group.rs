@@ -128,7 +128,7 @@ impl Group {
         }
     }
 
-    /// The same with some of its weighted points asked for by themselves.
+    /// The group with further rows: some of its weighted points, each asked for by itself.
     pub(super) fn with_slight(mut self, (base, flat): (&Lattice, &[f64]), points: &[u32]) -> Self {
         let inputs = base.dimensions();
         for &p in points {
@@ -141,7 +141,7 @@ impl Group {
         self
     }
 
-    /// Lets them count so much beside a full test.
+    /// Lets each of these further rows count so much beside a full test.
     pub(super) fn weigh_slight(&mut self, weight: f64) {
         self.tests.iter_mut().rev().take(self.slight).for_each(|test| test.weight = weight);
     }

@@ -33,7 +33,7 @@ pub(super) struct Attempt {
     pub(super) carrier: Box<dyn carried::Carrier>,
     pub(super) seed: u64,
     pub(super) why: String,
-    /// What it may take of the budget, as a share.
+    /// The share of the budget that it may take.
     pub(super) share: f64,
 }
 

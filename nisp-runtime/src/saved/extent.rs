@@ -31,7 +31,7 @@ struct Hull {
 }
 
 impl Extent {
-    /// Of points by group, flat and in the engine's units.
+    /// The extent of points by group, flat and in the engine's units.
     pub(crate) fn of(frame: &Frame, groups: &[Vec<f64>]) -> Self {
         let coordinates = frame.scene.schema.coordinates;
         let axes = coordinates.len();

@@ -22,7 +22,7 @@ pub struct Term {
     pub weight: f64,
     /// How far rows may be off, if the user says so: the noise of data, the tolerance of a condition, the spread of a prior.
     pub within: Option<Number<Si>>,
-    /// Of an integral, the unit of the points' weights.
+    /// The unit of the points' weights, if the term is an integral.
     pub measure: Option<Unit>,
     /// First row.
     pub first: usize,
@@ -30,7 +30,7 @@ pub struct Term {
     pub rows: usize,
     /// What its rows read of the heads, by index in [`Group::jets`].
     pub jets: &'static [usize],
-    /// Of an observation, the column that each row compares with, by index in [`Group::columns`].
+    /// The column that each row compares with, by index in [`Group::columns`], if the term is an observation.
     pub columns: &'static [usize],
     /// True where its rows read columns: they have a value at the points of the group alone.
     pub known: bool,

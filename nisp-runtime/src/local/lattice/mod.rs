@@ -53,14 +53,14 @@ impl Lattice {
         Self { degree, axes, inputs, low, spacing, cells, kept: (0..all as u32).collect(), full: (0..all).collect() }
     }
 
-    /// The same over some of the coordinates only; all functions kept.
+    /// The lattice along some of the coordinates only, with all functions kept.
     pub(super) fn along(&self, axes: Vec<usize>) -> Self {
         let of = |values: &[f64]| axes.iter().map(|&axis| values[axis]).collect();
         let cells = axes.iter().map(|&axis| self.cells[axis]).collect();
         Self::new(self.degree, of(&self.low), of(&self.spacing), cells).spanning(axes, self.inputs)
     }
 
-    /// The same over these coordinates of points that have so many.
+    /// The lattice over these coordinates of points that have so many.
     pub(super) fn spanning(self, axes: Vec<usize>, inputs: usize) -> Self {
         Self { axes, inputs, ..self }
     }

@@ -34,7 +34,7 @@ impl Normal {
         self.step_with(factor, &vec![0.0; self.gradient.len()])
     }
 
-    /// The same where unknowns that are not free take the steps `held`, which is zero for those that are free.
+    /// The step where unknowns that are not free take the steps `held`, which is zero for those that are free.
     pub(in crate::local) fn step_with(&self, factor: &Factor, held: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
         let slopes = self.slopes_after(held, &[]);
         let right: Vec<f64> = slopes.iter().map(|g| -g).collect();

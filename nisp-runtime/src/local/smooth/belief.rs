@@ -27,7 +27,7 @@ pub(super) enum BorneOut {
     Bends,
     /// That they change little, as sources with edges do, or either, about as much.
     Edges,
-    /// Nothing: the evidence was not found.
+    /// The evidence was not found.
     Unknown,
 }
 

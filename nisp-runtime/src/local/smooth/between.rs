@@ -113,7 +113,7 @@ fn largest(bound: &Bound) -> Option<usize> {
     of_most_points(bound, None)
 }
 
-/// The same among those that differentiate a field.
+/// The group with most points among those that differentiate a field.
 fn of_most_points(bound: &Bound, field: Option<usize>) -> Option<usize> {
     let schema = bound.problem.scene().schema;
     let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);

@@ -62,7 +62,7 @@ pub(super) fn asked(bound: &Bound) -> (Vec<Asked>, Clashes) {
     (asked, clashes)
 }
 
-/// The same where jumps are known as finely as so many cells ask.
+/// How the groups are asked on a lattice of so many cells, which may want to know more finely where equations jump.
 pub(super) fn asked_on(bound: &Bound, asked: &[Asked], cells: &[usize]) -> Vec<Asked> {
     let pieces = abrupt::finer(cells);
     let of = |(at, own): (usize, &Asked)| match (own, &pieces) {

@@ -15,7 +15,7 @@ use crate::solve::fault::Fault;
 /// memory.
 pub(super) struct Rows {
     pub(super) asked: Vec<Asked>,
-    /// Of every cloud, one for each point that has a foot.
+    /// By cloud, a block for each point that has a foot.
     pub(super) clouds: Vec<Vec<Block>>,
     /// Derivatives of the learned scalars by their parameters.
     pub(super) learned: Vec<f64>,

@@ -73,7 +73,7 @@ impl Solver<'_> {
                 blocks.iter().zip(by).for_each(|(block, by)| scored.add(block, &[by]));
             });
         }
-        // Of an integral the border has its misfit.
+        // The border holds the misfits of integrals.
         below[slopes.len()..].copy_from_slice(&self.normal.border_gradient[slopes.len()..]);
         Some(scored.par_iter().filter_map(|scored| scored.score(&factor, (&gradient, &below), false)).collect())
     }

@@ -72,7 +72,7 @@ pub(super) struct Feet {
 }
 
 impl Surface {
-    /// Those of all clouds of a group, on lattices of cells of some size.
+    /// The surfaces of all clouds of a group, on lattices of cells of some size.
     pub(super) fn of(bound: &Bound, at: usize, cell: f64) -> Vec<Self> {
         let schema = bound.problem.scene().schema;
         let terms = schema.groups[at].terms.iter().zip(&bound.clouds[at]).enumerate();
@@ -143,7 +143,7 @@ impl Surface {
         Feet { feet: self.feet.clone(), nearest: self.nearest.clone() }
     }
 
-    /// What it says, for the verdict: splines do not follow distances below a `resolution`.
+    /// What the verdict is told of the surface; splines do not follow distances below a `resolution`.
     pub(super) fn facts(&self, resolution: f64) -> CloudFacts {
         CloudFacts {
             group: self.group,

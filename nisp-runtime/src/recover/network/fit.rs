@@ -49,7 +49,7 @@ impl<'a> Fit<'a> {
         let (parameters, rows) = (self.engine.parameters(), self.engine.row_count());
         let single = self.settings.precision == Width::F32;
         let candidates = self.settings.optimizer.candidates(&self.noise, parameters, rows, single);
-        // Whoever goes on has tried before.
+        // A run that goes on from a saved state has tried the methods before.
         let known = course.method().and_then(Optimizer::from_name).filter(|known| candidates.contains(known));
         let optimizer = match (&candidates[..], known) {
             ([only], _) => *only,

@@ -73,7 +73,7 @@ fn fitted(bound: &Bound, settings: &Settings, mut course: Course<'_, '_>) -> Res
         }
     }
     let precision = match precision {
-        // It may have ended before double precision was called for.
+        // The run may have ended before double precision took over.
         Width::Auto if !course.is_promoted() => Width::F32,
         chosen => chosen,
     };

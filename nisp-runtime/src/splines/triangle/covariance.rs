@@ -78,7 +78,7 @@ impl Triangle {
 }
 
 impl Covariance {
-    /// The same within a band that is no wider.
+    /// The covariances within a band that is no wider.
     pub(in super::super) fn within(&self, band: usize) -> Self {
         let rows = self.rows.chunks_exact(self.band).flat_map(|row| &row[..band.min(self.band)]);
         Self { band: band.min(self.band), rows: rows.copied().collect(), ..self.clone() }

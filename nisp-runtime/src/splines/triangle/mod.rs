@@ -46,12 +46,12 @@ pub(crate) struct Triangle {
     corner_right: Vec<f64>,
     /// The row that is being turned in, from its first unknown on.
     scratch: Vec<f64>,
-    /// What it is by the shared unknowns.
+    /// The slopes of the row that is being turned in, by the shared unknowns.
     beside: Vec<f64>,
 }
 
 impl Triangle {
-    /// Of no rows yet.
+    /// A triangle of no rows yet.
     pub(super) fn new(len: usize, band: usize, shared: usize) -> Self {
         Self {
             len,

@@ -79,7 +79,7 @@ impl Triangle {
             + (0..self.shared).map(|at| self.corner[at * (self.shared + 1)].abs().ln()).sum::<f64>()
     }
 
-    /// The same where the first shared unknowns have a value.
+    /// The same where so many of the first shared unknowns are given.
     pub(in crate::splines) fn log_determinant_beside(&self, given: usize) -> f64 {
         let (shared, open) = (self.shared, self.shared - given);
         let rest = DMatrix::from_fn(shared, open, |i, j| self.corner[i * shared + given + j]).qr().unpack_r();
