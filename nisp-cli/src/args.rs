@@ -1,22 +1,22 @@
 //! What the command line takes.
 
 pub(crate) mod stream;
+mod words;
 
 use std::ffi::OsString;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Args as Group, CommandFactory, FromArgMatches, Parser, Subcommand};
 use nisp_data::cloud::LengthUnit;
 
 use crate::config;
 use crate::help::{EVAL_SEE_HELP, EVAL_TEACH, SEE_HELP, TEACH};
-use crate::options::{
-    activations, count, one_line, optimizers, pair, precisions, seconds, seed, show, size, value, whole,
-};
+use crate::options::{activations, count, one_line, optimizers, pair, precisions, seconds, seed, show, size, value};
 use crate::program::Program;
 use stream::StreamOptions;
+pub(crate) use words::Grid;
+use words::{data_parser, grid, points};
 
 /// Recover unknown sources from noisy measurements and a known governing equation.
 #[derive(Parser)]
@@ -254,48 +254,6 @@ pub(crate) struct Place {
     /// Points along each coordinate over the domain, for instance 200x100.
     #[arg(long, value_name = "NxM", value_parser = grid)]
     pub(crate) grid: Option<Grid>,
-}
-
-/// Points along each coordinate.
-#[derive(Clone, Debug)]
-pub(crate) struct Grid(pub(crate) Vec<usize>);
-
-fn grid(text: &str) -> Result<Grid, String> {
-    let counts = text.split(['x', ',']).map(|part| count(part.trim())).collect::<Result<Vec<_>, _>>();
-    let counts = counts.map_err(|_| "give whole numbers with `x` between them, for instance 200x100")?;
-    match counts
-        .iter()
-        .try_fold(1_usize, |total, count| total.checked_mul(*count))
-        .filter(|total| *total <= MOST_POINTS)
-    {
-        Some(_) => Ok(Grid(counts)),
-        None => Err(format!("at most {MOST_POINTS} points in all")),
-    }
-}
-
-/// A grid with more points is a slip.
-const MOST_POINTS: usize = 10_000_000;
-
-/// A parser of [`data`], for paths that are no text too.
-fn data_parser() -> impl TypedValueParser<Value = (Option<String>, PathBuf)> {
-    OsStringValueParser::new().try_map(data)
-}
-
-/// `FILE` or `GROUP=FILE`; what is no text is a file.
-fn data(word: OsString) -> Result<(Option<String>, PathBuf), String> {
-    let Some(text) = word.to_str() else { return Ok((None, word.into())) };
-    let is_name =
-        |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric() || c == '_' || c == '.');
-    match text.split_once('=').map(|(group, path)| (group.trim(), path.trim())) {
-        Some((group, "")) if is_name(group) => Err(format!("no file behind `{group}=`")),
-        Some((group, path)) if is_name(group) => Ok((Some(group.into()), path.into())),
-        _ => Ok((None, text.into())),
-    }
-}
-
-fn points(text: &str) -> Result<(String, usize), String> {
-    let (group, number) = text.split_once('=').ok_or("write GROUP=N, for instance inside=4000")?;
-    Ok((group.trim().into(), whole(number.trim(), MOST_POINTS)?))
 }
 
 /// What a command line turned out to be.

@@ -13,7 +13,7 @@ pub(crate) struct Axes<const D: usize> {
 }
 
 impl<const D: usize> Axes<D> {
-    /// Of some points; nothing where they are not finite.
+    /// The axes of some points; nothing where these are not finite.
     pub(crate) fn of(points: &[[f64; D]]) -> Option<Self> {
         let count = points.len().max(1) as f64;
         let middle: [f64; D] = std::array::from_fn(|i| points.iter().map(|p| p[i]).sum::<f64>() / count);

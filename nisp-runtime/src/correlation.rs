@@ -6,6 +6,7 @@ use rand::SeedableRng;
 use rand::rngs::StdRng;
 use rand::seq::index::sample;
 
+use crate::ends::ends;
 use crate::layer::MOST_COORDINATES;
 use crate::nearest::{Nearest, Neighbour};
 
@@ -38,7 +39,7 @@ pub(crate) fn of_neighbours<const D: usize>(places: &[[f64; D]], numbers: &[f64]
 pub(crate) fn over_coordinates(places: &[f64], axes: usize, numbers: &[f64]) -> (f64, f64) {
     let range = |axis: usize| {
         let own = places.iter().skip(axis).step_by(axes);
-        let (low, high) = own.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+        let (low, high) = ends(own.copied());
         if high > low { high - low } else { 1.0 }
     };
     let ranges: Vec<f64> = (0..axes).map(range).collect();

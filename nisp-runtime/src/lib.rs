@@ -11,6 +11,7 @@ mod bytes;
 pub mod carrier;
 pub mod compiled;
 mod correlation;
+mod ends;
 pub mod engine;
 mod facts;
 pub mod functions;

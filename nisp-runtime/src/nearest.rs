@@ -40,6 +40,12 @@ impl<const D: usize> Nearest<D> {
         })
     }
 
+    /// All points, the nearest first, looked for one after the other; none where squares overflow.
+    pub(crate) fn by_distance<'a>(&'a self, place: &'a [f64; D]) -> impl Iterator<Item = Neighbour> + 'a {
+        let found = self.tree.iter_nearest(place, &squared_euclidean).into_iter().flatten();
+        found.map(|(square, &index)| Neighbour { index, distance: square.sqrt() })
+    }
+
     /// So many of the nearest points, the nearest first; all if there are fewer, none where squares overflow.
     pub fn some(&self, place: &[f64; D], count: NonZero<usize>) -> Vec<Neighbour> {
         let found = self.tree.nearest(place, count.get(), &squared_euclidean).unwrap_or_default();
@@ -74,6 +80,9 @@ mod tests {
                     assert!((distance(&points[found.index], place) - exact).abs() < 1e-12);
                 }
                 assert_eq!(tree.one(place).distance, found[0].distance);
+                let all: Vec<f64> = tree.by_distance(place).map(|found| found.distance).collect();
+                assert_eq!(all.len(), points.len());
+                assert!(all.is_sorted() && all[..7].iter().zip(&found).all(|(all, found)| *all == found.distance));
             }
             points.iter_mut().flatten().for_each(|x| *x = (*x * 6.0).round() / 6.0);
         }

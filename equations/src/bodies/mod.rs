@@ -5,6 +5,7 @@
 
 mod bubble;
 mod calibrate;
+mod cube;
 mod given;
 mod inflated;
 mod membrane;

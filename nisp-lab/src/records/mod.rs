@@ -1,5 +1,6 @@
 //! `nisp-lab records`: records over one coordinate, simulated, with the source unknown.
 
+mod draws;
 mod drive;
 mod families;
 mod study;

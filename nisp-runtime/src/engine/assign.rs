@@ -19,7 +19,7 @@ pub(super) struct Assignment<const D: usize> {
 }
 
 impl<const D: usize> Assignment<D> {
-    /// Nothing assigned yet; nothing at all unless there is a point.
+    /// An assignment in which no point has a partner yet; nothing where there are no points.
     pub(super) fn new(points: Vec<[f64; D]>) -> Option<Self> {
         let tree = Nearest::of(&points)?;
         Some(Self { nearest: Vec::new(), reach: Vec::new(), reference: Vec::new(), points, tree })

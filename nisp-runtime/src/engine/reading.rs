@@ -43,7 +43,7 @@ impl<E: Precision> Reading<E> {
     pub(super) fn ahead(group: &schema::Group, scaling: &Scaling) -> Option<Self> {
         let is_ahead = |term: &&schema::Term| matches!(term.kind, TermKind::Chamfer { .. } | TermKind::Integral);
         let jets: Vec<usize> = group.terms.iter().filter(is_ahead).flat_map(|term| term.jets).copied().collect();
-        let suffice = jets.iter().all(|&at| is_value(&group.jets[at]));
+        let suffice = jets.iter().all(|&at| group.jets[at].is_value());
         let inputs = scaling.half.len();
         let is_there = suffice && inputs <= MOST_COORDINATES && group.terms.iter().any(|term| is_ahead(&term));
         is_there.then(|| Self::of(E::values(inputs), group, scaling, &jets))
@@ -75,10 +75,6 @@ impl<E: Precision> Reading<E> {
     }
 }
 
-fn is_value(jet: &schema::Jet) -> bool {
-    jet.degree.iter().all(|&n| n == 0)
-}
-
 impl<E: Precision> JetMap<E> {
     fn new(jet: &schema::Jet, outputs: &[Output], scaling: &Scaling) -> Self {
         let shrink: f64 = jet.degree.iter().zip(&scaling.half).map(|(&n, half)| half.powi(i32::from(n))).product();
@@ -91,7 +87,7 @@ impl<E: Precision> JetMap<E> {
                 Some((at, E::from_f64(coefficient * scale)))
             })
             .collect();
-        let offset = if is_value(jet) { scaling.offset[jet.head] } else { 0.0 };
+        let offset = if jet.is_value() { scaling.offset[jet.head] } else { 0.0 };
         Self { site: jet.site, offset: E::from_f64(offset), parts }
     }
 }

@@ -39,7 +39,7 @@ impl Layout {
         (misfits, by_learned, slopes)
     }
 
-    /// The same, to be written.
+    /// The parts of a record, to be written.
     pub(super) fn split_mut<'a>(&self, record: &'a mut [f64]) -> (&'a mut [f64], &'a mut [f64], &'a mut [f64]) {
         let (misfits, rest) = record.split_at_mut(self.rows);
         let (by_learned, slopes) = rest.split_at_mut(self.rows * self.learned);

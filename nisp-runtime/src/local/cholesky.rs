@@ -25,7 +25,7 @@ pub(super) struct Cholesky {
 }
 
 impl Fill {
-    /// Of matrices whose lower triangle has these entries; nothing where memory is too small.
+    /// Factors of matrices whose lower triangle has these entries; nothing where memory is too small.
     pub(super) fn of(entries: SymbolicSparseColMatRef<'_, usize>) -> Option<Self> {
         let order = order(entries)?;
         let order = SymmetricOrdering::Custom(order.as_ref());

@@ -11,7 +11,7 @@ use crate::schema;
 /// How the misfits of a cloud's points count.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Counting {
-    /// Of a misfit over its standard deviation: while the surface is sought, and once it is near.
+    /// The loss of a misfit over its standard deviation: while the surface is sought, and once it is near.
     far: Loss,
     near: Loss,
     /// The one at work.

@@ -16,7 +16,7 @@ use crate::solve::state;
 const FARTHEST: f64 = 5.0;
 /// Time of the error bars, in steps.
 pub(super) const BARS: f64 = 2.0;
-/// The same of the score tests of what is given (`scores.rs`).
+/// What the score tests of given numbers take, in steps (`scores.rs`).
 pub(super) const ASKED: f64 = 1.0;
 /// Largest change of a learned scalar's parameter in one step.
 const BOLDEST: f64 = 0.5;

@@ -8,7 +8,7 @@ use rand::SeedableRng;
 use rand::rngs::StdRng;
 
 use super::block::Block;
-use super::group::Integral;
+use super::integrals::Integral;
 use crate::network::normal;
 
 /// Draws: a standard deviation is known to within `1 / sqrt(2 * 64)`, 9 %.
@@ -26,9 +26,9 @@ pub(super) struct Draws {
 /// Deviations of all unknowns, draw by draw; no draws where there was no time for any.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Deviations {
-    /// Of the coefficients.
+    /// Right-hand sides of the coefficients.
     pub(super) coefficients: Vec<Vec<f64>>,
-    /// Of the parameters of learned scalars.
+    /// Right-hand sides of the parameters of learned scalars.
     pub(super) learned: Vec<Vec<f64>>,
 }
 
@@ -43,7 +43,7 @@ impl Deviations {
 }
 
 impl Draws {
-    /// Of so many coefficients and learned scalars. The same every time.
+    /// Draws for so many coefficients and learned scalars; they are the same every time.
     pub(super) fn new(len: usize, learned: usize) -> Self {
         Self { right: vec![0.0; len * COUNT], below: vec![0.0; learned * COUNT], random: StdRng::seed_from_u64(0) }
     }

@@ -21,7 +21,6 @@ impl Group {
         let mut jets = vec![0.0; count * stride];
         jets.par_chunks_mut(stride).enumerate().for_each(|(at, jets)| {
             let (jet, operator) = (&self.schema.jets[at], &self.operators[at]);
-            let is_value = jet.degree.iter().all(|&n| n == 0);
             let (splines, lattice) = (&sites.splines[self.slots[at]], &heads.lattices[jet.head]);
             let lines = lattice.lines();
             let mut across = Vec::new();
@@ -31,7 +30,7 @@ impl Group {
                     let along = splines.factors(p, exponents, &mut across);
                     coefficient * contracted(cell, &lines, &across, along)
                 };
-                let offset = if is_value { heads.offset[jet.head] } else { 0.0 };
+                let offset = if jet.is_value() { heads.offset[jet.head] } else { 0.0 };
                 *out = offset + heads.scale[jet.head] * operator.iter().map(term).sum::<f64>();
             }
         });

@@ -100,7 +100,7 @@ impl Heads {
         self.parts_of(head, point, &Exponents::default())
     }
 
-    /// The same of a derivative of a head.
+    /// The same for a derivative of a head.
     pub(super) fn parts_of(&self, head: usize, point: &[f64], exponents: &Exponents) -> Vec<(usize, f64)> {
         let (lattice, scale) = (&self.lattices[head], self.scale[head]);
         let place = lattice.place(point);

@@ -31,7 +31,7 @@ pub(crate) struct KeptLattices {
 }
 
 impl KeptLattices {
-    /// The same without draws.
+    /// The same answer without draws.
     pub(crate) fn without_bars(&self) -> Self {
         let Self { heads, theta, learned, .. } = self;
         let draws = Deviations::default();

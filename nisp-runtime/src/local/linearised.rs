@@ -32,7 +32,7 @@ impl Group {
         self.at_tests(heads, evaluated, learned)
     }
 
-    /// The same of every test.
+    /// The rows of every test, linearised.
     fn at_tests(&self, heads: &Heads, evaluated: &Evaluated, learned: &[f64]) -> Vec<Block> {
         let rows = self.own_rows();
         let layout = self.layout(heads, rows.len(), learned.len());

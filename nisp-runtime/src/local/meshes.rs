@@ -3,6 +3,7 @@
 use super::Local;
 use super::heads::Heads;
 use super::lattice::{Lattice, MOST_COORDINATES, NONE, Span};
+use crate::ends::ranges;
 use crate::problem::Bound;
 
 /// The lattice of the state: by coordinate, so many cells along the longest of those that share a scale with it.
@@ -10,11 +11,7 @@ pub(super) fn base(bound: &Bound, cells: &[f64], tests: usize) -> Lattice {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
     let (mut low, mut spacing, mut count) = (Vec::new(), Vec::new(), Vec::new());
-    let range = |axis: usize| {
-        let values = bound.coordinates.iter().flat_map(|points| points.iter().skip(axis).step_by(inputs));
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
-    };
-    let ranges: Vec<(f64, f64)> = (0..inputs).map(range).collect();
+    let ranges = ranges(&bound.coordinates, inputs);
     for axis in 0..inputs {
         let group = schema.coordinates[axis].scale_group;
         let tied = (0..inputs).filter(|&other| schema.coordinates[other].scale_group == group);

@@ -19,6 +19,7 @@ mod draws;
 mod evaluated;
 mod group;
 mod heads;
+mod integrals;
 mod judged;
 mod kept;
 mod lattice;

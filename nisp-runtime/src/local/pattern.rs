@@ -23,7 +23,7 @@ pub(super) struct Part {
 }
 
 impl Pattern {
-    /// Of a matrix whose columns have entries in these rows, each on and below the diagonal and in order; nothing where memory is too
+    /// The pattern of a matrix whose columns have entries in these rows, each on and below the diagonal and in order; nothing where memory is too
     /// small.
     pub(super) fn new(columns: &[Vec<usize>]) -> Option<Self> {
         let mut starts = vec![0];

@@ -42,7 +42,7 @@ pub(super) struct Place {
     pub(super) step: u64,
     /// Steps of the schedule that are left out.
     pub(super) skipped: u64,
-    /// Of the surfaces.
+    /// Feet of the surfaces.
     pub(super) feet: Vec<Feet>,
 }
 

@@ -15,7 +15,7 @@ use crate::solve::driver::{Warning, WarningKind};
 
 /// How much coarser.
 const COARSER: f64 = 1.5;
-/// What it takes, in steps on the finer lattice.
+/// What the comparison takes, in steps on the finer lattice.
 pub(super) const COST: f64 = 2.0;
 /// Change of a field, beside its size, above which it is not resolved.
 const MOST: f64 = 1e-2;

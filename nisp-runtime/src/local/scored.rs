@@ -25,7 +25,7 @@ pub(super) struct Scored {
 }
 
 impl Scored {
-    /// Of no rows, for so many coefficients and unknowns of the border.
+    /// A sum over no rows yet, for so many coefficients and unknowns of the border.
     pub(super) fn new(known: Known, coefficients: usize, border: usize) -> Self {
         Self { known, right: vec![0.0; coefficients], below: vec![0.0; border], slope: 0.0, square: 0.0 }
     }
@@ -44,7 +44,7 @@ impl Scored {
         let (step, shared) = factor.solve(&self.right, &self.below)?;
         let slope = self.slope - vector::dot(gradient, &step) - vector::dot(below, &shared);
         let square = self.square - vector::dot(&self.right, &step) - vector::dot(&self.below, &shared);
-        // Of a number that only integrals read nothing is said: the border has their squares.
+        // Nothing is said of a number that integrals alone read: the squares of their rows are in the border.
         if self.square > 0.0 && square > OPEN * self.square {
             Score::by((self.known, by_prior), slope, square)
         } else {

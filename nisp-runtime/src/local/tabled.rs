@@ -18,7 +18,7 @@ pub(super) struct Splines {
 }
 
 impl Splines {
-    /// Of points given flat, with derivatives up to an order.
+    /// A table of points given flat, with derivatives up to an order.
     pub(super) fn new(lattice: &Lattice, highest: usize, flat: &[f64]) -> Self {
         let (axes, orders, count) = (lattice.axes().to_vec(), highest + 1, lattice.degree + 1);
         let dimensions = axes.len();

@@ -53,7 +53,7 @@ impl Bound {
         measured.contains(&false).then_some(measured)
     }
 
-    /// Those of the values at the points of a group at which an observation was measured.
+    /// The values at those points of a group at which an observation was measured.
     pub(crate) fn measured<T: Clone>(&self, group: usize, term: &schema::Term, values: &[T]) -> Vec<T> {
         let Some(measured) = self.lacking(group, term) else { return values.to_vec() };
         let each = values.len() / measured.len().max(1);

@@ -15,6 +15,7 @@ mod rest;
 mod rests;
 mod scale;
 mod system;
+mod uniform;
 mod units;
 
 pub(crate) use bound::{Bound, EngineTolerance};

@@ -10,7 +10,7 @@ use crate::simd::Isa;
 pub(super) struct Data<'a> {
     /// Point by point.
     pub(super) coordinates: &'a [Vec<f64>],
-    /// Of the points' partners; empty unless the group is paired.
+    /// The coordinates of the points' partners; empty unless the group is paired.
     pub(super) partners: &'a [Vec<f64>],
     pub(super) columns: &'a [Vec<Vec<f64>>],
     /// By group and term; empty unless the term is a Chamfer distance.
@@ -35,7 +35,7 @@ pub(super) struct Probe {
 }
 
 impl Probe {
-    /// Of the group `at`, on points of `inputs` coordinates.
+    /// A probe of the group `at`, on points of `inputs` coordinates.
     pub(super) fn new(
         kernel: GroupKernel<f64>,
         schema: &'static schema::Group,

@@ -2,6 +2,7 @@
 
 use super::probe::{Data, Probe};
 use super::{BindError, Bound, Problem, Rest};
+use crate::ends::ends;
 use crate::network::Inputs;
 use crate::schema::{self, Column, Jet, Origin, Term, TermKind};
 use crate::units::{Number, Si};
@@ -67,7 +68,7 @@ struct Reading {
 fn readings(bound: &Bound, group: usize, term: &'static Term) -> Option<Vec<Reading>> {
     let own = &bound.problem.scene().schema.groups[group];
     let [jet] = *term.jets else { return None };
-    let jet = Some(&own.jets[jet]).filter(|jet| term.kind == TermKind::Observation && is_value(jet))?;
+    let jet = Some(&own.jets[jet]).filter(|jet| term.kind == TermKind::Observation && jet.is_value())?;
     let reading = |(&at, row): (&usize, usize)| {
         let column = &own.columns[at];
         let mut values = bound.measured(group, term, &bound.columns[group][at]);
@@ -137,12 +138,12 @@ impl Place<'_> {
         let is_like = |unit: &schema::Unit| unit.exponents == column.unit.exponents;
         let is_open = |(at, jet): (usize, &Jet)| {
             let head = &scene.heads[jet.head];
-            is_value(jet) && mean(jet.head).is_none() && (!head.source || is_like(&head.unit)) && is_read(at)
+            jet.is_value() && mean(jet.head).is_none() && (!head.source || is_like(&head.unit)) && is_read(at)
         };
         let is_learned = |(slot, scalar): (usize, &schema::Scalar)| {
             matches!(scalar.origin, Origin::Learned { .. }) && is_like(&scalar.unit) && is_read(group.jets.len() + slot)
         };
-        let is_held = term.jets.iter().any(|&at| group.jets[at].head == own && is_value(&group.jets[at]));
+        let is_held = term.jets.iter().any(|&at| group.jets[at].head == own && group.jets[at].is_value());
         if !is_held || group.jets.iter().enumerate().any(is_open) || scene.scalars.iter().enumerate().any(is_learned) {
             return None;
         }
@@ -154,22 +155,18 @@ impl Place<'_> {
             let rows = gauge.probe.rows(&jets(&gauge.probe, &values, None), &self.bound.scalars, false);
             Some(outward.of(Number::engine(*rows.get(observed * gauge.probe.stride)?)).as_declared())
         });
-        let at = at.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+        let at: [f64; 2] = ends(at).into();
         let rest = Rest { by: Some((group.name, term.name)), column, measured, at };
         at.iter().all(|x| x.is_finite()).then_some(rest)
     }
 }
 
-fn is_value(jet: &Jet) -> bool {
-    jet.degree.iter().all(|&degree| degree == 0)
-}
-
 /// Jets of heads that are so large, by head, and do not change; one head may differ from point to point.
 fn jets(probe: &Probe, values: &[f64], own: Option<(usize, &[f64])>) -> Vec<f64> {
-    let mut jets = probe.jets(|jet| if is_value(jet) { values[jet.head] } else { 0.0 });
+    let mut jets = probe.jets(|jet| if jet.is_value() { values[jet.head] } else { 0.0 });
     if let Some((head, own)) = own {
         let all = jets.chunks_exact_mut(probe.stride).zip(probe.schema.jets);
-        all.filter(|(_, jet)| jet.head == head && is_value(jet)).for_each(|(jets, _)| jets.copy_from_slice(own));
+        all.filter(|(_, jet)| jet.head == head && jet.is_value()).for_each(|(jets, _)| jets.copy_from_slice(own));
     }
     jets
 }
@@ -183,7 +180,7 @@ fn roots(bound: &Bound, probe: &Probe, (row, head): (usize, usize), values: &[f6
         let jets = jets(probe, values, Some((head, &found)));
         let left = probe.rows(&jets, &bound.scalars, false);
         let bars = probe.sensitivities(row, &jets, &bound.scalars);
-        let own = || probe.schema.jets.iter().enumerate().filter(|(_, jet)| jet.head == head && is_value(jet));
+        let own = || probe.schema.jets.iter().enumerate().filter(|(_, jet)| jet.head == head && jet.is_value());
         for (at, (found, step)) in found.iter_mut().zip(&mut steps).enumerate() {
             let slope: f64 = own().map(|(jet, _)| bars[jet * probe.stride + at]).sum();
             *step = (left[row * probe.stride + at] - target) / slope;

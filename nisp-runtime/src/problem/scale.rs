@@ -5,6 +5,7 @@
 //! divided by the sum of their terms' sizes.
 
 use super::probe::{Data, Probe};
+use crate::ends::ranges;
 use crate::engine::Scaling;
 use crate::kernel::SceneRef;
 use crate::network::Inputs;
@@ -71,11 +72,7 @@ pub(super) fn scales(scene: &SceneRef, scalars: &mut [f64], data: Data<'_>, inpu
 /// Middle and half extent of every coordinate; the extent is shared within a scale group.
 fn extents(schema: &schema::Scene, coordinates: &[Vec<f64>]) -> (Vec<f64>, Vec<f64>) {
     let inputs = schema.coordinates.len();
-    let range = |i: usize| {
-        let values = coordinates.iter().flat_map(|points| points.iter().skip(i).step_by(inputs));
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
-    };
-    let ranges: Vec<(f64, f64)> = (0..inputs).map(range).collect();
+    let ranges = ranges(coordinates, inputs);
     let half = |i: usize| {
         let group = schema.coordinates[i].scale_group;
         let tied = (0..inputs).filter(|&j| schema.coordinates[j].scale_group == group);
@@ -106,7 +103,7 @@ impl Probe {
                     (0..self.schema.jets.len()).filter(|&j| self.rms(&slopes[j * self.stride..]) > 0.0).collect();
                 let [jet] = read[..] else { continue };
                 let head = self.schema.jets[jet].head;
-                let is_value = self.schema.jets[jet].degree.iter().all(|&n| n == 0);
+                let is_value = self.schema.jets[jet].is_value();
                 if !is_value || heads[head].is_some() || scene.heads[head].transformed {
                     continue;
                 }
@@ -233,8 +230,7 @@ fn network(scene: &schema::Scene, heads: &[(f64, f64)], head: usize) -> (f64, f6
 /// Typical magnitude of a jet of a head with this offset and scale.
 fn typical(jet: &schema::Jet, half: &[f64], (offset, scale): (f64, f64)) -> f64 {
     let shrink: f64 = jet.degree.iter().zip(half).map(|(&n, half)| half.powi(i32::from(n))).product();
-    let is_value = jet.degree.iter().all(|&n| n == 0);
-    if is_value { offset.abs() + scale } else { scale / shrink }
+    if jet.is_value() { offset.abs() + scale } else { scale / shrink }
 }
 
 /// Mean and standard deviation; constant data take their own size as scale.

@@ -2,6 +2,7 @@
 //! precision.
 
 use super::{Binding, Bound, Problem, UnitSystem};
+use crate::ends::ranges;
 use crate::schema::{Jet, Unit};
 use crate::units::{Number, Scale, Si};
 
@@ -19,10 +20,10 @@ impl Problem {
     fn quantities(&self, bindings: &[&Binding]) -> Vec<(Unit, Number<Si>)> {
         let schema = self.scene.schema;
         let inputs = schema.coordinates.len();
+        let ranges = ranges(bindings.iter().map(|b| &b.points.coordinates), inputs);
         let mut quantities = Vec::new();
         for (i, coordinate) in schema.coordinates.iter().enumerate() {
-            let values = bindings.iter().flat_map(|b| b.points.coordinates.iter().skip(i).step_by(inputs));
-            let (low, high) = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+            let (low, high) = ranges[i];
             let half = Number::declared((high - low) / 2.0);
             quantities.push((coordinate.unit, coordinate.unit.factor.of(half)));
         }
@@ -60,7 +61,7 @@ impl Bound {
     }
 
     /// Natural size of a derivative in the engine's units: its head's over the extents of its coordinates.
-    fn typical(&self, jet: &Jet) -> f64 {
+    pub(crate) fn typical(&self, jet: &Jet) -> f64 {
         let degrees = jet.degree.iter().zip(&self.scaling.half);
         self.head_scale(jet.head) / degrees.map(|(&degree, half)| half.powi(i32::from(degree))).product::<f64>()
     }

@@ -17,7 +17,7 @@ const MAGIC: &[u8] = b"nisp checkpoint 2\n";
 /// The state of a solver and the problem it belongs to.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Checkpoint {
-    /// Of problem and settings.
+    /// Fingerprint of problem and settings.
     pub(super) fingerprint: u64,
     pub(super) state: State,
 }

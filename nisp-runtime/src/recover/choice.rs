@@ -33,7 +33,7 @@ pub(super) struct Attempt {
     pub(super) carrier: Box<dyn carried::Carrier>,
     pub(super) seed: u64,
     pub(super) why: String,
-    /// What it may take of the budget, as a share.
+    /// The share of the budget that it may take.
     pub(super) share: f64,
 }
 
@@ -133,5 +133,5 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
 fn differentiated(schema: &Scene) -> Option<&'static str> {
     let jets = schema.groups.iter().flat_map(|group| group.jets);
     let mut sources = jets.filter(|jet| schema.heads[jet.head].source);
-    sources.find(|jet| jet.degree.iter().any(|&degree| degree > 0)).map(|jet| schema.heads[jet.head].name)
+    sources.find(|jet| !jet.is_value()).map(|jet| schema.heads[jet.head].name)
 }

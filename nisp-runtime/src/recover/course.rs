@@ -15,7 +15,7 @@ const SINGLE_STEPS: &str = "single steps";
 
 /// The course of a run.
 pub(super) struct Course<'a, 'm> {
-    /// Of problem and settings.
+    /// Fingerprint of problem and settings.
     pub(super) fingerprint: u64,
     /// Steps that are left, and the budget from the start on.
     pub(super) limits: Limits,

@@ -31,7 +31,7 @@ fn is_known_at_start(bound: &Bound) -> bool {
         let of_source = |head: usize| schema.heads[head].source;
         term.kind == TermKind::Residual
             && !term.jets.is_empty()
-            && jets.all(|jet| of_source(jet.head) && jet.degree.iter().all(|&degree| degree == 0))
+            && jets.all(|jet| of_source(jet.head) && jet.is_value())
     };
     let mut groups = schema.groups.iter().zip(&bound.coordinates);
     schema.coordinates.len() == 1

@@ -22,7 +22,7 @@ pub(super) struct Promotion {
     narrow: Vec<f32>,
     wide: Vec<f64>,
     theta: Vec<f64>,
-    /// It is time for double precision.
+    /// True once double precision is to take over.
     pub(super) due: bool,
 }
 

@@ -33,7 +33,7 @@ struct Kept {
     live: Live,
     local: Local,
     settings: Settings,
-    /// Of the last problem that was solved from nothing.
+    /// What is kept of the last problem that was solved from its start.
     fingerprint: u64,
     /// What the data leave open there.
     open: Vec<Warning>,

@@ -25,7 +25,7 @@ pub(super) struct Spread {
 }
 
 impl Spread {
-    /// Of a network; none where the curvature cannot be had.
+    /// The spread of a network; nothing where its curvature cannot be factorised.
     pub(super) fn of_network(
         bound: &Bound,
         architecture: Architecture,
@@ -46,7 +46,7 @@ impl Spread {
         Some(Self { points, heads, learned: posterior::spread(curvature, &unit), scalars })
     }
 
-    /// Of local functions; without columns where there was no time for draws.
+    /// The spread of local functions; it has no columns where there was no time for draws.
     pub(super) fn of_local(bound: &Bound, found: &LocalSolution) -> Self {
         let points = sample(bound);
         let inward = bound.inward(&points);
@@ -55,7 +55,7 @@ impl Spread {
         Self { points, heads, learned: found.kept.spread_of_learned(), scalars: found.kept.learned.len() }
     }
 
-    /// Of splines, by one of their roots.
+    /// The spread of splines, from one of their roots.
     pub(super) fn of_splines(bound: &Bound, found: &SplineSolution, root: &Root) -> Self {
         let points = sample(bound);
         let inward = bound.inward(&points);

@@ -1,5 +1,6 @@
 //! Where an answer holds: the range of the points that it was found from, so that nothing is read beyond without a word.
 
+use crate::ends::ends;
 use crate::problem::Frame;
 use crate::schema::Scene;
 use crate::solve::fault::Fault;
@@ -30,7 +31,7 @@ struct Hull {
 }
 
 impl Extent {
-    /// Of points by group, flat and in the engine's units.
+    /// The extent of points by group, flat and in the engine's units.
     pub(crate) fn of(frame: &Frame, groups: &[Vec<f64>]) -> Self {
         let coordinates = frame.scene.schema.coordinates;
         let axes = coordinates.len();
@@ -40,10 +41,7 @@ impl Extent {
             let values = groups.iter().flat_map(move |points| points.iter().skip(axis).step_by(axes));
             values.map(move |&x| outward(axis, x))
         };
-        let range = |axis: usize| {
-            along(axis).fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)])
-        };
-        let ranges: Vec<[f64; 2]> = (0..axes).map(range).collect();
+        let ranges: Vec<[f64; 2]> = (0..axes).map(|axis| ends(along(axis)).into()).collect();
         let most = groups.iter().map(|points| points.len() / axes).max().unwrap_or(1).max(1) as f64;
         // Over one coordinate both ends are among the points.
         let share = if axes == 1 { ROUNDING } else { most.powf(-1.0 / axes as f64) };

@@ -18,7 +18,7 @@ const MOST_DERIVATIVES: usize = 1 << 22;
 pub(crate) struct KeptNetwork {
     pub(crate) architecture: Architecture,
     pub(crate) theta: Vec<f64>,
-    /// Of the covariance of the parameters; none where there are no error bars.
+    /// A root of the covariance of the parameters; nothing where there are no error bars.
     pub(crate) root: Option<Root>,
 }
 

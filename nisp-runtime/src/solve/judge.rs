@@ -38,7 +38,7 @@ pub(crate) struct Judge {
     since_best: u64,
     /// Refused or exhausted steps in a row.
     stuck: u64,
-    /// Of the last step.
+    /// The judgement of the last step.
     judgement: Judgement,
 }
 

@@ -78,7 +78,7 @@ pub struct Outcome<E> {
 /// Something that a user should know.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Warning {
-    /// What it is about, for programs.
+    /// The kind of the warning, for programs.
     pub kind: WarningKind,
     /// One sentence, and a remedy.
     pub message: String,

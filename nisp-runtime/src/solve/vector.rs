@@ -3,6 +3,7 @@
 //! Partial sums let the compiler use vector registers of any width; because their order is part of the program and nothing
 //! is fused, every machine gives the same bits.
 
+use crate::ends::ends;
 use crate::real::Real;
 use crate::wide::widest;
 
@@ -36,7 +37,7 @@ pub(crate) fn largest(x: &[f64]) -> usize {
 /// How far two answers differ anywhere, over the range of the first: at least a hundred-thousandth of its level, or of what is
 /// `natural`, so that rounding is no difference.
 pub(crate) fn farthest(x: &[f64], other: &[f64], natural: f64) -> f64 {
-    let (low, high) = x.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (x.min(l), x.max(h)));
+    let (low, high) = ends(x.iter().copied());
     let range = (high - low).max(1e-5 * high.abs().max(low.abs()).max(natural));
     let farthest = x.iter().zip(other).map(|(a, b)| (a - b).abs());
     farthest.fold(0.0, |most: f64, off| if off <= most { most } else { off }) / range

@@ -26,7 +26,7 @@ pub(super) struct Bars {
 }
 
 impl Bars {
-    /// Of kinds with their shares, about an answer.
+    /// Error bars about an answer, from kinds of smoothness with their shares.
     pub(super) fn of(solver: &mut Solver<'_>, likely: Vec<(f64, Tried)>, theta: &[f64]) -> Result<Self, Fault> {
         let schema = solver.bound.problem.scene().schema;
         let mut rows = Along::sources(&solver.heads, schema, theta);

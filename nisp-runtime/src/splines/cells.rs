@@ -5,6 +5,7 @@ use super::drives;
 use super::jumps::{jumps, of_columns};
 use super::prior;
 use super::resolved;
+use crate::ends::ends;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
@@ -201,7 +202,7 @@ pub(super) fn moved(bound: &Bound, group: usize, breakpoints: &[f64]) -> Option<
         return None;
     }
     let own = &bound.coordinates[group];
-    let (low, high) = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
+    let (low, high) = ends(own.iter().copied());
     let residual = Basis::new(SMOOTH, breakpoints);
     let slack = 1e-9 * (high - low);
     let centres = (0..residual.len()).map(|i| residual.centre(i));

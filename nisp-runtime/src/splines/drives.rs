@@ -2,6 +2,7 @@
 
 use super::group::Group;
 use super::heads::Heads;
+use crate::ends::ends;
 use crate::noise;
 use crate::problem::Bound;
 
@@ -31,7 +32,7 @@ pub(super) fn drives(bound: &Bound, groups: &[usize], degrees: &[usize], places:
     let mut drives = Vec::new();
     for (at, kernel) in kernels.into_iter().enumerate().filter(|(at, _)| groups.contains(at)) {
         let (group, own) = (&schema.groups[at], &bound.coordinates[at]);
-        let (low, high) = own.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), &x| (l.min(x), h.max(x)));
+        let (low, high) = ends(own.iter().copied());
         let columns = bound.filled_columns(at);
         let places: Vec<f64> = match columns.is_empty() {
             true => places.iter().copied().filter(|x| (low..=high).contains(x)).collect(),

@@ -109,7 +109,7 @@ impl Group {
         self.jets(heads, theta).0
     }
 
-    /// The same; also what programs read of bounded heads, by tower and place.
+    /// The jets, and what programs read of bounded heads, by tower and place.
     fn jets(&self, heads: &Heads, theta: &[f64]) -> (Facts, Vec<Vec<RawAlong>>) {
         let mut jets = vec![0.0; self.schema.jets.len() * self.stride];
         let all = self.schema.jets.iter().zip(&self.operators).zip(jets.chunks_exact_mut(self.stride.max(1)));

@@ -59,7 +59,7 @@ pub(super) fn of_columns(bound: &Bound) -> Vec<[f64; 2]> {
     jumps
 }
 
-/// The same of values at places that rise.
+/// Pairs of neighbouring places between which values jump; the places rise.
 fn of_rows(rows: &[(f64, f64)], noise: f64, alone: f64) -> Vec<[f64; 2]> {
     let is_jump = |near: &&[(f64, f64)]| {
         let change = |at: usize| (near[at + 1].1 - near[at].1).abs();

@@ -40,7 +40,7 @@ pub(super) struct Spread {
 }
 
 impl KeptSplines {
-    /// The same without deviations.
+    /// The same answer without deviations.
     pub(crate) fn without_bars(&self) -> Self {
         let Self { heads, theta, learned, .. } = self;
         Self { heads: heads.clone(), theta: theta.clone(), learned: learned.clone(), spreads: Vec::new() }
@@ -71,7 +71,7 @@ impl KeptSplines {
         places.iter().flat_map(row).collect()
     }
 
-    /// The same of the parameters of learned scalars.
+    /// The same for the parameters of learned scalars.
     pub(crate) fn spread_of_learned(&self, root: &Triangle) -> Vec<f64> {
         let count = self.learned.len();
         let unit = |at: usize| (0..root.shared()).map(|other| f64::from(at == other)).collect::<Vec<f64>>();

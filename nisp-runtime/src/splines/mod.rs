@@ -32,6 +32,7 @@ mod resolved;
 mod rows;
 mod scores;
 mod sharing;
+mod solution;
 mod solver;
 mod starts;
 mod step;
@@ -42,26 +43,22 @@ mod uneven;
 
 use std::time::Instant;
 
-use thiserror::Error;
-
 use crate::bounds;
 use crate::carrier::Progress;
 use crate::facts::{Answer, Leaning, OTHER_THAN_SPLINES};
-use crate::memory::{self, Exceeded};
+use crate::memory;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
-use crate::solve::fault::Fault;
 use crate::solve::state;
 
 use bars::Bars;
-use prior::{Course, HIGHEST_NOISY, KINDS, Smoothness};
-pub(crate) use triangle::Triangle;
-
 use course::Run;
 use iterate::State;
 use place::{ALL_SHARED, Place, Tried};
+use prior::{Course, HIGHEST_NOISY, KINDS, Smoothness};
+pub(crate) use solution::{Root, SplineError, SplineSolution};
 use solver::Solver;
 
 /// Coefficients up to which it is looked for what is open.
@@ -82,40 +79,6 @@ pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
         (cells::degrees(schema).is_none(), "derivatives of such an order"),
     ];
     refused.into_iter().find(|(is_so, _)| *is_so).map(|(_, what)| what).or_else(|| bounds::refused(schema))
-}
-
-/// Why splines cannot solve a problem.
-#[derive(Debug, Error)]
-pub(crate) enum SplineError {
-    /// Something that cannot be evaluated, or a state that does not fit.
-    #[error(transparent)]
-    Fault(#[from] Fault),
-    /// Too many rows for the memory.
-    #[error(transparent)]
-    Memory(#[from] Exceeded),
-}
-
-/// A problem solved by splines.
-pub(crate) struct SplineSolution {
-    pub(crate) kept: KeptSplines,
-    /// What is open is read from here.
-    pub(crate) roots: Vec<Root>,
-    pub(crate) status: Status,
-    pub(crate) iterations: u64,
-    pub(crate) loss: f64,
-    pub(crate) warnings: Vec<Warning>,
-    pub(crate) checkpoint: state::State,
-    /// What the verdict is made from.
-    pub(crate) answer: Answer,
-    /// By group and term: how far rows are off, and the noise that the evidence found.
-    pub(crate) misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
-}
-
-/// A square root of the inverse of the coefficients' covariance: of the whole problem, or without a condition.
-pub(crate) struct Root {
-    /// Group and term of the condition.
-    pub(crate) without: Option<(usize, usize)>,
-    pub(crate) triangle: Triangle,
 }
 
 /// Solves a bound problem within its limits, from the start or from a saved state. Conditions, by group and term, are those that

@@ -147,7 +147,7 @@ impl Place {
         let most = |kinds: &mut dyn Iterator<Item = &Tried>| kinds.map(|tried| tried.evidence).fold(f64::NAN, f64::max);
         let tried = || self.tried.iter().filter(|tried| tried.state.sort() == sort);
         let best = most(&mut tried());
-        // Of a course that has not been tried nothing is known.
+        // Nothing is known of a course that has not been tried.
         self.kinds.retain(|&kind| {
             let is_alike = |tried: &&Tried| KINDS[tried.kind].course == KINDS[kind].course;
             let own = most(&mut tried().filter(is_alike));

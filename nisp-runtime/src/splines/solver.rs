@@ -91,7 +91,7 @@ impl<'a> Solver<'a> {
         let amplitude = schema.heads.iter().map(|head| head.source.then(&mut next)).collect();
         let lengths = sharing::numbered(bound, next());
         let observed = schema.observed();
-        // Of fields that are not observed conditions are all that is known at first: they are level.
+        // Fields that are not observed are level at first: conditions are all that is known of them.
         let regressed = |head: usize| if observed.contains(&head) { REGRESS } else { LEVEL };
         let priors = heads.bases.iter().enumerate().map(|(head, basis)| Prior::new(basis, regressed(head))).collect();
         let sizes = schema.groups.iter().map(|group| vec![0.0; group.rows]).collect();
@@ -136,7 +136,7 @@ impl<'a> Solver<'a> {
         let degrees = cells::degrees(schema).unwrap_or_default();
         let (cells, shared) =
             ((breakpoints.len() - 1) as f64, (bound.learned.len() + belief(bound).numbers * sources(schema)) as f64);
-        // Of all heads on a cell: as many as rows and the band are wide.
+        // Functions of all heads on a cell: rows and the band are as wide.
         let functions = degrees.iter().map(|degree| (degree + 1) as f64).sum::<f64>();
         let triangles = 3.0 * cells * degrees.len() as f64 * (functions + shared);
         let groups = schema.groups.iter().zip(&bound.coordinates).map(|(group, points)| {

@@ -31,7 +31,7 @@ pub(super) struct Found {
     pub(super) loss: f64,
     /// Largest change of a coefficient or parameter.
     pub(super) change: f64,
-    /// What it would be of a learned scalar's parameter, were the whole step taken.
+    /// Largest change of a learned scalar's parameter that the whole step would make.
     pub(super) ahead: f64,
     /// Logarithm of the evidence, up to a constant.
     pub(super) evidence: f64,

@@ -43,7 +43,7 @@ pub(super) struct Straight {
 }
 
 impl Straight {
-    /// Of functions over cells.
+    /// The line of functions over cells.
     pub(super) fn new(basis: &Basis) -> Self {
         let places = basis.breakpoints();
         let (first, length) = (places[0], places[places.len() - 1] - places[0]);

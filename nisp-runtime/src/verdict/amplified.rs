@@ -42,9 +42,7 @@ fn stated(bound: &Bound, answer: &Answer, head: usize) -> impl Iterator<Item = f
     let groups = schema.groups.iter().zip(&answer.facts).zip(kernels).filter(|((group, _), _)| !group.is_beliefs());
     groups.flat_map(move |((group, facts), kernel)| {
         let is_value = move |term: &&Term| match *term.jets {
-            [jet] if term.kind == TermKind::Residual => {
-                group.jets[jet].head == head && group.jets[jet].degree.iter().all(|&degree| degree == 0)
-            }
+            [jet] if term.kind == TermKind::Residual => group.jets[jet].head == head && group.jets[jet].is_value(),
             _ => false,
         };
         let terms = group.terms.iter().filter(is_value);

@@ -56,7 +56,7 @@ mod tests {
             let steps: Vec<f64> = sound.iter().map(|x| (fine * x).round() / fine).collect();
             assert_eq!(held(&steps).0, 0);
         }
-        // Nothing is exactly nothing.
+        // A source that is zero for a while is not held.
         let late: Vec<f64> = sound.iter().enumerate().map(|(at, x)| if at < 50 { 0.0 } else { *x }).collect();
         assert_eq!(held(&late).0, 0);
     }

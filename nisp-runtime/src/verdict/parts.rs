@@ -30,7 +30,7 @@ fn parts(rows: usize, most: usize) -> Option<usize> {
     Some((rows / FEW).min(most)).filter(|parts| *parts > 1)
 }
 
-/// The same of values in their order, by parts of the record.
+/// The same for values in their order: the parts are those of the record.
 fn by_parts(values: &[f64]) -> Option<f64> {
     let parts = parts(values.len(), PARTS)?;
     let rows = |part: usize| part * values.len() / parts..(part + 1) * values.len() / parts;

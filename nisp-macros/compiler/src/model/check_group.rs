@@ -1,7 +1,8 @@
 //! Groups of points: their columns, definitions and terms.
 
 use super::check_term::TermInput;
-use super::declare::{add_components, components, part, print_definition, shaped, unit_and_dim};
+use super::components::{add_components, components, part, shaped};
+use super::declare::{print_definition, unit_and_dim};
 use super::elaborate::Elaborator;
 use super::scope::{Meaning, Symbol};
 use super::value::{Extent, Reads, Scalar};

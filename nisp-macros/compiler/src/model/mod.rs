@@ -3,14 +3,10 @@
 //! - Input: the syntax tree.
 //! - Output: a [`Model`], in which every expression is scalar, every name is an index, and every unit agrees.
 
-use std::rc::Rc;
-
 use proc_macro2::{Span, TokenStream};
 
-use crate::loss::Robust;
-use crate::rational::Rational;
 pub use crate::syntax::{FileKind, Name, Portion};
-use crate::unit::{Dimension, Unit};
+use crate::unit::Unit;
 
 mod arithmetic;
 mod build;
@@ -24,22 +20,29 @@ mod check_observation;
 mod check_scene;
 mod check_term;
 mod compare_units;
+mod components;
 mod constant;
 mod declare;
 mod differentiate;
 mod elaborate;
+mod expr;
 mod jumps;
 mod lint;
 mod lint_scene;
 mod orders;
+mod place;
 mod question;
 mod resolve_name;
 mod scaling;
 mod scope;
 mod tensor;
+mod term;
 mod value;
 
 pub use check::check;
+pub use expr::{Expr, Function, Node};
+pub use place::{Place, Region};
+pub use term::{Term, TermKind};
 
 /// A whole `pde!` invocation, checked.
 #[derive(Clone, Debug)]
@@ -220,62 +223,6 @@ pub struct Group {
     pub docs: Vec<String>,
 }
 
-/// Where a group's points lie.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Place {
-    /// Which part of the domain.
-    pub portion: Portion,
-    /// The domain's factors.
-    pub domain: Vec<Region>,
-    /// About how many points it shall have, if the group says so.
-    pub points: Option<usize>,
-}
-
-/// A region over some coordinates, in their declared units.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Region {
-    /// Lower and upper end for each coordinate.
-    Box(Vec<[f64; 2]>),
-    /// An ellipse with its axes along the coordinates; a disc.
-    Ellipse {
-        /// Its centre.
-        centre: [f64; 2],
-        /// Half its diameters.
-        semi_axes: [f64; 2],
-    },
-    /// The corners of a polygon.
-    Polygon(Vec<[f64; 2]>),
-    /// A ball.
-    Ball {
-        /// Its centre.
-        centre: [f64; 3],
-        /// Its radius.
-        radius: f64,
-    },
-    /// A cylinder along the third coordinate.
-    Cylinder {
-        /// Its axis.
-        centre: [f64; 2],
-        /// Its radius.
-        radius: f64,
-        /// Where it begins and ends.
-        ends: [f64; 2],
-    },
-    /// What a file holds.
-    File {
-        /// Its kind.
-        kind: FileKind,
-        /// Its path as written.
-        path: String,
-        /// One of the file's unit in the coordinates' own; 1 of a table, whose headers have units.
-        scale: f64,
-    },
-    /// What is in either.
-    Plus(Box<[Region; 2]>),
-    /// What is in the first and not in the second.
-    Minus(Box<[Region; 2]>),
-}
-
 impl Group {
     /// Groups that the compiler adds have names in parentheses, which people cannot write.
     pub fn is_internal(&self) -> bool {
@@ -295,79 +242,6 @@ impl Group {
     pub(crate) fn data_name(&self) -> String {
         format!("{}Data", self.camel_name())
     }
-}
-
-/// One condition of a group.
-#[derive(Clone, Debug)]
-pub struct Term {
-    /// Its name.
-    pub name: Name,
-    /// What it asks.
-    pub kind: TermKind,
-    /// How a row's misfit counts.
-    pub loss: Option<Robust>,
-    /// The user's weight (1 if none is written).
-    pub weight: f64,
-    /// How far rows may be off, in SI units: the noise of data, the tolerance of a condition, the spread of a prior.
-    pub within: Option<f64>,
-    /// The unit shared by all rows; dimension and text of both sides.
-    pub unit: Unit,
-    /// The condition as plain text.
-    pub equation: String,
-    /// The condition as LaTeX.
-    pub latex: String,
-    /// Doc comment.
-    pub docs: Vec<String>,
-}
-
-/// What a term asks of the expressions in it; each entry of a vector is one scalar row per point.
-#[derive(Clone, Debug)]
-// There are a handful of terms; plain variants read better than boxes.
-#[allow(clippy::large_enum_variant)]
-pub enum TermKind {
-    /// `a == b`, as `a - b`.
-    Residual(Vec<Expr>),
-    /// `observe a ~ column`: like a residual, but the misfit is measurement noise.
-    Observation {
-        /// `a - column`
-        rows: Vec<Expr>,
-        /// The column of each row, by index in the group.
-        columns: Vec<usize>,
-    },
-    /// `a >= b`, as `a - b`, wanted non-negative.
-    Inequality(Vec<Expr>),
-    /// `0 <= a _|_ b >= 0`: both non-negative and one of them zero; each with its own dimension.
-    Complementarity {
-        /// One side.
-        a: Expr,
-        /// The other side.
-        b: Expr,
-        /// Dimension of `a`.
-        a_dimension: Dimension,
-        /// Dimension of `b`.
-        b_dimension: Dimension,
-    },
-    /// `integral(e) == target`: a sum over the group with the points' quadrature weights.
-    Integral {
-        /// Integrand, one entry per row.
-        integrand: Vec<Expr>,
-        /// Target value; contains parameters and numbers only.
-        target: Vec<Expr>,
-        /// Unit of the points' weights: a length, an area, a volume or an extent of coordinates, as declared; absent
-        /// where units are off or nothing tells.
-        measure: Option<Unit>,
-    },
-    /// The surface `point` passes through a measured cloud.
-    Chamfer {
-        /// Deformed position, one entry per dimension of the cloud.
-        point: Vec<Expr>,
-        /// The entries as people write them, where they are written one by one.
-        names: Vec<String>,
-        /// Both directions, not only cloud to surface.
-        symmetric: bool,
-        /// Only the distance across the surface, not that along it.
-        plane: bool,
-    },
 }
 
 /// A specialisation: which terms are used, what is fixed, what is learned.
@@ -391,73 +265,4 @@ pub struct Scene {
     pub warnings: Vec<String>,
     /// Doc comment.
     pub docs: Vec<String>,
-}
-
-/// A scalar expression, shared where the user shared it (`let`).
-pub type Expr = Rc<Node>;
-
-/// The node of a scalar expression.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Node {
-    /// A dimensionless literal, exact.
-    Number(Rational),
-    /// A dimensionless real that is not rational (`pi`), or a literal too long to be exact.
-    Real(f64),
-    /// A literal with a unit: its value in SI units and its dimension.
-    Quantity(f64, Dimension),
-    /// A coordinate, by index.
-    Coordinate(usize),
-    /// A field or source, by index.
-    Field(usize),
-    /// A parameter, by index.
-    Parameter(usize),
-    /// A data column of the group at hand, by index.
-    Column(usize),
-    /// A sum.
-    Add(Vec<Expr>),
-    /// A product.
-    Mul(Vec<Expr>),
-    /// A quotient.
-    Div(Expr, Expr),
-    /// A rational power with a literal exponent.
-    Pow(Expr, Rational),
-    /// A general power; base and exponent dimensionless.
-    Power(Expr, Expr),
-    /// An elementary function.
-    Call(Function, Expr),
-    /// The smaller of two.
-    Min(Expr, Expr),
-    /// The larger of two.
-    Max(Expr, Expr),
-    /// The derivative of an expression by a coordinate.
-    Derivative(Expr, usize),
-    /// The expression at the point's partner (periodic pairs).
-    Partner(Expr),
-}
-
-/// Elementary functions of one argument.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
-#[allow(missing_docs)]
-pub enum Function {
-    Sin,
-    Cos,
-    Tan,
-    Asin,
-    Acos,
-    Atan,
-    Sinh,
-    Cosh,
-    Tanh,
-    Exp,
-    Ln,
-    Sqrt,
-    Abs,
-    /// Derivative of `Abs`, zero at zero.
-    Sign,
-    /// One for positive arguments, zero otherwise: derivative of `max(x, 0)`.
-    Step,
-    /// `ln(1 + exp x)`.
-    Softplus,
-    /// `1 / (1 + exp(-x))`.
-    Sigmoid,
 }

@@ -4,9 +4,9 @@
 //! measurements and without them, and each of these is a sum of squares and a determinant.
 
 use super::between::is_filled;
+use super::rows::{Asked, Rows, is_any};
 use super::solver::Solver;
 use super::state::{Phase, State};
-use super::step::{Asked, Rows, is_any};
 use crate::local::block::Block;
 use crate::schema::TermKind;
 use crate::tolerance::LOOSE;
@@ -27,7 +27,7 @@ pub(super) enum BorneOut {
     Bends,
     /// That they change little, as sources with edges do, or either, about as much.
     Edges,
-    /// Nothing: the evidence was not found.
+    /// The evidence was not found.
     Unknown,
 }
 

@@ -6,6 +6,7 @@ use rand::seq::index::sample;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
+use crate::ends::ranges;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 
@@ -112,7 +113,7 @@ fn largest(bound: &Bound) -> Option<usize> {
     of_most_points(bound, None)
 }
 
-/// The same among those that differentiate a field.
+/// The group with most points among those that differentiate a field.
 fn of_most_points(bound: &Bound, field: Option<usize>) -> Option<usize> {
     let schema = bound.problem.scene().schema;
     let is_equation = |group: &schema::Group| group.terms.iter().any(|term| term.kind == TermKind::Residual);
@@ -121,7 +122,7 @@ fn of_most_points(bound: &Bound, field: Option<usize>) -> Option<usize> {
     let is_free =
         |group: &schema::Group| group.columns.is_empty() && group.order > 0 && is_equation(group) && is_alone(group);
     let differentiates = |group: &schema::Group| {
-        let jets = || group.jets.iter().filter(|jet| jet.degree.iter().any(|&degree| degree > 0));
+        let jets = || group.jets.iter().filter(|jet| !jet.is_value());
         field.is_none_or(|field| jets().any(|jet| jet.head == field))
     };
     let groups = (0..schema.groups.len()).filter(|&at| count(bound, at) > 1);
@@ -159,16 +160,9 @@ pub(super) fn enough(points: usize, is_noisy: bool) -> usize {
 fn between(bound: &Bound, group: usize, more: usize, seed: u64) -> Vec<f64> {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
-    let is_edge = |at: &usize| {
-        let other = &schema.groups[*at];
-        other.order < schema.groups[group].order && other.terms.iter().all(|term| term.kind == TermKind::Residual)
-    };
+    let is_edge = |at: &usize| schema.groups[*at].is_condition_of(schema.groups[group].order);
     let own = &bound.coordinates[group];
-    let range = |axis: usize| {
-        let values = own.iter().skip(axis).step_by(inputs);
-        values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)))
-    };
-    let ranges: Vec<(f64, f64)> = (0..inputs).map(range).collect();
+    let ranges = ranges([own], inputs);
     let widths: Vec<f64> = ranges.iter().map(|(low, high)| (high - low).max(f64::MIN_POSITIVE)).collect();
     // Conditions of another part of the domain are no edge of this one.
     let spacing = (count(bound, group) as f64).powf(-(inputs as f64).recip());

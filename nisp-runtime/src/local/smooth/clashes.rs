@@ -10,13 +10,9 @@ use super::shares::width;
 use crate::local::lattice::MOST_COORDINATES;
 use crate::nearest::Nearest;
 use crate::problem::Bound;
-use crate::residual::Points;
-use crate::schema::{self, TermKind};
-use crate::simd::Isa;
+use crate::schema;
 use crate::solve::driver::Warning;
 
-/// Padding of the points, as everywhere in the engine.
-const LANES: usize = 16;
 /// Rows near a place for each number of the polynomials that are to meet them.
 const ROWS: usize = 2;
 /// What these polynomials leave of the rows near a place, over what constants leave, from which on the rows contradict each other. They leave
@@ -40,7 +36,7 @@ struct Row {
 }
 
 /// Where conditions contradict each other.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub(super) struct Clashes {
     /// Points, flat.
     pub(super) places: Vec<f64>,
@@ -59,10 +55,8 @@ impl Clashes {
 /// The groups that are conditions: of lower order than the equations, with nothing but residuals at single points.
 pub(super) fn conditions(schema: &schema::Scene) -> Vec<usize> {
     let order = schema.groups.iter().map(|group| group.order).max().unwrap_or(0);
-    let is_condition = |group: &schema::Group| {
-        group.order < order && !group.paired && group.terms.iter().all(|term| term.kind == TermKind::Residual)
-    };
-    (0..schema.groups.len()).filter(|&at| is_condition(&schema.groups[at])).collect()
+    let is_condition = |at: &usize| schema.groups[*at].is_condition_of(order) && !schema.groups[*at].paired;
+    (0..schema.groups.len()).filter(is_condition).collect()
 }
 
 /// Where conditions contradict each other: no fields that are smooth there meet all of them. Sources are taken as something that is not zero.
@@ -111,12 +105,15 @@ fn rows(bound: &Bound, group: usize, widths: &[f64]) -> Vec<Row> {
     let schema = bound.problem.scene().schema;
     let (own, inputs) = (&schema.groups[group], schema.coordinates.len());
     let count = bound.coordinates[group].len() / inputs;
-    let sizes: Vec<f64> = own.jets.iter().map(|jet| size(bound, jet)).collect();
-    let base = evaluated(bound, group, &sizes);
+    let sizes: Vec<f64> = own.jets.iter().map(|jet| bound.typical(jet)).collect();
+    let columns = bound.filled_columns(group);
+    let evaluated =
+        |jets: &[f64]| bound.uniform_rows(group, (&bound.coordinates[group], &columns), jets, &bound.scalars);
+    let base = evaluated(&sizes);
     let slope = |jet: usize| {
         let mut moved = sizes.clone();
         moved[jet] += STEP * sizes[jet];
-        evaluated(bound, group, &moved)
+        evaluated(&moved)
     };
     let moved: Vec<Vec<Vec<f64>>> = (0..sizes.len()).map(slope).collect();
     let place = |p: usize| {
@@ -134,37 +131,6 @@ fn rows(bound: &Bound, group: usize, widths: &[f64]) -> Vec<Row> {
         Row { place: place(p), group, left, slopes }
     };
     (0..own.rows).flat_map(|at| (0..count).map(move |p| (at, p))).map(row).collect()
-}
-
-/// Size of what a row reads.
-fn size(bound: &Bound, jet: &schema::Jet) -> f64 {
-    let over = jet.degree.iter().zip(&bound.scaling.half).map(|(&n, half)| half.powi(i32::from(n)));
-    bound.head_scale(jet.head) / over.product::<f64>()
-}
-
-/// Rows of a group at its points, `[row][point]`, where every jet has one value everywhere.
-fn evaluated(bound: &Bound, group: usize, jets: &[f64]) -> Vec<Vec<f64>> {
-    let schema = bound.problem.scene().schema;
-    let (own, inputs) = (&schema.groups[group], schema.coordinates.len());
-    let points = &bound.coordinates[group];
-    let count = points.len() / inputs;
-    let stride = count.next_multiple_of(LANES);
-    let padded = |of: &dyn Fn(usize) -> f64| (0..stride).map(|p| of(p.min(count - 1))).collect::<Vec<f64>>();
-    let jets: Vec<f64> = jets.iter().flat_map(|&jet| std::iter::repeat_n(jet, stride)).collect();
-    let coordinates: Vec<f64> = (0..inputs).flat_map(|axis| padded(&|p| points[p * inputs + axis])).collect();
-    let columns: Vec<f64> = bound.filled_columns(group).iter().flat_map(|column| padded(&|p| column[p])).collect();
-    let points = Points {
-        count,
-        stride,
-        jets: &jets,
-        coordinates: &coordinates,
-        columns: &columns,
-        scalars: &bound.scalars,
-        seeds: &[],
-    };
-    let mut values = vec![0.0; own.rows * stride];
-    bound.problem.scene().double()[group].programs.residual(Isa::detect(), points, &mut values);
-    values.chunks_exact(stride).map(|row| row[..count].to_vec()).collect()
 }
 
 /// Powers of the coordinates up to a degree, the constant first.

@@ -5,6 +5,8 @@ use rand::rngs::StdRng;
 use rand::seq::index::sample;
 
 use super::between::is_filled;
+use super::clashes::Clashes;
+use super::means::Asked;
 use super::proportions::Proportions;
 use super::run::Clock;
 use super::solver::Solver;
@@ -23,6 +25,7 @@ const MOST: usize = 500;
 pub(super) fn proportions(
     bound: &Bound,
     points: usize,
+    asked: &(Vec<Asked>, Clashes),
     noise: &Noise,
     clock: &Clock,
 ) -> Result<Proportions, LocalError> {
@@ -31,7 +34,7 @@ pub(super) fn proportions(
     if schema.observed().is_empty() || !has_waves(schema) {
         return Ok(even);
     }
-    let mut solver = Solver::new(bound, (points, &even), noise, None)?;
+    let mut solver = Solver::new(bound, (points, &even), asked, noise, None)?;
     let mut state = solver.first(noise);
     for _ in 0..REGRESS {
         let step = if clock.has_time(0.0) { solver.step(&state).ok() } else { None };

@@ -22,7 +22,7 @@ pub(super) struct Freedom {
 }
 
 impl Freedom {
-    /// Nothing if the prior's matrix cannot be factorised.
+    /// How many numbers of a head are free; nothing if the prior's matrix cannot be factorised.
     pub(super) fn new(prior: &Prior, first: usize, len: usize) -> Option<Self> {
         let mut blocks = prior.blocks(&vec![0.0; first + len], 1.0, 0);
         blocks.iter_mut().flat_map(|block| &mut block.dofs).for_each(|dof| *dof -= first as u32);

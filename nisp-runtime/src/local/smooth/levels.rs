@@ -6,7 +6,6 @@ use rand::seq::index::sample;
 
 use super::solver::Solver;
 use super::state::State;
-use super::step::is_of_values;
 use crate::noise::deviation;
 use crate::schema::{self, Term, TermKind};
 use crate::solve::vector::root_mean_square;
@@ -29,7 +28,7 @@ impl Solver<'_> {
         let shares: Vec<f64> = (0..self.schema().heads.len()).map(share).collect();
         for (own, group) in self.sizes.iter_mut().zip(&self.groups) {
             let is_condition = |term: &&Term| {
-                term.kind == TermKind::Residual && term.within.is_none() && is_of_values(group.schema, term)
+                term.kind == TermKind::Residual && term.within.is_none() && group.schema.is_of_values(term)
             };
             for term in group.schema.terms.iter().filter(is_condition) {
                 let share = term.jets.iter().map(|&jet| shares[group.schema.jets[jet].head]).fold(0.0, f64::max);

@@ -3,15 +3,17 @@
 //! through its sides is right whatever the splines do inside. Splines of one degree above the equation's order leave a residual of hats, as
 //! many as there are means.
 
+use rand::SeedableRng;
 use rand::rngs::StdRng;
-use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
 use super::between::stating;
 use super::clashes::{Clashes, clashes, conditions};
 use super::domain::Domain;
+use super::quadrature::Quadrature;
 use super::shares::shares;
 use crate::abrupt;
+use crate::ends::ranges;
 use crate::local::heads::Heads;
 use crate::local::lattice::{Lattice, NONE};
 use crate::problem::Bound;
@@ -19,13 +21,8 @@ use crate::schema::{self, TermKind};
 
 /// Degree of what equations that jump are tested with: hats.
 pub(super) const TESTS: usize = 1;
-/// Points of a cell with a jump, about: means are as good as these say where the jump is.
-const NEAR: f64 = 216.0;
-/// Points along a side of the other cells, and their shares: what is left there is smooth.
-const GAUSS: [(f64, f64); 3] =
-    [(0.112_701_665_379_258_3, 5.0 / 18.0), (0.5, 8.0 / 18.0), (0.887_298_334_620_741_7, 5.0 / 18.0)];
-
 /// How a group is asked.
+#[derive(Clone)]
 pub(super) enum Asked {
     /// At every point.
     AtPoints,
@@ -40,8 +37,8 @@ pub(super) enum Asked {
     },
 }
 
-/// How the groups of a problem are asked: equations that jump in the mean, and where conditions contradict each other all equations and
-/// conditions.
+/// How the groups of a problem are asked, whatever lattice they are asked on: equations that jump in the mean, and where conditions
+/// contradict each other all equations and conditions.
 pub(super) fn asked(bound: &Bound) -> (Vec<Asked>, Clashes) {
     let schema = bound.problem.scene().schema;
     let stating = stating(bound);
@@ -57,39 +54,44 @@ pub(super) fn asked(bound: &Bound) -> (Vec<Asked>, Clashes) {
                 Asked::AtPoints
             };
         }
-        let (jumps, clashes) = (abrupt::jumps(bound, at), clashes.places.clone());
+        let jumps = abrupt::jumps(bound, at, &abrupt::even(schema.coordinates.len()));
+        let clashes = clashes.places.clone();
         if jumps.is_empty() && clashes.is_empty() { Asked::AtPoints } else { Asked::OverDomain { jumps, clashes } }
     };
     let asked = (0..schema.groups.len()).map(of).collect();
     (asked, clashes)
 }
 
+/// How the groups are asked on a lattice of so many cells, which may want to know more finely where equations jump.
+pub(super) fn asked_on(bound: &Bound, asked: &[Asked], cells: &[usize]) -> Vec<Asked> {
+    let pieces = abrupt::finer(cells);
+    let of = |(at, own): (usize, &Asked)| match (own, &pieces) {
+        (Asked::OverDomain { jumps, clashes }, Some(pieces)) if !jumps.is_empty() => {
+            Asked::OverDomain { jumps: abrupt::jumps(bound, at, pieces), clashes: clashes.clone() }
+        }
+        _ => own.clone(),
+    };
+    asked.iter().enumerate().map(of).collect()
+}
+
 /// Whether a group has points along most of every coordinate: a condition on a wall or at the start has not.
 fn is_of_the_whole(bound: &Bound, group: usize) -> bool {
     let inputs = bound.problem.scene().schema.coordinates.len();
-    let range = |points: &[Vec<f64>], axis: usize| {
-        let values = points.iter().flat_map(|points| points.iter().skip(axis).step_by(inputs));
-        let ends = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
-        ends.1 - ends.0
-    };
-    let own = &bound.coordinates[group..=group];
-    (0..inputs).all(|axis| range(own, axis) > 0.5 * range(&bound.coordinates, axis))
+    let own = ranges([&bound.coordinates[group]], inputs);
+    let all = ranges(&bound.coordinates, inputs);
+    own.iter().zip(all).all(|(own, all)| own.1 - own.0 > 0.5 * (all.1 - all.0))
 }
 
 /// Whether a head is differentiated in an equation that is asked in the mean.
 pub(super) fn is_in_means(schema: &schema::Scene, asked: &[Asked], head: usize) -> bool {
-    let is_read = |group: &schema::Group| {
-        group.jets.iter().any(|jet| jet.head == head && jet.degree.iter().any(|&degree| degree > 0))
-    };
+    let is_read = |group: &schema::Group| group.jets.iter().any(|jet| jet.head == head && !jet.is_value());
     schema.groups.iter().zip(asked).any(|(group, asked)| !matches!(asked, Asked::AtPoints) && is_read(group))
 }
 
 /// Whether a group is an equation alone, that differentiates a field of all coordinates and reads nothing that is known at its points only.
 fn is_equation(schema: &schema::Scene, group: &schema::Group) -> bool {
     let is_residual = |term: &schema::Term| term.kind == TermKind::Residual;
-    let is_of_all = |jet: &schema::Jet| {
-        jet.degree.iter().any(|&degree| degree > 0) && schema.axes(jet.head).len() == schema.coordinates.len()
-    };
+    let is_of_all = |jet: &schema::Jet| !jet.is_value() && schema.axes(jet.head).len() == schema.coordinates.len();
     group.columns.is_empty() && !group.paired && group.terms.iter().all(is_residual) && group.jets.iter().any(is_of_all)
 }
 
@@ -132,59 +134,23 @@ pub(super) fn with_means(
     (with, means)
 }
 
-/// Number of the cell that a point lies in.
-fn number(lattice: &Lattice, point: &[f64]) -> usize {
-    let cell = lattice.place(point).cell;
-    lattice.cells.iter().zip(cell).rev().fold(0, |number, (n, at)| number * n + at)
-}
-
-/// Points in the domain of a group, with what they stand for in cells: those of Gauss, or where the equation jumps one at
-/// random in each of many equal parts. Where conditions contradict each other there are as many, in the middle of such parts: the
-/// derivatives are largest there, and an equation is as large as they are at its points.
+/// Points in the domain of a group, and what its means are made from.
 fn points(
     lattice: &Lattice,
     (bound, group): (&Bound, usize),
-    [jumps, clashes]: [&[f64]; 2],
+    uneven: [&[f64]; 2],
     random: &mut StdRng,
 ) -> (Vec<f64>, Means) {
     let inputs = lattice.cells.len();
-    let cells: usize = lattice.cells.iter().product();
-    let cells_with = |points: &[f64]| {
-        let mut is_near = vec![false; cells];
-        points.chunks_exact(inputs).for_each(|point| is_near[number(lattice, point)] = true);
-        is_near
-    };
-    let (is_near, is_clash) = (cells_with(jumps), cells_with(clashes));
-    let (low, spacing, _) = lattice.parts();
-    let (mut points, mut weights, mut is_middle) = (Vec::new(), Vec::new(), Vec::new());
-    let parts = NEAR.powf((inputs as f64).recip()).round() as usize;
-    for (cell, (&is_near, &is_clash)) in is_near.iter().zip(&is_clash).enumerate() {
-        let is_dense = is_near || is_clash;
-        let along = if is_dense { parts } else { GAUSS.len() };
-        for part in 0..along.pow(inputs as u32) {
-            is_middle.push(!is_dense && 2 * part + 1 == along.pow(inputs as u32));
-            let (mut cell, mut part, mut weight) = (cell, part, 1.0);
-            for axis in 0..inputs {
-                let at = part % along;
-                let mut beside = || if is_near { random.random::<f64>() } else { 0.5 };
-                let (within, share) = match is_dense {
-                    true => ((at as f64 + beside()) / along as f64, (along as f64).recip()),
-                    false => GAUSS[at],
-                };
-                points.push(low[axis] + spacing[axis] * ((cell % lattice.cells[axis]) as f64 + within));
-                (cell, part, weight) = (cell / lattice.cells[axis], part / along, weight * share);
-            }
-            weights.push(weight);
-        }
-    }
+    let all = Quadrature::new(lattice, uneven, random);
     let domain = Domain::new(bound, group);
     let is_inside = |point: &[f64]| {
         let cell = lattice.cell_span(&lattice.place(point));
         lattice.kept(cell).all(|n| n != NONE) && domain.is_inside(point)
     };
-    let inside: Vec<bool> = points.par_chunks_exact(inputs).map(is_inside).collect();
+    let inside: Vec<bool> = all.points.par_chunks_exact(inputs).map(is_inside).collect();
     let kept: Vec<usize> = (0..inside.len()).filter(|&p| inside[p]).collect();
-    let middles = (0..kept.len() as u32).filter(|&p| is_middle[kept[p as usize]]).collect();
-    let points = kept.iter().flat_map(|&p| &points[p * inputs..][..inputs]).copied().collect();
-    (points, Means { weights: kept.into_iter().map(|p| weights[p]).collect(), middles })
+    let middles = (0..kept.len() as u32).filter(|&p| all.is_middle[kept[p as usize]]).collect();
+    let points = kept.iter().flat_map(|&p| &all.points[p * inputs..][..inputs]).copied().collect();
+    (points, Means { weights: kept.into_iter().map(|p| all.weights[p]).collect(), middles })
 }

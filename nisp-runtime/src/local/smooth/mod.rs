@@ -10,8 +10,11 @@ mod bounded;
 mod changes;
 mod clashes;
 mod crossings;
+mod divisors;
 mod domain;
 mod edges;
+mod equations;
+mod finish;
 mod freedom;
 mod judged;
 mod leaning;
@@ -21,6 +24,8 @@ mod meshes;
 mod places;
 mod prior;
 mod proportions;
+mod quadrature;
+mod rows;
 mod run;
 mod sampled;
 mod scores;
@@ -30,6 +35,7 @@ mod solver;
 mod starts;
 mod state;
 mod step;
+mod tallies;
 mod told;
 mod undetermined;
 mod unmeasured;
@@ -40,20 +46,22 @@ use std::time::Instant;
 use between::measurements;
 pub(crate) use between::others;
 use changes::Changes;
+use clashes::Clashes;
+use finish::finish;
 use judged::{FAR, MISSED};
+use means::Asked;
 use proportions::Proportions;
 
-use super::{KeptLattices, LocalError, LocalSolution, refuse};
+use super::{LocalError, LocalSolution, refuse};
 use crate::bounds;
 use crate::carrier::Progress;
 use crate::local::lattice::MOST_COORDINATES;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
-use crate::solve::driver::{Flow, Limits, Status, Warning, WarningKind};
+use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::fault::Fault;
 use crate::solve::state::State as Saved;
-use crate::verdict::settled::HELD_BACK;
 
 use run::{Clock, Run};
 use solver::Solver;
@@ -115,14 +123,15 @@ pub(crate) fn solve(
     let mut points = from.map_or(Ok(between::first(bound)), saved_points).map_err(LocalError::Fault)?;
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     let schema = bound.problem.scene().schema;
+    let asked = means::asked(bound);
     let proportions = match from {
         Some(saved) => Proportions::restored(saved, schema).map_err(LocalError::Fault)?,
-        None => crossings::proportions(bound, points, noise, &clock)?,
+        None => crossings::proportions(bound, points, &asked, noise, &clock)?,
     };
     if from.is_none() {
         points = (points as f64 * proportions.functions()) as usize;
     }
-    let mut solver = Solver::new(bound, (points, &proportions), noise, None)?;
+    let mut solver = Solver::new(bound, (points, &proportions), &asked, noise, None)?;
     let mut state = solver.first(noise);
     if let Some(saved) = from {
         state.restore(saved).map_err(LocalError::Fault)?;
@@ -157,7 +166,7 @@ pub(crate) fn solve(
             break;
         };
         // What is too large for a finer lattice, or cannot be solved there, stays with the one at hand.
-        let Ok(mut finer) = Solver::new(bound, (more, &proportions), noise, None) else { break };
+        let Ok(mut finer) = Solver::new(bound, (more, &proportions), &asked, noise, None) else { break };
         if finer.cells() <= solver.cells() {
             break;
         }
@@ -180,7 +189,8 @@ pub(crate) fn solve(
         }
     }
     while solver.lacks && run.status == Status::Converged {
-        let Some((more, found)) = with_more(bound, (&solver, &run), noise, ((points, &proportions), &clock), monitor)
+        let Some((more, found)) =
+            with_more(bound, (&solver, &run, &asked), noise, ((points, &proportions), &clock), monitor)
         else {
             break;
         };
@@ -201,7 +211,7 @@ pub(crate) fn solve(
 /// these would be hardly more.
 fn with_more<'a>(
     bound: &'a Bound,
-    (solver, run): (&Solver<'_>, &Run),
+    (solver, run, asked): (&Solver<'_>, &Run, &(Vec<Asked>, Clashes)),
     noise: &Noise,
     (points, clock): ((usize, &Proportions), &Clock),
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
@@ -214,7 +224,7 @@ fn with_more<'a>(
         return None;
     }
     let most = if longer < times { (longer * solver.most as f64) as usize } else { usize::MAX };
-    let mut more = Solver::new(bound, points, noise, Some(most)).ok()?;
+    let mut more = Solver::new(bound, points, asked, noise, Some(most)).ok()?;
     let state = State { classes: run.state.known(), since: 0, ..run.state.clone() };
     let found = Run::go(&mut more, state, noise, points, clock, BARS * longer * run.longest, monitor).ok()?;
     Some((more, found))
@@ -223,83 +233,4 @@ fn with_more<'a>(
 /// Points of the largest equation in a saved state.
 fn saved_points(saved: &Saved) -> Result<usize, Fault> {
     saved.counter("points").map(|points| points as usize)
-}
-
-/// Error bars, and what the verdict is made from, of an answer that finer lattices have changed so much.
-fn finish(
-    bound: &Bound,
-    mut solver: Solver<'_>,
-    run: Run,
-    noise: &Noise,
-    (clock, changes): (&Clock, &Changes),
-) -> Result<LocalSolution, LocalError> {
-    let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
-    let mut warnings = Vec::new();
-    let is_noisy = noise.is_there(bound.problem.scene().schema);
-    let schema = bound.problem.scene().schema;
-    let sources = || (0..schema.heads.len()).filter(|&head| schema.heads[head].source);
-    // Only a minimum has error bars. Of a source exact measurements leave as much open as noisy ones where there are few.
-    let is_open = is_noisy || solver.is_measured() && sources().next().is_some();
-    let wants_bars = status == Status::Converged && is_open;
-    let is_beside_sources = solver.is_beside_sources();
-    let is_minimum = status == Status::Converged;
-    let rougher = if is_minimum { solver.rougher(&state, clock, longest) } else { None };
-    let (draws, beyond) = if wants_bars && clock.has_time(BARS * longest) {
-        solver.doubted(&state).unwrap_or_default()
-    } else {
-        if is_open && matches!(status, Status::Converged | Status::Budget) {
-            warnings.push(Warning::no_bars());
-        }
-        Default::default()
-    };
-    if solver.lacks {
-        let message = format!(
-            "{} of {} rows were used, picked at random, for want of time: with a larger budget error bars get shorter",
-            measurements(&solver.bound),
-            measurements(bound)
-        );
-        warnings.push(Warning { kind: WarningKind::OutOfTime, message });
-    }
-    let heads = schema.heads.iter().enumerate();
-    warnings.extend(heads.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
-    warnings.extend(solver.clashes.warning(schema));
-    let scores = if is_minimum { solver.scores(&state, clock, longest) } else { Vec::new() };
-    if !solver.is_measured() {
-        // What finer cells hardly change is as good as resolved.
-        let is_resolved = solver.strain(&state, noise) < 1.0 || changes.off() < HELD_BACK;
-        let is_resolved = status != Status::NotConverged && is_resolved;
-        warnings.extend(solver.undetermined(&state, is_resolved));
-    }
-    // What a finer lattice has hardly changed, another one will not. Where nothing is measured such a change tells all.
-    let is_early = status == Status::Budget && changes.least() > SAME;
-    // Equations that had to be loose hold only if they do so by themselves.
-    let is_loose = state.strictest > solver.tolerance;
-    let may_change = solver.is_measured() && (is_early || is_loose);
-    let strain = may_change.then(|| solver.strain(&state, noise));
-    solver.judge_at(bound);
-    let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
-    (answer.strain, answer.used) = (strain, measurements(&solver.bound) as f64 / measurements(bound).max(1) as f64);
-    // Noise may fall differently on other cells; without it they are all that changes an answer.
-    answer.refined = if solver.is_measured() { changes.taken().filter(|_| !is_noisy) } else { Some(changes.off()) };
-    if status != Status::Converged {
-        (answer.ahead, answer.moved) = (Some(ahead), Some(moved));
-    }
-    if status == Status::NotConverged {
-        let message = "the data and the equations leave some of the unknowns open: give more conditions or data".into();
-        warnings.push(Warning { kind: WarningKind::Undetermined, message });
-    }
-    let State { theta, learned, step: iterations, .. } = state;
-    let mut kept = KeptLattices { heads: solver.heads, theta, learned, draws };
-    sources().for_each(|head| kept.widen(head, places::widened(bound, head)));
-    // What the cells cannot hold tells no source from none.
-    let is_untold =
-        is_noisy && kept.draws.coefficients.is_empty() && matches!(status, Status::Converged | Status::Budget);
-    answer.told = told::told(bound, &kept, is_untold);
-    answer.scores = scores;
-    if is_beside_sources {
-        answer.leaning = leaning::facts(&kept, rougher.as_deref());
-    }
-    kept.draws.widen(&beyond);
-    let factor = Some(factor).filter(|_| wants_bars);
-    Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits })
 }

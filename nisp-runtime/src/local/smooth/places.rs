@@ -1,6 +1,7 @@
 //! How far a source may be from what few places of measurement say of it. How much it varies along a coordinate is itself found from
 //! the places along it: two probes in a rod say next to nothing of what it does between them.
 
+use crate::ends::ends;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
 use crate::student;
@@ -28,7 +29,7 @@ fn places(bound: &Bound, axis: usize) -> usize {
     let mut measured: Vec<f64> =
         groups().filter(|(group, _)| measures(group)).flat_map(|(_, points)| of(points)).collect();
     let all = groups().flat_map(|(_, points)| of(points));
-    let (low, high) = all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (x.min(low), x.max(high)));
+    let (low, high) = ends(all);
     measured.sort_by(f64::total_cmp);
     let mut last = f64::NEG_INFINITY;
     let is_new = |x: &f64| {

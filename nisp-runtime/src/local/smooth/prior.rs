@@ -9,7 +9,7 @@ use crate::local::lattice::Lattice;
 /// Rows of differences of a head's coefficients.
 #[derive(Clone, Debug)]
 pub(super) struct Prior {
-    /// Of every row the coefficients and what they are multiplied by.
+    /// By row, its coefficients and what they are multiplied by.
     rows: Vec<(Vec<u32>, Vec<f64>)>,
     /// Numbers that the rows say of the coefficients.
     pub(super) rank: usize,

@@ -6,15 +6,16 @@
 
 use rayon::prelude::*;
 
+use super::rows::Asked;
 use super::run::Clock;
 use super::solver::Solver;
 use super::state::{Phase, State};
-use super::step::{Asked, Rows};
 use crate::facts::{Known, LARGER, Score};
 use crate::given::{SMALL, given, slope};
 use crate::local::block::Block;
 use crate::local::rows::Evaluated;
 use crate::local::scored::{Scored, add};
+use crate::local::surface::Surface;
 
 /// Steps that all scores take, about, and that each number adds.
 const STEPS: f64 = 2.0;
@@ -43,56 +44,57 @@ impl Solver<'_> {
         let factor = self.normal.factor()?;
         let (coefficients, border) = (self.heads.len(), self.normal.border_gradient.len());
         let (mut gradient, mut below) = (vec![0.0; coefficients], vec![0.0; border]);
-        let blocks = rows.asked.iter().flat_map(|asked| self.batches(&rows, asked)).flatten();
-        blocks.chain(rows.clouds.iter().flatten().cloned()).for_each(|block| {
-            add(&block, &block.misfits, &mut gradient, &mut below);
-        });
-        // Of an integral the border has its misfit.
+        let moved: Vec<[Vec<f64>; 2]> = known.iter().map(|&slot| self.moved(slot)).collect();
+        let mut scored: Vec<Scored> =
+            known.iter().map(|&slot| Scored::new(Known::Scalar(slot), coefficients, border)).collect();
+        let mut integral = slopes.len();
+        for asked in &rows.asked {
+            let group = &self.groups[asked.at];
+            let changes = moved.par_iter().map(|scalars| self.changes_of_rows(asked, &state, scalars));
+            let changes: Vec<(Vec<f64>, Vec<f64>)> = changes.collect();
+            let (own, mut places) = (group.own_rows().len(), group.order.iter());
+            for blocks in self.batches(&rows, asked) {
+                blocks.iter().for_each(|block| add(block, &block.misfits, &mut gradient, &mut below));
+                let blocks: Vec<(Block, usize)> =
+                    blocks.into_iter().zip(places.by_ref()).map(|(block, &place)| (block, place as usize)).collect();
+                scored.par_iter_mut().zip(&changes).for_each(|(scored, (by, _))| {
+                    blocks.iter().for_each(|(block, place)| scored.add(block, &by[place * own..][..own]));
+                });
+            }
+            for (scored, (_, sums)) in scored.iter_mut().zip(&changes) {
+                scored.below[integral..][..sums.len()].iter_mut().zip(sums).for_each(|(below, by)| *below += by);
+            }
+            integral += changes.first().map_or(0, |(_, sums)| sums.len());
+        }
+        for (surface, blocks) in self.surfaces.iter().zip(&rows.clouds).filter(|(_, blocks)| !blocks.is_empty()) {
+            blocks.iter().for_each(|block| add(block, &block.misfits, &mut gradient, &mut below));
+            scored.par_iter_mut().zip(&moved).for_each(|(scored, scalars)| {
+                let by = self.changes_of_cloud(surface, &state, scalars);
+                blocks.iter().zip(by).for_each(|(block, by)| scored.add(block, &[by]));
+            });
+        }
+        // The border holds the misfits of integrals.
         below[slopes.len()..].copy_from_slice(&self.normal.border_gradient[slopes.len()..]);
-        let score = |&slot: &usize| {
-            let mut scored = Scored::new(Known::Scalar(slot), coefficients, border);
-            self.score_rows(&rows, slot, &state, &mut scored);
-            scored.score(&factor, (&gradient, &below), false)
-        };
-        Some(known.par_iter().filter_map(score).collect())
+        Some(scored.par_iter().filter_map(|scored| scored.score(&factor, (&gradient, &below), false)).collect())
     }
 
-    /// Adds all rows with their derivatives by a scalar.
-    fn score_rows(&self, rows: &Rows, slot: usize, state: &State, scored: &mut Scored) {
-        let [more, less] = [SMALL, -SMALL].map(|share| {
+    /// The scalars with a little more and a little less of one of them.
+    fn moved(&self, slot: usize) -> [Vec<f64>; 2] {
+        [SMALL, -SMALL].map(|share| {
             let mut scalars = self.scalars.clone();
             scalars[slot] *= 1.0 + share;
             scalars
-        });
-        let mut integral = rows.learned.len();
-        for asked in &rows.asked {
-            let group = &self.groups[asked.at];
-            let [more, less] =
-                [&more, &less].map(|scalars| (group.evaluate(&self.heads, &state.theta, scalars, false), scalars));
-            for (&place, block) in group.order.iter().zip(self.batches(rows, asked).flatten()) {
-                scored.add(&block, &self.slopes_of(asked, (&more.0, &less.0), place as usize));
-            }
-            let sums = |(evaluated, scalars): (Evaluated, &Vec<f64>)| group.sums(&evaluated, scalars);
-            let sums = sums(more).into_iter().zip(sums(less));
-            for ((_, more), (_, less)) in sums.filter(|((row, _), _)| asked.counts[*row].contains(&true)) {
-                scored.below[integral] += slope((more, less));
-                integral += 1;
-            }
-        }
-        for (surface, blocks) in self.surfaces.iter().zip(&rows.clouds).filter(|(_, blocks)| !blocks.is_empty()) {
-            let group = &self.groups[surface.group];
-            let images = |scalars: &[f64]| surface.images(group, &self.heads, &state.theta, scalars);
-            let moved: Vec<_> = images(&more).into_iter().zip(images(&less)).collect();
-            let moved: Vec<_> = moved.into_iter().map(|(more, less)| (more - less) / (2.0 * SMALL)).collect();
-            let by = surface.changes(&moved, self.sigma(state, surface));
-            blocks.iter().zip(by).for_each(|(block, by): (&Block, f64)| scored.add(block, &[by]));
-        }
+        })
     }
 
-    /// By row at a place that is asked for, what a scalar changes of what it is over its tolerance.
-    fn slopes_of(&self, asked: &Asked, (more, less): (&Evaluated, &Evaluated), place: usize) -> Vec<f64> {
+    /// What a scalar changes of a group: by place and row what it changes of what the row is over its tolerance, where that is asked for; and
+    /// by integral that is asked for what it changes of the sum.
+    fn changes_of_rows(&self, asked: &Asked, state: &State, moved: &[Vec<f64>; 2]) -> (Vec<f64>, Vec<f64>) {
         let group = &self.groups[asked.at];
-        let of = |row: usize| {
+        let evaluated = moved.each_ref().map(|scalars| group.evaluate(&self.heads, &state.theta, scalars, false));
+        let [more, less] = &evaluated;
+        let rows = group.own_rows();
+        let of = |place: usize, row: usize| {
             if !asked.counts[row][place] {
                 return 0.0;
             }
@@ -102,6 +104,21 @@ impl Solver<'_> {
             let weight = if loss.is_robust() { loss.weight(own).sqrt() } else { 1.0 };
             weight * slope((over(more), over(less)))
         };
-        group.own_rows().into_iter().map(of).collect()
+        let by = (0..group.places()).flat_map(|place| rows.iter().map(move |&row| (place, row)));
+        let sums = group.sums(more, &moved[0]).into_iter().zip(group.sums(less, &moved[1]));
+        let sums = sums.filter(|((row, _), _)| asked.counts[*row].contains(&true));
+        (
+            by.map(|(place, row)| of(place, row)).collect(),
+            sums.map(|((_, more), (_, less))| slope((more, less))).collect(),
+        )
+    }
+
+    /// What a scalar changes of the rows of a cloud.
+    fn changes_of_cloud(&self, surface: &Surface, state: &State, moved: &[Vec<f64>; 2]) -> Vec<f64> {
+        let images =
+            |scalars: &Vec<f64>| surface.images(&self.groups[surface.group], &self.heads, &state.theta, scalars);
+        let [more, less] = moved.each_ref().map(images);
+        let moved = more.into_iter().zip(less).map(|(more, less)| (more - less) / (2.0 * SMALL));
+        surface.changes(&moved.collect::<Vec<_>>(), self.sigma(state, surface))
     }
 }

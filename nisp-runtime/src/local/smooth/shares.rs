@@ -3,6 +3,7 @@
 use std::num::NonZero;
 
 use super::clashes::conditions;
+use crate::ends::ends;
 use crate::local::lattice::MOST_COORDINATES;
 use crate::nearest::{Nearest, Neighbour};
 use crate::problem::Bound;
@@ -38,8 +39,8 @@ pub(super) fn shares(bound: &Bound, group: usize) -> Vec<f64> {
 pub(super) fn width(bound: &Bound, groups: &[usize], axis: usize) -> f64 {
     let inputs = bound.problem.scene().schema.coordinates.len();
     let values = groups.iter().flat_map(|&at| bound.coordinates[at].iter().skip(axis).step_by(inputs));
-    let ends = values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &x| (low.min(x), high.max(x)));
-    (ends.1 - ends.0).max(f64::MIN_POSITIVE)
+    let (low, high) = ends(values.copied());
+    (high - low).max(f64::MIN_POSITIVE)
 }
 
 /// Half of the way to the next point on either side. A curve goes on to the nearest point of others where its own points end, though no

@@ -47,7 +47,7 @@ fn bending(lattice: &Lattice, likely: &[Vec<f64>]) -> f64 {
     fourth.or_else(|| mean_square(second.into_iter())).unwrap_or(0.0)
 }
 
-/// Of all numbers that are there; nothing if there are none.
+/// The mean square of all numbers that are there; nothing if there are none.
 fn mean_square(all: impl Iterator<Item = Vec<Option<f64>>>) -> Option<f64> {
     let (sum, count) = all.flatten().flatten().fold((0.0, 0.0), |(sum, count), x| (sum + x * x, count + 1.0));
     (count > 0.0).then(|| sum / count)

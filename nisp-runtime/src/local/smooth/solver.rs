@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use super::between::{ASKED, OTHERS, enough, filled, others, thinned};
 use super::clashes::Clashes;
 use super::freedom::{Freedom, Unmeasured};
-use super::means::{Asked, Means, TESTS, asked, with_means};
+use super::means::{Asked, Means, TESTS, asked_on, with_means};
 use super::meshes::{across_pairs, lattices, together};
 use super::prior::Prior;
 use super::proportions::Proportions;
@@ -15,10 +15,9 @@ use crate::local::group::{Group, Places};
 use crate::local::heads::Heads;
 use crate::local::normal::Normal;
 use crate::local::surface::Surface;
-use crate::loss::Loss;
 use crate::noise::Noise;
 use crate::problem::Bound;
-use crate::schema::{self, TermKind};
+use crate::schema;
 use crate::start;
 use crate::tolerance::LOOSE;
 use crate::weighed::{Class, Guess, of_terms};
@@ -33,8 +32,6 @@ const STRAIGHT: f64 = 1e-4;
 
 /// Share of the fullest mean's weight that means see at least: there are hardly more of them than unknowns.
 const LEAST_MASS: f64 = 1e-6;
-/// How far such an equation may be off in the middle of cells, over its size: along a coordinate of lower order means are too few.
-const SLIGHT: f64 = 0.3;
 
 /// Numbers of groups, and the problem with their equations at other places, with the means of all groups.
 pub(super) type Others = (Vec<usize>, (Bound, Vec<Means>));
@@ -96,11 +93,12 @@ fn freedom(heads: &Heads, head: usize, prior: &Prior) -> Result<Freedom, LocalEr
 }
 
 impl<'a> Solver<'a> {
-    /// With equations asked at so many points at least, on lattices of such proportions, and with so many measurements of a group at most; with nothing said of these,
+    /// With equations asked at so many points at least, on lattices of such proportions, as the problem's groups are asked, and with so many measurements of a group at most; with nothing said of these,
     /// with as many as choose a lattice. The scene must not be refused.
     pub(super) fn new(
         problem: &'a Bound,
         (points, proportions): (usize, &Proportions),
+        (asked, clashes): &(Vec<Asked>, Clashes),
         noise: &Noise,
         most: Option<usize>,
     ) -> Result<Self, LocalError> {
@@ -108,8 +106,8 @@ impl<'a> Solver<'a> {
         let bound = filled(problem, points).map_or(Cow::Borrowed(problem), Cow::Owned);
         let enough = enough(points, is_noisy);
         let few = thinned(&bound, enough);
-        let (asked, clashes) = asked(problem);
-        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points, &asked);
+        let (lattices, cells) = lattices(few.as_ref().unwrap_or(&bound), proportions, points, asked);
+        let asked = asked_on(problem, asked, &cells);
         let few = most.map_or(few, |most| thinned(&bound, most));
         let lacks = few.is_some() && is_noisy;
         let bound = few.map_or(bound, Cow::Owned);
@@ -143,7 +141,7 @@ impl<'a> Solver<'a> {
         Ok(Self {
             others,
             asked,
-            clashes,
+            clashes: clashes.clone(),
             bound,
             most: most.unwrap_or(enough),
             lacks,
@@ -243,12 +241,6 @@ impl<'a> Solver<'a> {
         }
     }
 
-    /// How the misfits of a group's terms count at a state.
-    pub(super) fn losses(&self, state: &State, group: usize) -> Vec<Loss> {
-        let own = self.bound.losses[group].iter();
-        own.map(|loss| if state.convex { loss.convex() } else { *loss }).collect()
-    }
-
     /// Takes over learned scalars; returns their derivatives by their parameters.
     pub(super) fn set_learned(&mut self, parameters: &[f64]) -> Vec<f64> {
         let found = self.bound.learned.iter().zip(parameters).map(|(learned, &parameter)| learned.map.at(parameter));
@@ -264,51 +256,6 @@ impl<'a> Solver<'a> {
         for surface in &mut self.surfaces {
             surface.set_near(state.phase == Phase::Solve && !state.convex);
             surface.find(&self.groups[surface.group], &self.heads, &state.theta, &self.scalars);
-        }
-    }
-
-    /// The class of a cloud's points.
-    pub(super) fn class(&self, surface: &Surface) -> usize {
-        let terms = self.schema().groups[surface.group].terms.iter();
-        self.classes[surface.group][terms.take_while(|term| term.name != surface.term).count()]
-    }
-
-    /// The noise of a cloud's points at a state.
-    pub(super) fn sigma(&self, state: &State, surface: &Surface) -> f64 {
-        surface.sigma(state.classes[self.class(surface)].size)
-    }
-
-    /// Takes over the sizes of equations at a state.
-    pub(super) fn size(&mut self, state: &State) {
-        for at in 0..self.groups.len() {
-            let group = &self.groups[at];
-            let facts = group.facts(&self.heads, &state.theta);
-            let found = facts.sizes(group.kernel.programs, group.schema, &self.scalars, &self.bound.sizes[at]);
-            for term in group.schema.terms {
-                let rows = term.first..term.first + term.rows;
-                let sizes = self.sizes[at][rows.clone()].iter_mut().zip(&found[rows]);
-                // What is declared is of the sum.
-                let is_sum = term.kind == TermKind::Integral && term.within.is_none();
-                let summed = if is_sum { group.measure() } else { 1.0 };
-                sizes.for_each(|(size, found)| *size = summed * found / term.weight.sqrt());
-            }
-        }
-        self.leave_out_levels(state);
-    }
-
-    /// Gives all rows what they are divided by at a state.
-    pub(super) fn set_sigmas(&mut self, state: &State) {
-        for (at, group) in self.groups.iter_mut().enumerate() {
-            group.weigh_slight(state.tolerance / SLIGHT);
-            for (number, term) in group.schema.terms.iter().enumerate() {
-                for row in term.first..term.first + term.rows {
-                    group.sigma[row] = match term.kind {
-                        TermKind::Observation => state.classes[self.classes[at][number]].size,
-                        _ if term.within.is_some() => self.sizes[at][row],
-                        _ => state.tolerance * self.sizes[at][row],
-                    };
-                }
-            }
         }
     }
 }

@@ -42,7 +42,7 @@ pub(super) struct State {
     pub(super) classes: Vec<Class>,
     /// Tolerance of the equations.
     pub(super) tolerance: f64,
-    /// What it falls to.
+    /// The tolerance that the steps end with.
     pub(super) strictest: f64,
     /// Whether losses that leave out what is far off are still convex ones in their place.
     pub(super) convex: bool,

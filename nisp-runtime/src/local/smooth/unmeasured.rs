@@ -3,9 +3,9 @@
 //! given the equations (MacKay 1992), so that it counts what is settled beyond that.
 
 use super::freedom::{Before, Unmeasured};
+use super::rows::{Asked, Rows, is_any};
 use super::solver::Solver;
 use super::state::{Phase, State};
-use super::step::{Asked, Rows, is_any};
 use crate::schema::{self, TermKind};
 
 /// Change of the logarithm of a roughness after which what is settled is counted anew.

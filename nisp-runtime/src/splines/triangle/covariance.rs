@@ -1,6 +1,7 @@
 //! Covariances of a triangle's unknowns, as far as rows see them.
 
-use super::{Triangle, dot};
+use super::Triangle;
+use super::rotation::dot;
 
 /// Covariances of the unknowns: those of neighbours within the band, and those with the shared ones.
 #[derive(Clone, Debug)]
@@ -77,7 +78,7 @@ impl Triangle {
 }
 
 impl Covariance {
-    /// The same within a band that is no wider.
+    /// The covariances within a band that is no wider.
     pub(in super::super) fn within(&self, band: usize) -> Self {
         let rows = self.rows.chunks_exact(self.band).flat_map(|row| &row[..band.min(self.band)]);
         Self { band: band.min(self.band), rows: rows.copied().collect(), ..self.clone() }

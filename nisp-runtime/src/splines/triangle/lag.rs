@@ -4,6 +4,7 @@
 //! marginalise: what they said of later unknowns has been turned into later rows already.
 
 use super::Triangle;
+use super::rotation::dot;
 use crate::simd::{self, Isa, Kernel, Simd};
 
 impl Triangle {
@@ -35,7 +36,7 @@ impl Triangle {
     pub(in super::super) fn move_shared(&mut self, moved: &[f64]) {
         if !moved.is_empty() {
             let rows = self.right.iter_mut().zip(self.border.chunks_exact(self.shared));
-            rows.for_each(|(right, border)| *right -= super::dot(border, moved));
+            rows.for_each(|(right, border)| *right -= dot(border, moved));
         }
     }
 
@@ -43,7 +44,7 @@ impl Triangle {
     pub(in super::super) fn follow_from(&self, first: usize, shared: usize, x: &mut [f64]) {
         for at in (first..self.len).rev() {
             let row = &self.rows[at * self.band..][..self.band.min(self.len - at)];
-            let after = super::dot(&row[1..], &x[at + 1..]);
+            let after = dot(&row[1..], &x[at + 1..]);
             x[at] = -(self.border[at * self.shared + shared] + after) / row[0];
         }
     }
@@ -67,7 +68,7 @@ impl Triangle {
         let mut is_finite = true;
         for at in (first..self.len).rev() {
             let row = &self.rows[at * self.band..][..self.band.min(self.len - at)];
-            let after = super::dot(&row[1..], &x[at + 1..]);
+            let after = dot(&row[1..], &x[at + 1..]);
             x[at] = (self.right[at] - after) / row[0];
             is_finite &= x[at].is_finite();
         }

@@ -3,10 +3,14 @@
 use super::{bracketed, help, shorten};
 use crate::unit::Dimension;
 
+mod derivatives;
 mod names;
+mod shapes;
 mod units;
 
+pub(crate) use derivatives::*;
 pub(crate) use names::*;
+pub(crate) use shapes::*;
 pub(crate) use units::*;
 
 /// `1 argument`, `2 arguments`
@@ -36,38 +40,6 @@ pub(crate) fn expression_too_deep(limit: u32) -> String {
     )
 }
 
-pub(crate) fn expected_scalar(what: &str, text: &str, found: &str) -> String {
-    help(
-        format!("{what} must be a scalar, but `{}` is {found}", shorten(text)),
-        "take a component (`u[0]`), or a scalar of it: `dot`, `norm`, `tr`, `det`",
-    )
-}
-
-pub(crate) fn bad_list_length(length: usize) -> String {
-    format!("a vector has from 1 to 9 entries, found {length}")
-}
-
-pub(crate) fn uneven_entries(first: &str, text: &str, found: &str) -> String {
-    format!("entries must be alike: the first is {first}, but `{}` is {found}", shorten(text))
-}
-
-pub(crate) fn too_many_brackets() -> String {
-    "vectors and matrices are all there is: these brackets nest too deeply".into()
-}
-
-pub(crate) fn shapes_differ(odd: (&str, &str), other: (&str, &str)) -> String {
-    format!("shapes differ: `{}` is {}, but `{}` is {}", shorten(odd.0), odd.1, shorten(other.0), other.1)
-}
-
-pub(crate) fn cannot_multiply(left: &str, right: &str, text: &str) -> String {
-    let step = if left.contains("vector") && right.contains("vector") {
-        "write `dot(a, b)`, `cross(a, b)` or `outer(a, b)`"
-    } else {
-        "a matrix times a vector or matrix needs as many columns as the other has rows"
-    };
-    help(format!("{left} cannot be multiplied by `{}`, which is {right}", shorten(text)), step)
-}
-
 pub(crate) fn spread_not_positive(name: &str) -> String {
     help(
         format!("`{name}` cannot be believed to be within zero or less of its value"),
@@ -81,89 +53,6 @@ pub(crate) fn division_by_zero() -> String {
 
 pub(crate) fn exponent_too_large(limit: i128) -> String {
     format!("exponents go up to {limit}")
-}
-
-pub(crate) fn cannot_index(text: &str, found: &str, indices: usize) -> String {
-    let step = "units go after numbers only, as in `2 [m]`; components are `u[0]`, `u[x]`, `sigma[x, y]`";
-    help(format!("`{}` is {found} and cannot take {indices} index(es)", shorten(text)), step)
-}
-
-pub(crate) fn bad_index(text: &str, side: usize) -> String {
-    let last = side.saturating_sub(1);
-    help(
-        format!("`{}` is no index", shorten(text)),
-        format!("use a number from 0 to {last}, or the name of a spatial coordinate"),
-    )
-}
-
-pub(crate) fn wrong_shape(name: &str, text: &str, found: &str, spatial: usize) -> String {
-    let expected = match name {
-        "div" => format!("a vector of {spatial}, or a matrix of {spatial} columns"),
-        "curl" => "a vector of 2 or 3, one entry for each spatial coordinate".into(),
-        "hessian" => "a scalar".into(),
-        _ => "a scalar or a vector".into(),
-    };
-    format!("`{name}` takes {expected}, but `{}` is {found}", shorten(text))
-}
-
-pub(crate) fn wrong_shapes(name: &str, found: &str) -> String {
-    let expected = match name {
-        "dot" => "two vectors or two matrices of one shape",
-        "cross" => "two vectors of 3, or of 2",
-        "outer" => "two vectors",
-        "norm" => "a vector or a matrix; of a scalar it is `abs`",
-        "det" => "a square matrix of at most 4 x 4",
-        "inverse" => "an invertible square matrix of at most 3 x 3",
-        "transpose" => "a matrix",
-        _ => "a square matrix",
-    };
-    format!("`{name}` takes {expected}, found {found}")
-}
-
-pub(crate) fn no_coordinates(name: &str) -> String {
-    format!("`{name}` needs spatial coordinates")
-}
-
-pub(crate) fn derivative_of_column() -> String {
-    help("a data column has no derivative", "it is known at single points; make it a field, and `observe` that")
-}
-
-pub(crate) fn derivative_of_partner() -> String {
-    help("take the derivative first", "write `partner(d(u, x))`")
-}
-
-pub(crate) fn derivative_is_zero(text: &str) -> String {
-    format!("this derivative is zero: `{}` does not depend on the coordinates", shorten(text))
-}
-
-pub(crate) fn derivative_of_jump() -> String {
-    help(
-        "what jumps is differentiated: its derivative is taken to be zero there, and the jump's own part is left out",
-        "for two materials declare two fields, and say at their interface what goes on across it",
-    )
-}
-
-pub(crate) fn order_too_high(order: u32, limit: u32) -> String {
-    help(
-        format!("this is a derivative of order {order}; the highest is {limit}"),
-        "introduce a field for a lower derivative, with an equation that defines it",
-    )
-}
-
-pub(crate) fn bad_order(text: &str) -> String {
-    help(format!("`{}` is no order of a derivative", shorten(text)), "use a whole number from 1, as in `d(u, x, 2)`")
-}
-
-pub(crate) fn partner_without_pairs() -> String {
-    help("points have partners in groups of pairs only", "declare the group with `on name pairs { ... }`")
-}
-
-pub(crate) fn partner_of_partner() -> String {
-    "a partner's partner is the point itself".into()
-}
-
-pub(crate) fn partner_of_column() -> String {
-    help("a data column belongs to the point, not to its partner", "give the partner's value a column of its own")
 }
 
 pub(crate) fn integral_within() -> String {
@@ -277,13 +166,6 @@ pub(crate) fn not_separable(parameter: &str, source: &str) -> String {
         format!(
             "give `{parameter}` its value, say `within` what it is believed to be off by, or state a value of `{source}`"
         ),
-    )
-}
-
-pub(crate) fn operator_over_time(operator: &str, time: &str) -> String {
-    help(
-        format!("`{operator}` also goes over `{time}`"),
-        format!("declare it as `{time}: time` if it is one: without units nothing else tells"),
     )
 }
 

@@ -1,0 +1,89 @@
+//! What the rows of a step say of noise and roughness.
+
+use rand::SeedableRng;
+use rand::rngs::StdRng;
+
+use super::freedom::Unmeasured;
+use super::rows::Rows;
+use super::sampled::Sampled;
+use super::solver::Solver;
+use super::state::{Phase, State};
+use crate::local::block::Block;
+use crate::local::normal::factor::Factor;
+use crate::loss::deviation_of_clean;
+use crate::schema::{self, TermKind};
+use crate::weighed::Tally;
+
+impl Solver<'_> {
+    /// By class, what is left of its rows after a step, how many there are, and how many of them the answer used up.
+    pub(super) fn tallies(
+        &self,
+        state: &State,
+        rows: &Rows,
+        (step, shared): (&[f64], &[f64]),
+        (factor, unmeasured): (&Factor, &Unmeasured),
+    ) -> Option<Vec<Tally>> {
+        let mut tallies = vec![Tally::default(); state.classes.len()];
+        let mut random = StdRng::seed_from_u64(0);
+        let lens = (step.len(), shared.len());
+        for asked in &rows.asked {
+            let group = &self.groups[asked.at];
+            let terms = group.schema.terms.iter().enumerate();
+            let observed = terms.filter(|(_, term)| term.kind == TermKind::Observation);
+            let mut observed: Vec<(usize, &schema::Term, Sampled)> = observed
+                .map(|(number, term)| {
+                    let sampled = Sampled::new(group.sites.count * term.rows, lens, &mut random);
+                    (number, term, sampled)
+                })
+                .collect();
+            if observed.is_empty() {
+                continue;
+            }
+            for blocks in self.batches(rows, asked) {
+                for (_, term, sampled) in &mut observed {
+                    let first = group.first_own(term);
+                    let own = blocks.iter().flat_map(|block| (first..first + term.rows).map(move |row| (block, row)));
+                    sampled.add(&own.collect::<Vec<_>>(), (step, shared));
+                }
+            }
+            for (number, term, sampled) in observed {
+                let counts = asked.counts[term.first..term.first + term.rows].iter().flatten();
+                let count = counts.filter(|counts| **counts).count();
+                tallies[self.classes[asked.at][number]] = sampled.tally(factor, count)?;
+            }
+        }
+        for (surface, blocks) in self.surfaces.iter().zip(&rows.clouds) {
+            let own: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
+            let mut sampled = Sampled::new(own.len(), lens, &mut random);
+            sampled.add(&own, (step, shared));
+            let tally = sampled.tally(factor, own.len())?;
+            // Clouds have outliers, which are no noise.
+            let clean = deviation_of_clean(surface.misfits().collect(), tally.used) / self.sigma(state, surface);
+            let squares = clean.powi(2) * (tally.count - tally.used);
+            tallies[self.class(surface)] = Tally { squares, ..tally };
+        }
+        for head in self.judged(state.phase) {
+            let blocks = self.prior_rows(state, head);
+            let own: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
+            let tally = &mut tallies[self.roughness[head]];
+            tally.count = self.priors[head].rank as f64;
+            tally.squares = blocks.iter().map(|block| block.after(0, step, shared).powi(2)).sum();
+            tally.used = match state.phase {
+                // What data leave of a field is no small difference.
+                Phase::Regress => {
+                    let mut sampled = Sampled::new(own.len(), lens, &mut random);
+                    sampled.add(&own, (step, shared));
+                    sampled.used(factor)?
+                }
+                Phase::Explain | Phase::Solve => {
+                    let roughness = state.classes[self.roughness[head]].size;
+                    let settled = self.freedoms[head].as_ref()?.settled(factor, step.len(), roughness)?;
+                    let before = unmeasured.of(head);
+                    tally.squares = (tally.squares - before.squares).max(0.0);
+                    tally.count - (settled - before.settled)
+                }
+            };
+        }
+        Some(tallies)
+    }
+}
