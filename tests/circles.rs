@@ -48,12 +48,18 @@ fn crates(folder: &Path) -> Vec<PathBuf> {
     own.then(|| folder.to_path_buf()).into_iter().chain(inner.flat_map(|entry| crates(&entry.path()))).collect()
 }
 
-/// A circle of a crate in words, if it has one.
-fn circles(folder: &Path) -> Option<String> {
+/// Circles of a crate in words: each without an import of those before, so that all are named at once.
+fn circles(folder: &Path) -> Vec<String> {
     let mut modules = Vec::new();
     read(&folder.join("src"), &[], &mut modules);
-    let names = |circle: Vec<Module>| circle.iter().map(|module| module.join("::")).collect::<Vec<_>>().join(" -> ");
-    circle(&imports(&modules)).map(|circle| format!("{}: {}", folder.display(), names(circle)))
+    let mut imports = imports(&modules);
+    let mut found = Vec::new();
+    while let Some(circle) = circle(&imports) {
+        let names = circle.iter().map(|module| module.join("::")).collect::<Vec<_>>().join(" -> ");
+        found.push(format!("{}: {names}", folder.display()));
+        imports.get_mut(&circle[circle.len() - 1]).unwrap().remove(&circle[0]);
+    }
+    found
 }
 
 /// The modules below a folder of sources.

@@ -36,6 +36,7 @@ mod roughness;
 pub mod rules;
 pub mod saved;
 pub mod schema;
+mod shared_noise;
 pub mod simd;
 pub mod solve;
 mod splines;

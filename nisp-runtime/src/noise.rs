@@ -3,20 +3,17 @@
 mod differences;
 mod fits;
 mod given;
-mod shared;
 
 use rayon::prelude::*;
 
 pub(crate) use self::differences::{EIGHT, by_differences, differences, of_differences};
 pub(crate) use self::given::of_given;
-pub(crate) use self::shared::{Alike, Expected, SharedNoise, beside_those_before, spacing};
 
 use self::fits::{FEW_CLEAN, HALF, by_fits, quantile};
-use crate::facts::spread;
 use crate::problem::Bound;
 use crate::roughness::{directions, roughness};
 use crate::schema::{self, TermKind};
-use crate::solve::vector::root_mean_square;
+use crate::solve::vector::{root_mean_square, spread};
 
 /// Noise of what is observed.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,9 +1,17 @@
 //! Truths of records, drawn at random.
 
 use super::drive::Drive;
-use super::families::Course;
 use crate::random::Random;
 use crate::rk4::integrate;
+
+/// What is true of a record at some places.
+pub(super) struct Course {
+    /// What is measured, without noise.
+    pub(super) columns: Vec<Vec<f64>>,
+    pub(super) source: Vec<f64>,
+    /// Parameters that the scene is told.
+    pub(super) told: Vec<(&'static str, f64)>,
+}
 
 /// The first states of a course are measured.
 pub(super) fn course<const N: usize>(drive: &Drive, times: &[f64], states: Vec<[f64; N]>, measured: usize) -> Course {

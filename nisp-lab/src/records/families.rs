@@ -3,19 +3,10 @@
 use nisp::{SceneRef, scene};
 use nisp_equations::{pendulum::pendulum, rlc::rlc};
 
-use super::draws::{bent, circuit, course, heated, pushed, regulated};
+use super::draws::{Course, bent, circuit, course, heated, pushed, regulated};
 use super::drive::Drive;
 use crate::random::Random;
 use crate::rk4::integrate;
-
-/// What is true of a record at some places.
-pub(super) struct Course {
-    /// What is measured, without noise.
-    pub(super) columns: Vec<Vec<f64>>,
-    pub(super) source: Vec<f64>,
-    /// Parameters that the scene is told.
-    pub(super) told: Vec<(&'static str, f64)>,
-}
 
 /// An equation.
 pub(super) struct Family {

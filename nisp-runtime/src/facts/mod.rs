@@ -3,9 +3,7 @@
 mod known;
 mod points;
 
-use nalgebra::Vector3;
-
-use crate::noise::SharedNoise;
+use crate::shared_noise::SharedNoise;
 
 pub(crate) use known::{Known, LARGER, Leaning, Score};
 pub(crate) use points::Facts;
@@ -44,14 +42,6 @@ impl Told {
     pub(crate) fn unasked(head: usize) -> Self {
         Self { head, size: None, nearer: 0.0, open: 0.0 }
     }
-}
-
-/// The middle of a cloud, and its radius: the root mean square of the distances from there.
-pub(crate) fn spread(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone) -> (Vector3<f64>, f64) {
-    let count = points.len().max(1) as f64;
-    let middle = points.clone().sum::<Vector3<f64>>() / count;
-    let square = points.map(|point| (point - middle).norm_squared()).sum::<f64>() / count;
-    (middle, square.sqrt())
 }
 
 /// What a carrier says of its answer, in the engine's units.

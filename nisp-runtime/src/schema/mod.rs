@@ -135,6 +135,13 @@ pub enum Origin {
 }
 
 impl Scene {
+    /// The groups that are conditions: of lower order than the equations, with nothing but residuals at single points.
+    pub(crate) fn conditions(&self) -> Vec<usize> {
+        let order = self.groups.iter().map(|group| group.order).max().unwrap_or(0);
+        let is_condition = |at: &usize| self.groups[*at].is_condition_of(order) && !self.groups[*at].paired;
+        (0..self.groups.len()).filter(is_condition).collect()
+    }
+
     /// The coordinates that a head depends on.
     pub fn axes(&self, head: usize) -> Vec<usize> {
         let groups = || self.groups.iter().chain([&self.outputs]);

@@ -6,6 +6,7 @@
 use crate::ends::ends;
 use crate::real::Real;
 use crate::wide::widest;
+use nalgebra::Vector3;
 
 const LANES: usize = 8;
 
@@ -128,6 +129,14 @@ fn all_finite_loop<E: Real>(a: &[E]) -> bool {
 pub(crate) fn root_mean_square(values: impl IntoIterator<Item = f64>) -> f64 {
     let (sum, count) = values.into_iter().fold((0.0, 0.0), |(sum, count), x| (sum + x * x, count + 1.0));
     if count == 0.0 { 0.0 } else { (sum / count).sqrt() }
+}
+
+/// The middle of a cloud, and its radius: the root mean square of the distances from there.
+pub(crate) fn spread(points: impl ExactSizeIterator<Item = Vector3<f64>> + Clone) -> (Vector3<f64>, f64) {
+    let count = points.len().max(1) as f64;
+    let middle = points.clone().sum::<Vector3<f64>>() / count;
+    let square = points.map(|point| (point - middle).norm_squared()).sum::<f64>() / count;
+    (middle, square.sqrt())
 }
 
 #[cfg(test)]

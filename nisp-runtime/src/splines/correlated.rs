@@ -10,7 +10,7 @@
 use super::iterate::State;
 use super::solver::Solver;
 use super::triangle::Row;
-use crate::noise::{Expected, SharedNoise, spacing};
+use crate::shared_noise::{Expected, SharedNoise, spacing};
 use crate::solve::fault::Fault;
 
 /// Cells between two rows from which on they share no noise.

@@ -1,6 +1,6 @@
 //! An iterate, and that as plain numbers.
 
-use crate::noise::Alike;
+use crate::shared_noise::Alike;
 use crate::solve::fault::Fault;
 use crate::solve::state;
 use crate::weighed::{Class, restore_classes, save_classes};

@@ -3,7 +3,7 @@
 use super::METHOD;
 use super::iterate::{Phase, State};
 use super::prior::{Course, KINDS, Smoothness};
-use crate::noise::Alike;
+use crate::shared_noise::Alike;
 use crate::solve::fault::Fault;
 use crate::solve::state;
 

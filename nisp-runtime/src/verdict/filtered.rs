@@ -2,7 +2,7 @@
 
 use super::Check;
 use super::misfits::Misfits;
-use crate::noise::{Alike, SharedNoise, spacing};
+use crate::shared_noise::{Alike, SharedNoise, spacing};
 
 /// Lengths of smooth noise from which on two rows hardly share any: a tenth.
 const APART: f64 = 2.3;

@@ -6,8 +6,9 @@
 //! without a second solve (`local/scored.rs`).
 
 use super::Check;
-use crate::facts::{Answer, Known, Score, spread};
+use crate::facts::{Answer, Known, Score};
 use crate::problem::Bound;
+use crate::solve::vector::spread;
 use crate::units::{Number, Scale};
 
 /// What the loss may gain where a prior for few sources takes part, five standard deviations; and where data and equations alone do, four and

@@ -2,9 +2,10 @@
 
 use super::root_mean_square;
 use super::slow::chance;
-use crate::noise::{Noise, ObservationNoise, SharedNoise, beside_those_before, by_differences, deviation, in_order};
+use crate::noise::{Noise, ObservationNoise, by_differences, deviation, in_order};
 use crate::problem::Bound;
 use crate::schema;
+use crate::shared_noise::{SharedNoise, beside_those_before};
 use crate::units::Number;
 
 /// Misfit over the noise that differences between neighbouring data show.

@@ -52,17 +52,10 @@ impl Clashes {
     }
 }
 
-/// The groups that are conditions: of lower order than the equations, with nothing but residuals at single points.
-pub(super) fn conditions(schema: &schema::Scene) -> Vec<usize> {
-    let order = schema.groups.iter().map(|group| group.order).max().unwrap_or(0);
-    let is_condition = |at: &usize| schema.groups[*at].is_condition_of(order) && !schema.groups[*at].paired;
-    (0..schema.groups.len()).filter(is_condition).collect()
-}
-
 /// Where conditions contradict each other: no fields that are smooth there meet all of them. Sources are taken as something that is not zero.
 pub(super) fn clashes(bound: &Bound) -> Clashes {
     let schema = bound.problem.scene().schema;
-    let groups = conditions(schema);
+    let groups = schema.conditions();
     let Some(order) = groups.iter().map(|&at| schema.groups[at].order).max() else {
         return Clashes::default();
     };

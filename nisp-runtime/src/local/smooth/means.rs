@@ -8,7 +8,7 @@ use rand::rngs::StdRng;
 use rayon::prelude::*;
 
 use super::between::stating;
-use super::clashes::{Clashes, clashes, conditions};
+use super::clashes::{Clashes, clashes};
 use super::domain::Domain;
 use super::quadrature::Quadrature;
 use super::shares::shares;
@@ -45,7 +45,7 @@ pub(super) fn asked(bound: &Bound) -> (Vec<Asked>, Clashes) {
     let is_tested =
         |at: usize| stating.contains(&at) && is_equation(schema, &schema.groups[at]) && is_of_the_whole(bound, at);
     let clashes = if (0..schema.groups.len()).any(is_tested) { clashes(bound) } else { Clashes::default() };
-    let conditions = conditions(schema);
+    let conditions = schema.conditions();
     let of = |at: usize| {
         if !is_tested(at) {
             return if !clashes.places.is_empty() && conditions.contains(&at) {

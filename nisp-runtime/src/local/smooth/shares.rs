@@ -2,7 +2,6 @@
 
 use std::num::NonZero;
 
-use super::clashes::conditions;
 use crate::ends::ends;
 use crate::local::lattice::MOST_COORDINATES;
 use crate::nearest::{Nearest, Neighbour};
@@ -17,7 +16,7 @@ type Place = [f64; MOST_COORDINATES];
 pub(super) fn shares(bound: &Bound, group: usize) -> Vec<f64> {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
-    let groups = conditions(schema);
+    let groups = schema.conditions();
     let widths: Vec<f64> = (0..inputs).map(|axis| width(bound, &groups, axis)).collect();
     let places = |at: usize| {
         let place = |point: &[f64]| {

@@ -21,10 +21,11 @@ use super::counting::Counting;
 use super::group::Group;
 use super::heads::Heads;
 use super::shape::{Shape, padded, tangents_at};
-use crate::facts::{CloudFacts, spread};
+use crate::facts::CloudFacts;
 use crate::nearest::Nearest;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
+use crate::solve::vector::spread;
 
 /// Standard deviation of misfits, over that along the view, below which the surface is seen edge on.
 pub(super) const EDGE_ON: f64 = 0.05;
