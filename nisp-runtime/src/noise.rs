@@ -3,11 +3,13 @@
 mod differences;
 mod fits;
 mod given;
+mod level;
 
 use rayon::prelude::*;
 
 pub(crate) use self::differences::{EIGHT, by_differences, differences, of_differences};
 pub(crate) use self::given::of_given;
+pub(crate) use self::level::of_answer;
 
 use self::fits::{FEW_CLEAN, HALF, by_fits, quantile};
 use crate::problem::Bound;
@@ -32,6 +34,8 @@ pub(crate) struct ObservationNoise {
     pub(crate) spread: f64,
 }
 
+/// Misfits that are smaller than this share of the noise are of an answer that goes through the data.
+const FOLLOWED: f64 = 0.1;
 /// Noise below this share of the data's spread is taken for rounding: that of numbers with five digits and more.
 const EXACT: f64 = 1e-5;
 
@@ -39,6 +43,11 @@ impl ObservationNoise {
     /// True if the data are exact but for rounding.
     pub(crate) fn is_exact(self) -> bool {
         is_exact(self.deviation, self.spread)
+    }
+
+    /// True of misfits of some size that say nothing of the noise: the answer goes through the data.
+    pub(crate) fn is_followed(self, misfit: f64) -> bool {
+        misfit < FOLLOWED * self.deviation
     }
 }
 
@@ -99,7 +108,7 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
         for (term, _) in group.terms.iter().enumerate().filter(|(_, term)| !term.columns.is_empty()) {
             let columns = measured(bound, at, term);
             let spread = root_mean_square(columns.iter().map(|column| deviation(column)));
-            let found = of_columns(bound, at, term, &columns);
+            let found = of_columns(bound, at, term, &evened(bound, at, term, columns));
             observations.extend(found.map(|deviation| ObservationNoise { group: at, term, deviation, spread }));
         }
     }
@@ -122,6 +131,13 @@ pub(crate) fn relative(bound: &Bound, group: usize, term: usize) -> Option<(f64,
 fn measured(bound: &Bound, group: usize, term: usize) -> Vec<Vec<f64>> {
     let schema = &bound.problem.scene().schema.groups[group].terms[term];
     schema.columns.iter().map(|&column| bound.measured(group, schema, &bound.columns[group][column])).collect()
+}
+
+/// The same, each over how noisy it is beside the others of its row, so that the noise is alike all along.
+fn evened(bound: &Bound, group: usize, term: usize, columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+    let schema = &bound.problem.scene().schema.groups[group].terms[term];
+    let rows = schema.first..schema.first + schema.rows;
+    columns.into_iter().zip(rows).map(|(column, row)| bound.evened((group, schema), row, column)).collect()
 }
 
 /// The noise of values at an observation's places; nothing where it cannot be judged.

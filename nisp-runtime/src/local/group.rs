@@ -30,6 +30,8 @@ pub(super) struct Group {
     pub(super) towers: Vec<Across>,
     /// By row: what it is divided by.
     pub(super) sigma: Vec<f64>,
+    /// By row: how noisy the points of an observation are beside each other; empty where they are alike.
+    noisiness: Vec<Vec<f64>>,
     /// By row: derivatives of that divisor's logarithm by the learned scalars; empty if it goes with none.
     pub(super) growth: Vec<Vec<f64>>,
     /// By row: how its misfit counts, and what that is multiplied by (which its divisor has in it).
@@ -59,6 +61,8 @@ pub(super) struct Places<'a> {
     pub(super) partners: &'a [f64],
     pub(super) columns: &'a [Vec<f64>],
     pub(super) weights: Vec<f64>,
+    /// By row, how noisy observations are there; nothing if all are alike.
+    pub(super) noisiness: &'a [Vec<f64>],
 }
 
 impl Group {
@@ -89,7 +93,7 @@ impl Group {
             highest[slot] = highest[slot].max(order);
         }
         let sites = Sites::new(heads, &highest, [places.points, places.partners], places.columns);
-        let weights = places.weights;
+        let (weights, noisiness) = (places.weights, places.noisiness.to_vec());
         let tested = tested.filter(|_| !weights.is_empty());
         let (degree, base) = tested.map_or((0, Vec::new()), |(base, degree, _)| (degree, base.cells.clone()));
         let of = |(base, degree, least)| tests(base, (degree, least), places.points, &weights);
@@ -114,6 +118,7 @@ impl Group {
             operators,
             towers,
             sigma,
+            noisiness,
             growth,
             losses,
             sites,
@@ -180,10 +185,16 @@ impl Group {
         self.tests.get(place).map_or_else(|| evaluated.row(row, place), |test| evaluated.mean(test, row))
     }
 
+    /// What a row is divided by at one of [`Group::places`].
+    pub(super) fn divisor(&self, row: usize, place: usize) -> f64 {
+        let weight = self.tests.get(place).map_or(1.0, |test| test.weight);
+        let noisiness = self.noisiness.get(row).and_then(|own| own.get(place)).copied().unwrap_or(1.0);
+        self.sigma[row] * noisiness / weight
+    }
+
     /// A row over its tolerance at one of [`Group::places`].
     pub(super) fn over_tolerance(&self, evaluated: &Evaluated, row: usize, place: usize) -> f64 {
-        let weight = self.tests.get(place).map_or(1.0, |test| test.weight);
-        weight * self.at_place(evaluated, row, place) / self.sigma[row]
+        self.at_place(evaluated, row, place) / self.divisor(row, place)
     }
 
     /// A row where it is judged: at every point, or in the mean over every test.

@@ -42,7 +42,7 @@ impl Group {
         };
         records.par_chunks_exact_mut(layout.len()).enumerate().for_each_init(Vec::new, record);
         let record = |p: usize| &records[p * layout.len()..][..layout.len()];
-        let tested = |sum: &mut Vec<f64>, test: &Test| {
+        let tested = |sum: &mut Vec<f64>, (place, test): (usize, &Test)| {
             let mut block = Block::new(layout, self.dofs(heads, |(_, head)| self.span(heads, test, head)));
             let cells = |p: u32| self.sites.cells(p);
             for points in test.points.chunk_by(|&(p, _), &(q, _)| cells(p).eq(cells(q))) {
@@ -56,11 +56,11 @@ impl Group {
                 let dimensions = self.read(heads).map(|(_, head)| heads.lattices[head].dimensions());
                 block.add(layout, sum, boxes.zip(dimensions));
             }
-            block.divide(rows.iter().map(|&row| self.sigma[row] / test.weight));
+            block.divide(rows.iter().map(|&row| self.divisor(row, place)));
             self.majorise(&mut block, &rows);
             block
         };
-        self.tests.par_iter().map_init(Vec::new, tested).collect()
+        self.tests.par_iter().enumerate().map_init(Vec::new, tested).collect()
     }
 
     /// The rows of all points and their derivatives, batch by batch, so that memory is bounded however many points there are, or those of
@@ -102,7 +102,7 @@ impl Group {
                 *point = Some(p as u32);
             }
             let mut block = Block::of(layout, record, dofs.clone());
-            block.divide(rows.iter().map(|&row| self.sigma[row]));
+            block.divide(rows.iter().map(|&row| self.divisor(row, p)));
             self.majorise(&mut block, &rows);
             block
         };

@@ -68,7 +68,8 @@ impl Solver {
         for (at, (kernel, schema)) in kernels.into_iter().zip(schema.groups).enumerate() {
             let measure = schema.terms.iter().find_map(|term| term.measure.as_ref());
             let weights = bound.weights(at, measure);
-            let places = Places { points: &bound.coordinates[at], partners: &[], columns: &bound.columns[at], weights };
+            let points = &bound.coordinates[at];
+            let places = Places { points, columns: &bound.columns[at], weights, ..Places::default() };
             let losses = &bound.losses[at];
             let group = Group::new((schema, losses), kernel, &heads, places, Some((&base, settings.tests, LEAST_MASS)));
             surfaces.extend(Surface::of(bound, at, cell));

@@ -11,9 +11,16 @@ pub(crate) fn by_differences(values: &[f64]) -> Option<f64> {
     of_differences(differences(values).collect())
 }
 
+/// Factors of the values in an eighth difference.
+const EIGHTH: [f64; EIGHT + 1] = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0];
+
+/// Variances of eighth differences of values that have such variances.
+pub(super) fn of_eighth(variances: &[f64]) -> Vec<f64> {
+    variances.windows(EIGHTH.len()).map(|own| own.iter().zip(EIGHTH).map(|(own, c)| c * c * own).sum()).collect()
+}
+
 /// Magnitudes of eighth differences, in the order of the values.
 pub(crate) fn differences(values: &[f64]) -> impl Iterator<Item = f64> + '_ {
-    const EIGHTH: [f64; EIGHT + 1] = [1.0, -8.0, 28.0, -56.0, 70.0, -56.0, 28.0, -8.0, 1.0];
     values.windows(EIGHTH.len()).map(|window| window.iter().zip(EIGHTH).map(|(y, c)| c * y).sum::<f64>().abs())
 }
 

@@ -123,6 +123,7 @@ impl Bound {
             partners,
             columns,
             clouds,
+            noisiness: schema.groups.iter().map(|group| vec![Vec::new(); group.rows]).collect(),
         })
     }
 

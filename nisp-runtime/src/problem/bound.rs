@@ -29,6 +29,8 @@ pub(crate) struct Bound {
     pub(crate) columns: Vec<Vec<Vec<f64>>>,
     /// Clouds by group and term, in the engine's units, flat and point by point; empty for other terms.
     pub(crate) clouds: Vec<Vec<Vec<f64>>>,
+    /// How noisy the points of an observation are beside each other, by group and row; empty where they are alike.
+    pub(crate) noisiness: Vec<Vec<Vec<f64>>>,
 }
 
 /// A [`super::Tolerance`] in the engine's units.
@@ -67,6 +69,27 @@ impl Bound {
         terms.zip(&self.clouds[group]).find(|(own, _)| own.name == term).map_or(&[], |(_, cloud)| cloud)
     }
 
+    /// How noisy a row of an observation is at a point, beside its other points.
+    pub(crate) fn noisiness_at(&self, (group, row): (usize, usize), point: usize) -> f64 {
+        self.noisiness[group][row].get(point).copied().unwrap_or(1.0)
+    }
+
+    /// Values of an observation's row where it was measured, each over how noisy it is beside the others.
+    pub(crate) fn evened(&self, (group, term): (usize, &schema::Term), row: usize, values: Vec<f64>) -> Vec<f64> {
+        let own = &self.noisiness[group][row];
+        if own.is_empty() {
+            return values;
+        }
+        values.iter().zip(self.measured(group, term, own)).map(|(value, noisiness)| value / noisiness).collect()
+    }
+
+    /// Keeps of a group what is said of some of its points only.
+    pub(crate) fn keep_noisiness(&mut self, group: usize, points: &[usize]) {
+        for own in self.noisiness[group].iter_mut().filter(|own| !own.is_empty()) {
+            *own = points.iter().map(|&p| own[p]).collect();
+        }
+    }
+
     /// The same with a share of the points of groups that may exchange theirs, evenly picked.
     pub(crate) fn thinned(&self, share: f64) -> Self {
         let mut thinned = self.clone();
@@ -81,6 +104,7 @@ impl Bound {
             for (own, all) in thinned.columns[at].iter_mut().zip(&self.columns[at]) {
                 *own = chosen.iter().map(|&p| all[p]).collect();
             }
+            thinned.keep_noisiness(at, &chosen);
         }
         thinned
     }
@@ -95,6 +119,8 @@ impl Bound {
             };
             part.coordinates[at] = inside(all);
             part.columns[at] = self.columns[at].iter().map(|column| inside(column)).collect();
+            let kept: Vec<usize> = (0..all.len()).filter(|&p| is_inside[p]).collect();
+            part.keep_noisiness(at, &kept);
         }
         part
     }

@@ -12,6 +12,7 @@ mod course;
 mod layers;
 mod misfits;
 mod network;
+mod noisiness;
 mod on_lattice;
 mod on_splines;
 mod open;
@@ -46,6 +47,7 @@ use crate::problem::{BindError, Bound, Problem};
 use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::evidence::Belief;
 use crate::solve::fault::Fault;
+use crate::solve::state::State;
 use crate::splines::SplineError;
 use crate::verdict::settled;
 
@@ -164,16 +166,20 @@ fn solve(
     monitor: &mut Monitor<'_>,
 ) -> Result<Solution, RecoverError> {
     let start = Instant::now();
-    let (bound, settings) = &prepared(problem, settings)?;
-    let fingerprint = checkpoint::fingerprint(problem, settings);
+    let (mut bound, settings) = prepared(problem, settings)?;
+    let fingerprint = checkpoint::fingerprint(problem, &settings);
     if checkpoint.is_some_and(|checkpoint| checkpoint.fingerprint != fingerprint) {
         return Err(CheckpointError::Other.into());
     }
     if checkpoint.is_some() && settings.resampling.is_some() {
         return Err(CheckpointError::Resampling.into());
     }
-    let (pool, limits) = (threads(settings)?, limits(settings));
+    let (pool, limits) = (threads(&settings)?, limits(&settings));
     let from = checkpoint.map(|checkpoint| &checkpoint.state);
+    if let Some(state) = from {
+        bound = noisiness::restored(bound, state).map_err(|_| CheckpointError::Damaged)?;
+    }
+    let (bound, settings) = (&bound, &settings);
     pool.install(|| {
         let (mut attempt, others) = choice::attempts(bound, settings, from);
         let mut attempts = others.into_iter();
@@ -181,10 +187,31 @@ fn solve(
         loop {
             let settings = &Settings { seed: attempt.seed, ..settings.clone() };
             let limits = Limits { budget: limits.budget.map(|budget| budget.mul_f64(attempt.share)), ..limits };
-            let course = Course::new(fingerprint, limits, start, from, &mut *monitor);
             let is_witness = attempt.carrier.is_witness();
-            let solved = attempt.carrier.solve(bound, settings, course)?;
-            let solution = Solution::new(bound.clone(), solved, (settings, start), attempt, fingerprint);
+            let mut solve = |bound: &Bound, from: Option<&State>| {
+                let monitor = &mut |report: Report<'_>| {
+                    let marked = || {
+                        let Checkpoint { fingerprint, state } = (report.checkpoint)();
+                        Checkpoint { fingerprint, state: noisiness::save(bound, state) }
+                    };
+                    monitor(Report { checkpoint: &marked, ..report })
+                };
+                let course = Course::new(fingerprint, limits, start, from, monitor);
+                let solved = attempt.carrier.solve(bound, settings, course)?;
+                Ok::<_, RecoverError>(Solution::new(bound.clone(), solved, (settings, start), &attempt, fingerprint))
+            };
+            let mut solution = solve(bound, from)?;
+            // Only carriers that count each measurement by itself.
+            if is_witness
+                && has_time_again(settings, start)
+                && let Some((bound, warnings)) = solution.with_noisiness()
+            {
+                let mut again = solve(&bound, None)?;
+                if again.status != Status::Budget {
+                    again.warnings.extend(warnings);
+                    solution = again;
+                }
+            }
             let solution = solution.compared(first.as_ref());
             let contradicts = is_witness && solution.verdict.contradicts();
             let is_over = solution.is_clear() || contradicts || solution.status == Status::Interrupted;

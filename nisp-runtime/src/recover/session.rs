@@ -98,7 +98,7 @@ impl Session {
         let (solution, live) = self.pool.install(|| {
             let (solved, live) = on_lattice::sought(&bound, &local, course)?;
             let attempt = attempt(local, &settings, SOUGHT);
-            let solution = Solution::new(bound.clone(), solved, (&settings, start), attempt, fingerprint);
+            let solution = Solution::new(bound.clone(), solved, (&settings, start), &attempt, fingerprint);
             Ok::<_, RecoverError>((solution, live))
         })?;
         let open = solution.warnings.iter().filter(|warning| warning.kind == WarningKind::Undetermined);
@@ -122,7 +122,7 @@ impl Kept {
         let found = self.live.update(bound.clone()).ok()?;
         let solved = on_lattice::solved(found, self.open.clone(), Optimizer::Marquardt);
         let attempt = attempt(self.local, &self.settings, FOLLOWED);
-        Some(Solution::new(bound, solved, (&self.settings, start), attempt, self.fingerprint))
+        Some(Solution::new(bound, solved, (&self.settings, start), &attempt, self.fingerprint))
     }
 
     /// True where an answer has a fault that the one sought from nothing did not have.

@@ -100,6 +100,14 @@ impl Warning {
         Self { kind: WarningKind::SharedNoise, message }
     }
 
+    /// Noise of an observation that goes with its level: so much of it at its least and largest.
+    pub(crate) fn uneven_noise(name: &str, [least, largest]: [&str; 2]) -> Self {
+        let message = format!(
+            "the noise of `{name}` goes with its level, from {least} to {largest}: each value counts by how noisy it is"
+        );
+        Self { kind: WarningKind::UnevenNoise, message }
+    }
+
     /// Conditions of groups that contradict each other where they meet.
     pub(crate) fn clash(groups: &str) -> Self {
         let message = format!(
@@ -142,6 +150,8 @@ pub enum WarningKind {
     NoBars,
     /// Noise that neighbouring rows of an observation share.
     SharedNoise,
+    /// Noise of an observation that is larger where more is measured.
+    UnevenNoise,
     /// Conditions that contradict each other where they meet.
     Clash,
     /// A direction of the answer that neither equations nor data determine.

@@ -34,7 +34,7 @@ impl Solver<'_> {
     /// The same at a place.
     pub(super) fn sigma_at(&self, state: &State, (group, term): (usize, usize), row: usize, p: usize) -> f64 {
         let around = self.between[group][row].get(p).copied().unwrap_or(0.0);
-        self.sigma(state, group, term, row).max(around)
+        self.sigma(state, group, term, row).max(around) * self.bound.noisiness_at((group, row), p)
     }
 
     /// How the misfits of a group's term count at a state.

@@ -16,6 +16,7 @@ use crate::rhythm::{FAINT, rhythm};
 use crate::shared_noise::{Alike, SharedNoise, beside_those_before, spacing};
 use crate::solve::driver::Warning;
 use crate::solve::fault::Fault;
+use crate::solve::vector::root_mean_square;
 use crate::units::Number;
 use crate::weighed::{Class, Guess, Tally};
 
@@ -170,7 +171,7 @@ impl Solver<'_> {
             terms.iter().enumerate().filter_map(move |(term, class)| Some(((group, term), (*class)?)))
         });
         let lengths: Vec<((usize, usize), usize)> = lengths.collect();
-        if lengths.is_empty() || !self.grows(&best, &lengths)? {
+        if lengths.is_empty() || self.goes_through(&best.state, &lengths, noise) || !self.grows(&best, &lengths)? {
             return Ok(None);
         }
         // Sources begin as smooth as those of the first start.
@@ -185,6 +186,15 @@ impl Solver<'_> {
             first.classes[own].restart(size * ((1.0 + alike) / (1.0 - alike)).sqrt());
         }
         Ok(Some(State { step: place.state.step, ..first }))
+    }
+
+    /// True at an end that goes through all data: what is left says nothing of their noise.
+    fn goes_through(&mut self, state: &State, lengths: &[((usize, usize), usize)], noise: &Noise) -> bool {
+        let misfits = self.misfits(state);
+        lengths.iter().all(|&((group, term), _)| {
+            let left = root_mean_square(misfits[group][term].0.iter().copied());
+            noise.of(group, term).is_some_and(|noise| noise.is_followed(left))
+        })
     }
 
     /// The same state with noise that is smooth from row to row.

@@ -17,7 +17,8 @@ fn may_share(bound: &Bound) -> Vec<Vec<bool>> {
     let is_bounded = |head: &schema::Head| head.source && (head.lower.is_some() || head.upper.is_some());
     let is_followed = lasting.map(asked).sum::<usize>() <= schema.heads.len() && !schema.heads.iter().any(is_bounded);
     let may = |(group, at): (usize, usize), term: &schema::Term| {
-        is_followed && is_data(term) && term.within.is_none() && !bound.losses[group][at].is_robust()
+        let is_alike = bound.noisiness[group][term.first..][..term.rows].iter().all(Vec::is_empty);
+        is_followed && is_data(term) && term.within.is_none() && is_alike && !bound.losses[group][at].is_robust()
     };
     let of = |(group, own): (usize, &schema::Group)| {
         own.terms.iter().enumerate().map(|(at, term)| may((group, at), term)).collect()

@@ -44,8 +44,8 @@ impl<'a> Misfits<'a> {
         (noise, shared): (&Noise, Option<SharedNoise>),
     ) -> Option<Self> {
         let term = &bound.problem.scene().schema.groups[group].terms[at];
-        let mut rows: Vec<Vec<f64>> =
-            left[term.first..term.first + term.rows].iter().map(|row| bound.measured(group, term, row)).collect();
+        let own = |row: usize| bound.evened((group, term), row, bound.measured(group, term, &left[row]));
+        let mut rows: Vec<Vec<f64>> = (term.first..term.first + term.rows).map(own).collect();
         let places = bound.measured(group, term, &bound.coordinates[group]);
         let mut noise = noise.of(group, at);
         if let Some(shared) = shared {

@@ -6,6 +6,7 @@
 
 mod amplified;
 mod believed;
+mod between;
 mod blurred;
 mod clouds;
 mod equations;
@@ -40,7 +41,7 @@ const FIRM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
-    /// `rhythm`, `filtered`, `outliers`, `held`, `left`, `outside`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
+    /// `rhythm`, `filtered`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
     /// `leaning`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
@@ -140,6 +141,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         checks.extend(observations::checks(bound, at, (&rows, noise), answer));
     }
     checks.extend(outside::checks(bound));
+    checks.extend(between::checks(bound, answer, values));
     let settled = settled::checks(bound, answer);
     let is_off = settled.iter().any(|check| check.check == "refined" && !check.passed);
     checks.extend(if is_off { amplified::checks(bound, answer, values) } else { Vec::new() });

@@ -49,7 +49,7 @@ fn of(left: &Misfits, answer: &Answer) -> Vec<Check> {
         checks.extend(left.term.columns.iter().map(|&column| stuck(left, column)));
     }
     if let Some(noise) = left.noise.filter(|_| left.is_record() && !left.is_robust) {
-        checks.extend(left.term.columns.iter().map(|&column| lonely(left, column, noise)));
+        checks.extend((0..left.term.columns.len()).map(|number| lonely(left, number, noise)));
     }
     if left.is_robust {
         checks.push(left_out(left));
@@ -171,7 +171,8 @@ fn share(left: &Misfits) -> Option<f64> {
 
 /// Values of a measured column where its sensor stood still.
 fn stuck(left: &Misfits, column: usize) -> Check {
-    let (_, values) = there(left.bound, left.group, column);
+    let values = left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]);
+    let values = in_order(&left.places, &values);
     let (count, value) = held::held(&values);
     let share = count as f64 / values.len().max(1) as f64;
     let said = format!(
@@ -184,18 +185,13 @@ fn stuck(left: &Misfits, column: usize) -> Check {
     Check::new("held", left.name(), (share, HELD), said)
 }
 
-/// The places and the values of a measured column, in the order of the only coordinate.
-fn there(bound: &Bound, group: usize, column: usize) -> (Vec<f64>, Vec<f64>) {
-    let (places, values) = (&bound.coordinates[group], &bound.columns[group][column]);
-    let rows = || (0..places.len()).filter(|&at| !values[at].is_nan());
-    let places: Vec<f64> = rows().map(|at| places[at]).collect();
-    let values: Vec<f64> = rows().map(|at| values[at]).collect();
-    (in_order(&places, &places), in_order(&places, &values))
-}
-
 /// Values of a measured column that stand alone.
-fn lonely(left: &Misfits, column: usize, noise: ObservationNoise) -> Check {
-    let (places, values) = there(left.bound, left.group, column);
+fn lonely(left: &Misfits, number: usize, noise: ObservationNoise) -> Check {
+    let column = left.term.columns[number];
+    let values = left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]);
+    let values = left.bound.evened((left.group, left.term), left.term.first + number, values);
+    let places = in_order(&left.places, &left.places);
+    let values = in_order(&left.places, &values);
     let deviation = noise.deviation.max(ROUNDING * noise.spread);
     let (found, weight) = outliers::weight(&places, &values, deviation);
     let (stand, them) = if found.len() == 1 { ("value stands", "it") } else { ("values stand", "them") };

@@ -81,6 +81,7 @@ pub(super) fn thinned(bound: &Bound, most: usize) -> Option<Bound> {
         for (own, all) in thinned.columns[at].iter_mut().zip(&bound.columns[at]) {
             *own = chosen.iter().map(|&p| all[p]).collect();
         }
+        thinned.keep_noisiness(at, &chosen);
     }
     Some(thinned)
 }

@@ -80,6 +80,7 @@ pub(super) fn groups(bound: &Bound, heads: &Heads, means: &[Means]) -> Vec<Group
             partners: &bound.partners[at],
             columns: &columns,
             weights: if tested.is_some() { weights } else { bound.weights(at, measure) },
+            noisiness: &bound.noisiness[at],
         };
         let own = (&schema.groups[at], bound.losses[at].as_slice());
         Group::new(own, kernel, heads, places, tested).with_slight((lattice, &bound.coordinates[at]), &middles)

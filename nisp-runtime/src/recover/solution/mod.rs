@@ -7,7 +7,7 @@ use std::time::Instant;
 
 use super::carried::{Carried, Solved, Values};
 use super::choice::Attempt;
-use super::{Checkpoint, Optimizer, Settings, Width};
+use super::{Checkpoint, Optimizer, Settings, Width, noisiness};
 use crate::carrier::Estimate;
 use crate::problem::Bound;
 use crate::saved::Extent;
@@ -87,7 +87,7 @@ impl Solution {
         bound: Bound,
         found: Solved,
         (settings, start): (&Settings, Instant),
-        attempt: Attempt,
+        attempt: &Attempt,
         fingerprint: u64,
     ) -> Self {
         let solution = Self {
@@ -99,10 +99,10 @@ impl Solution {
             optimizer: found.optimizer,
             precision: found.precision,
             settings: settings.clone(),
-            checkpoint: Checkpoint { fingerprint, state: found.state },
+            checkpoint: Checkpoint { fingerprint, state: noisiness::save(&bound, found.state) },
             verdict: Verdict::default(),
             carrier: attempt.carrier.name(),
-            carrier_reason: attempt.why,
+            carrier_reason: attempt.why.clone(),
             is_met_exactly: false,
             bound,
             method: found.method,
