@@ -35,7 +35,7 @@ pub(crate) struct ObservationNoise {
 }
 
 /// Misfits that are smaller than this share of the noise are of an answer that goes through the data.
-const FOLLOWED: f64 = 0.1;
+const FOLLOWED: f64 = 0.01;
 /// Noise below this share of the data's spread is taken for rounding: that of numbers with five digits and more.
 const EXACT: f64 = 1e-5;
 

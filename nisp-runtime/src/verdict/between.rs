@@ -2,9 +2,9 @@
 
 use super::Check;
 use crate::ends::ends;
-use crate::facts::Answer;
+use crate::facts::{Answer, Facts};
 use crate::problem::Bound;
-use crate::schema::{Term, TermKind};
+use crate::schema::TermKind;
 use crate::units::Number;
 
 /// The range of a field over its range where it is measured or stated, at most. Of 127 answers the right ones had 1.8 at most, and the wrong
@@ -46,15 +46,28 @@ pub(super) fn checks(bound: &Bound, answer: &Answer, values: &[Vec<f64>]) -> Vec
 /// Values of a field where it is measured, and where a condition states it.
 fn told(bound: &Bound, answer: &Answer, head: usize) -> Vec<f64> {
     let schema = bound.problem.scene().schema;
-    let conditions = schema.conditions();
+    let (conditions, kernels) = (schema.conditions(), bound.problem.scene().double());
     let mut told = Vec::new();
     for (at, (group, facts)) in schema.groups.iter().zip(&answer.facts).enumerate() {
-        let tells =
-            |term: &&Term| term.kind == TermKind::Observation || conditions.contains(&at) && group.is_of_values(term);
-        for term in group.terms.iter().filter(tells) {
-            for &jet in term.jets.iter().filter(|&&jet| group.jets[jet].head == head && group.jets[jet].is_value()) {
-                told.extend(bound.measured(at, term, &facts.jets[jet * facts.stride..][..facts.points]));
+        let rows = |facts: &Facts| facts.plain_rows(kernels[at].programs, group, &answer.scalars);
+        let values = (0..group.jets.len()).filter(|&jet| group.jets[jet].head == head && group.jets[jet].is_value());
+        for jet in values {
+            let own = &facts.jets[jet * facts.stride..][..facts.points];
+            let terms = || group.terms.iter().filter(|term| term.jets.contains(&jet));
+            for term in terms().filter(|term| term.kind == TermKind::Observation) {
+                told.extend(bound.measured(at, term, own));
             }
+            let mut stating = terms().filter(|term| conditions.contains(&at) && group.is_of_values(term)).peekable();
+            if stating.peek().is_none() {
+                continue;
+            }
+            // A factor that is zero on one side of a domain states nothing there.
+            let mut moved = facts.clone();
+            moved.jets[jet * facts.stride..][..facts.points].iter_mut().for_each(|value| *value += 1.0);
+            let (before, after) = (rows(facts), rows(&moved));
+            let stated: Vec<usize> = stating.flat_map(|term| term.first..term.first + term.rows).collect();
+            let is_stated = |p: &usize| stated.iter().any(|&row| before[row][*p] != after[row][*p]);
+            told.extend((0..facts.points).filter(is_stated).map(|p| own[p]));
         }
     }
     told

@@ -2,6 +2,7 @@
 
 mod judged;
 mod kept;
+mod noisy;
 
 use std::time::Instant;
 
