@@ -3,7 +3,8 @@
 use rayon::prelude::*;
 
 use super::WIDTH;
-use super::triangle::{factorise, solve_backward, solve_forward};
+use super::substitution::{solve_backward, solve_forward};
+use super::triangle::factorise;
 use crate::solve::vector;
 
 /// Cholesky factors of positive definite matrices of one size, with the memory that they need.

@@ -6,13 +6,15 @@
 
 mod cholesky;
 mod orthogonal;
+mod substitution;
 mod triangle;
 
 pub(crate) use cholesky::Cholesky;
 use nalgebra::{DMatrix, SymmetricEigen};
 pub(crate) use orthogonal::triangle_of;
 use rayon::prelude::*;
-pub(crate) use triangle::{factorise, solve_backward, solve_forward, subtract_gram};
+pub(crate) use substitution::{solve_backward, solve_forward};
+pub(crate) use triangle::{factorise, subtract_gram};
 
 use crate::gemm::{Left, Packed, Right, Shape, Write, gemm};
 use crate::simd::Isa;
