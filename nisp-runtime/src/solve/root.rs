@@ -1,9 +1,7 @@
 //! A square root of the covariance of all parameters: what is known of an answer without the rows that it was found from.
 
-use faer::Mat;
-
 use super::curvature::Curvature;
-use super::vector;
+use super::{dense, vector};
 
 /// `R` with the covariance `R^T R`, upper trapezoidal. A quantity whose derivatives by the parameters are `g` has the standard
 /// deviation `|R g|`: as a root it loses half as many digits as the covariance itself would.
@@ -31,11 +29,7 @@ impl Root {
         let count = parts.len() / len.max(1);
         curvature.cholesky.solve_lower(&mut parts, count);
         curvature.cholesky.solve_upper(&mut parts, count);
-        let triangle = Mat::from_fn(count, len, |row, column| parts[row * len + column]);
-        let triangle = triangle.qr();
-        let triangle = triangle.thin_R();
-        let row = |row: usize| (row..len).map(move |column| triangle[(row, column)]);
-        Self { parameters: len, rows: (0..count.min(len)).flat_map(row).collect() }
+        Self { parameters: len, rows: dense::triangle_of(&parts, len) }
     }
 
     /// From the numbers of [`Root::numbers`]; nothing if they are not those of a root over so many parameters.

@@ -154,3 +154,86 @@ fn points(
     let points = kept.iter().flat_map(|&p| &all.points[p * inputs..][..inputs]).copied().collect();
     (points, Means { weights: kept.into_iter().map(|p| all.weights[p]).collect(), middles })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::{Group, Held, Jet, Loss, RuleFlops, Scene, Term, Unit};
+    use crate::units::Scale;
+
+    const NONE: Unit = Unit { exponents: [0.0; 7], factor: Scale::new(1.0), text: "" };
+    const AXIS: schema::Coordinate = schema::Coordinate { name: "x", unit: NONE, scale_group: 0 };
+    const VALUE: Jet = Jet { head: 0, name: "u", degree: &[0, 0], combination: &[], operator: &[], site: 0 };
+    const SECOND: Jet = Jet { name: "u_xx", degree: &[2, 0], ..VALUE };
+    /// A derivative of a head that depends on the first coordinate alone.
+    const OF_ONE: Jet = Jet { head: 1, name: "f_x", degree: &[1, 0], site: 1, ..VALUE };
+    const RESIDUAL: Term = Term {
+        name: "balance",
+        equation: "",
+        latex: "",
+        unit: NONE,
+        kind: TermKind::Residual,
+        loss: Loss::Square,
+        weight: 1.0,
+        within: None,
+        measure: None,
+        first: 0,
+        rows: 1,
+        jets: &[],
+        columns: &[],
+        known: false,
+        bound: false,
+    };
+    const EQUATION: Group = Group {
+        name: "inside",
+        docs: "",
+        channels: &[],
+        order: 2,
+        dense: 1,
+        jets: &[VALUE, SECOND],
+        columns: &[],
+        terms: &[RESIDUAL],
+        rows: 1,
+        place: None,
+        paired: false,
+        held: &[Held { of: 0, coordinates: &[1] }],
+        flops: [0; 2],
+        rule_flops: RuleFlops { compose: [0; 2], affine: [0; 2], product: [0; 2] },
+    };
+    const VALUES: Group = Group { order: 0, jets: &[VALUE], ..EQUATION };
+    const SCENE: Scene = Scene {
+        module: "",
+        name: "",
+        docs: "",
+        coordinates: &[AXIS, AXIS],
+        heads: &[],
+        scalars: &[],
+        groups: &[EQUATION, VALUES, Group { jets: &[OF_ONE], ..EQUATION }],
+        outputs: VALUES,
+        skipped: &[],
+        warnings: &[],
+    };
+
+    #[test]
+    fn equations_of_fields_of_all_coordinates_are_asked_in_the_mean() {
+        assert!(is_equation(&SCENE, &EQUATION));
+        // What reads values alone has nothing that jumps unseen.
+        assert!(!is_equation(&SCENE, &VALUES));
+        assert!(!is_equation(&SCENE, &SCENE.groups[2]));
+        assert!(!is_equation(&SCENE, &Group { paired: true, ..EQUATION }));
+        const MEASURED: &[Term] = &[RESIDUAL, Term { kind: TermKind::Observation, ..RESIDUAL }];
+        assert!(!is_equation(&SCENE, &Group { terms: MEASURED, ..EQUATION }));
+        const COLUMN: &[schema::Column] = &[schema::Column { name: "g", unit: NONE }];
+        assert!(!is_equation(&SCENE, &Group { columns: COLUMN, ..EQUATION }));
+    }
+
+    #[test]
+    fn heads_are_in_means_where_such_a_group_differentiates_them() {
+        let jumping = Asked::OverDomain { jumps: vec![0.5, 0.5], clashes: Vec::new() };
+        let asked = [jumping, Asked::InMean, Asked::AtPoints];
+        assert!(is_in_means(&SCENE, &asked, 0));
+        assert!(!is_in_means(&SCENE, &asked, 1));
+        let asked = [Asked::AtPoints, Asked::InMean, Asked::AtPoints];
+        assert!(!is_in_means(&SCENE, &asked, 0));
+    }
+}
