@@ -99,7 +99,7 @@ impl Begun {
         let known = |head: usize, at: f64| (at <= end).then(|| stretch.value(head, at.max(start)));
         let mut window = Window::new(bound, stretch.weights.clone(), grid, &layout.continuous);
         window.guess(&known);
-        let given = Given::behind(end, doubt, &window);
+        let doubted = Given::behind(end, doubt, &window);
         let mut live = Live {
             window,
             opening: opening.map(|opening| opening.until(end - open * lag)),
@@ -115,9 +115,10 @@ impl Begun {
             recent: VecDeque::new(),
             rows: 0,
             unsound: 0,
-            given,
-            due: 2 * rows.len(),
+            given: doubted,
+            due: rows.len() + rows.len() / 2,
             asked: None,
+            is_free: false,
         };
         let mut answers = Vec::new();
         let behind = live.replay(layout, rows, &known, &mut answers)?;

@@ -9,6 +9,7 @@ use std::thread::{self, JoinHandle};
 use super::event::Event;
 use super::evidence::{Stretch, Weights};
 use super::given::Given;
+use super::lag::{settled_lag, sought};
 use super::met::Nearby;
 use super::opening::Opening;
 use super::record::{Inward, Layout, MeasuredRow};
@@ -61,7 +62,9 @@ pub(super) struct Live {
     pub(super) given: Given,
     /// Number of the row at which a stretch is asked next, or its answer taken over.
     pub(super) due: usize,
-    pub(super) asked: Option<JoinHandle<Result<Weights, LiveError>>>,
+    pub(super) asked: Option<JoinHandle<Result<(Weights, f64), LiveError>>>,
+    /// Whether the lag is nobody's choice, but as long as the last stretch says.
+    pub(super) is_free: bool,
 }
 
 /// Whether a row could be reached from the last one.
@@ -220,25 +223,34 @@ impl Live {
         self.pending.front().map(|(at, _)| self.inward.at.back(Number::engine(*at)).as_declared())
     }
 
-    /// Asks the last rows for noise and smoothness now and then, on another thread. What they say is taken over at a row whose
+    /// Asks the last rows for noise and smoothness now and then, the more often the fewer have been asked, on another thread. What they say is taken over at a row whose
     /// number is known beforehand, so that answers do not depend on time.
     fn renew(&mut self, layout: &Layout) -> Result<(), LiveError> {
         if self.rows < self.due {
             return Ok(());
         }
-        let between = self.rows.min(BETWEEN);
+        let between = (self.rows / 2).min(BETWEEN);
         match self.asked.take() {
             Some(asked) => {
                 // A stretch that cannot be solved leaves what is known as it is.
-                if let Ok(Ok(weights)) = asked.join() {
+                if let Ok(Ok((weights, lag))) = asked.join() {
                     self.window.weigh(weights);
+                    if self.is_free {
+                        self.lag = lag.min(self.window.grid().most_lag());
+                    }
                 }
                 self.due = self.rows + between;
             }
             None => {
                 let stretch = layout.stretch(&self.window.bound, self.recent.make_contiguous());
                 let from = self.window.weights().clone();
-                let solve = move || Stretch::solve(&stretch, Some(&from)).map(|stretch| stretch.weights);
+                let (sought, width) = (sought(&self.window.bound), self.window.grid().width);
+                let ends = (self.recent[0].at, self.last);
+                let solve = move || {
+                    let found = Stretch::solve(&stretch, Some(&from))?;
+                    let lag = settled_lag(&found, &sought, ends, width);
+                    Ok((found.weights, lag))
+                };
                 self.asked = thread::Builder::new().name("evidence".into()).spawn(solve).ok();
                 self.due = self.rows + between / 4;
             }

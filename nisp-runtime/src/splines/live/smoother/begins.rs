@@ -49,6 +49,9 @@ impl FixedLagSmoother {
     ) -> Result<Vec<Smoothed>, LiveError> {
         let Begun { answers, live, behind } = Begun::with(&self.problem, &self.layout, rows, (lag, open))?;
         self.live = live;
+        if let Some(live) = &mut self.live {
+            live.is_free = self.settings.lag.is_none();
+        }
         self.waiting = behind;
         Ok(answers)
     }
