@@ -20,6 +20,7 @@ mod leaning;
 mod levels;
 mod measured;
 mod oscillator;
+mod readings;
 mod steps;
 
 /// Normal numbers, about: sums of twelve uniform ones.

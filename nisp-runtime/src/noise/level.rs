@@ -6,7 +6,7 @@ use crate::solve::vector::root_mean_square;
 /// Powers of the level that the noise may go with: of counts the root, of readings the level itself.
 const POWERS: [f64; 2] = [0.5, 1.0];
 /// Shares of the variance that may be alike all along.
-const ALIKE: [f64; 9] = [1e-6, 1e-5, 1e-4, 1e-3, 0.01, 0.03, 0.1, 0.3, 0.6];
+const ALIKE: [f64; 6] = [1e-3, 0.01, 0.03, 0.1, 0.3, 0.6];
 /// Gain of the logarithm of the likelihood from which on noise goes with the level. By chance few gain so much.
 const CLEAR: f64 = 6.0;
 /// Misfits beyond so many deviations count as if they were there: outliers are no noise.
@@ -24,6 +24,7 @@ pub(crate) fn of_answer(values: &[f64], misfits: &[f64], is_record: bool) -> Opt
     if values.len() < LEAST || !(level > 0.0 && size > 0.0 && (level / size).is_finite()) {
         return None;
     }
+    let measured: Vec<f64> = values.iter().zip(misfits).map(|(value, misfit)| value - misfit).collect();
     let laws = || POWERS.iter().flat_map(|power| ALIKE.iter().map(move |alike| (*power, *alike)));
     let variances = |(power, alike): (f64, f64)| {
         let of = |value: &f64| alike + (1.0 - alike) * (value / level).abs().powf(2.0 * power);
@@ -35,7 +36,6 @@ pub(crate) fn of_answer(values: &[f64], misfits: &[f64], is_record: bool) -> Opt
     };
     let missed = likelihood(&vec![1.0; values.len()], misfits);
     let found = likeliest(&|own| likelihood(own, misfits) - missed).or_else(|| {
-        let measured: Vec<f64> = values.iter().zip(misfits).map(|(value, misfit)| value - misfit).collect();
         let differences: Vec<f64> = differences(&measured).collect();
         let alike = likelihood(&vec![1.0; differences.len()], &differences);
         let gain = |own: &[f64]| (likelihood(&of_eighth(own), &differences) - alike) / SHARED;

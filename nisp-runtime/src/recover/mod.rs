@@ -203,12 +203,11 @@ fn solve(
             let mut solution = solve(bound, from)?;
             // Only carriers that count each measurement by itself.
             if is_witness
-                && has_time_again(settings, start)
-                && let Some((bound, warnings)) = solution.with_noisiness()
+                && has_time_for_noise(settings, start)
+                && let Some(bound) = solution.with_noisiness()
             {
-                let mut again = solve(&bound, None)?;
+                let again = solve(&bound, None)?;
                 if again.status != Status::Budget {
-                    again.warnings.extend(warnings);
                     solution = again;
                 }
             }
@@ -248,6 +247,11 @@ fn threads(settings: &Settings) -> Result<rayon::ThreadPool, RecoverError> {
 /// Steps and time that a run may take.
 fn limits(settings: &Settings) -> Limits {
     Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() }
+}
+
+/// True where what has been found of the noise may be used: steps are not counted, and twice the time so far is in the budget.
+fn has_time_for_noise(settings: &Settings, start: Instant) -> bool {
+    settings.iterations.is_none() && settings.budget.is_none_or(|budget| 2 * start.elapsed() < budget)
 }
 
 /// True where enough of the budget is left for another start: a third.

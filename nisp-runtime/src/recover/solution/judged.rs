@@ -13,6 +13,7 @@ impl Solution {
         /// Size of a source in its deviations above which exact data leave nothing open of it.
         const PLAIN: f64 = 100.0;
         let noise = noise::estimate(&self.bound);
+        self.warnings.extend(self.uneven_noise(&noise));
         let mut answer = self.carried.answer(&self.bound);
         let values = self.where_read(self.values_over_domain(), &answer);
         self.is_met_exactly = self.meets_data_exactly(&noise)
