@@ -207,7 +207,9 @@ fn solve(
                 && let Some(bound) = solution.with_noisiness()
             {
                 let again = solve(&bound, None)?;
-                if again.status != Status::Budget {
+                // What hits few large values alone is no noise of all large ones.
+                let is_worse = solution.is_sound() && !again.is_sound();
+                if again.status != Status::Budget && !is_worse {
                     solution = again;
                 }
             }
