@@ -116,8 +116,7 @@ Rows of a record:
   measured, times that rise. The first three rows side by side tell the separator, where the header is, and whether days
   or months come first in dates.
   The first 200 rows say how large the noise is, how smooth the sources are, and which lag is worth waiting for; then
-  they are all answered, and every later row when the record is a lag farther. Later rows are asked again now and then, so
-  that a lag that is not given may change, up to twice the first. Where the record ends the last rows are
+  they are all answered, and every later row when the record is a lag farther. Where the record ends the last rows are
   answered at shorter lags. After a gap longer than the lag it begins anew with the next 200 rows. Where answers no longer
   fit the rows (a source sets in after quiet ones, 50 rows are inconsistent) the last 400 are solved as the first ones
   were. A row that cannot be taken (time that goes back, a word for a number) gets a line that says so, and the next one
@@ -136,12 +135,8 @@ Answers to rows, one JSON object a line:
   held        true where a measured value has stood still while noise says that it moves: a sensor at the end of its range, or
               one that failed
   leaning     how far a learned parameter moves where sources may be larger, as a share of itself
-  beyond      how far the rows draw a field or a source beyond its bounds, in its deviations; values are within them
-  given       logarithm of the probability that another value of a given number would gain, by all rows so far
-  doubt       which number that is, and about what it should be, where that is more than chance makes
   status      converged, inconsistent (misfit above 1.6 or nearby above 2: equation or parameters do not fit; bend above 3:
-              a source is rougher than it was; leaning above .1: little is known of what is learned; beyond above 4.5:
-              rows contradict a bound; given above 10: a given number is wrong, or its equation; held), or error
+              a source is rougher than it was; leaning above .1: little is known of what is learned; held), or error
               (`error` says why)
   latency_ms  work of the row that brought the answer
 

@@ -58,7 +58,7 @@ impl Stretch {
         if let Some(from) = from {
             kinds.sort_by_key(|kind| *kind != from.kind);
         }
-        let mut place = Place::first(solver.first(&noise), kinds.clone());
+        let mut place = Place::first(solver.first(&noise), kinds);
         if let Some(from) = from {
             place.state.classes.clone_from(&from.classes);
         }
@@ -72,14 +72,6 @@ impl Stretch {
             ahead: f64::INFINITY,
         };
         let status = run.go(&mut solver, &mut place, &Place::save)?;
-        // As of a whole record: sources that the first start takes for noise show from another one.
-        if status == Status::Converged
-            && let Some(again) = solver.again(&noise, &place)
-        {
-            place.again(again, kinds);
-            // Where the second start does not end, the first has.
-            run.go(&mut solver, &mut place, &Place::save)?;
-        }
         let best = place.best().filter(|_| status == Status::Converged).cloned();
         let Tried { kind, state, .. } = best.ok_or(LiveError::Open)?;
         // The window's sources are as rough all along. Scalars that are learned beside them need not believe so.

@@ -101,25 +101,3 @@ impl Grid {
         AT_END[1..].iter().map(|from| self.zero + from * self.width)
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Places where cells meet, to rounding.
-    #[test]
-    fn a_place_keeps_its_cell_while_the_window_moves() {
-        let mut grid = Grid::new(0.3, 0.02, 0.2);
-        for at in (20..200).map(|row| 0.3 + 0.02 * f64::from(row)) {
-            while grid.right() < at + grid.width {
-                grid.advance();
-            }
-            let number = grid.number_of(grid.cell(at));
-            let mut later = grid.clone();
-            for _ in 0..TAIL {
-                later.advance();
-                assert_eq!(later.number_of(later.cell(at)), number, "{at}");
-            }
-        }
-    }
-}

@@ -36,8 +36,7 @@ pub use smoother::FixedLagSmoother;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LagSettings {
     /// How long every answer waits for later rows, in the coordinate's declared unit. Nothing: as long as it takes until a
-    /// source's standard deviation is within a fiftieth of what any wait would bring, by the first rows and then by later ones; twice
-    /// as long as at first at most.
+    /// source's standard deviation is within a twentieth of what any wait would bring, by the first rows.
     pub lag: Option<f64>,
     /// Rows from which noise and smoothness are found before the first answer, ten at least.
     pub first_rows: usize,
