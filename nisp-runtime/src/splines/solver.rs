@@ -123,6 +123,12 @@ impl<'a> Solver<'a> {
         }
     }
 
+    /// The same where sources are small about zero: they keep near to no line.
+    pub(super) fn without_lines(self) -> Self {
+        let triangle = Triangle::new(self.heads.len(), self.heads.band, self.bound.learned.len());
+        Self { belief: Belief::NONE, triangle, ..self }
+    }
+
     /// Bytes that splines over these cells take, about: the triangle and its inverse, a row for every measurement and equation
     /// of a cell, and the splines at all places.
     pub(super) fn bytes(bound: &Bound, breakpoints: &[f64]) -> f64 {

@@ -14,6 +14,8 @@ pub(super) struct Belief {
 }
 
 impl Belief {
+    /// Sources are small about zero.
+    pub(super) const NONE: Self = Self { numbers: 0, far: 1.0 };
     /// Sources have a level. Beside learned scalars they have no more: how small a source is tells what a scalar is, and a rise would
     /// take over what the scalar does.
     pub(super) const LEVEL: Self = Self { numbers: 1, far: 1.0 };

@@ -5,7 +5,6 @@ use std::collections::VecDeque;
 use super::super::cells::EXACT;
 use super::event::Event;
 use super::first::First;
-use super::given::Given;
 use super::grid::Grid;
 use super::lag::{settled_lag, sought, width};
 use super::met::Nearby;
@@ -53,7 +52,7 @@ impl Begun {
 
     /// Goes on from the first rows, solved.
     fn of(
-        First { bound, stretch, opening, doubt }: First,
+        First { bound, stretch, opening }: First,
         layout: &Layout,
         rows: &[MeasuredRow<Declared>],
         (lag, open): (Option<f64>, f64),
@@ -99,7 +98,6 @@ impl Begun {
         let known = |head: usize, at: f64| (at <= end).then(|| stretch.value(head, at.max(start)));
         let mut window = Window::new(bound, stretch.weights.clone(), grid, &layout.continuous);
         window.guess(&known);
-        let doubted = Given::behind(end, doubt, &window);
         let mut live = Live {
             window,
             opening: opening.map(|opening| opening.until(end - open * lag)),
@@ -115,10 +113,8 @@ impl Begun {
             recent: VecDeque::new(),
             rows: 0,
             unsound: 0,
-            given: doubted,
-            due: rows.len() + rows.len() / 2,
+            due: 2 * rows.len(),
             asked: None,
-            is_free: false,
         };
         let mut answers = Vec::new();
         let behind = live.replay(layout, rows, &known, &mut answers)?;

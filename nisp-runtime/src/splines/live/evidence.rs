@@ -12,7 +12,6 @@ use super::LiveError;
 use crate::noise::{self, Noise};
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status};
-use crate::solve::vector::norm;
 use crate::weighed::Class;
 
 /// What rows count as known to, in the engine's units.
@@ -52,12 +51,9 @@ impl Stretch {
     pub(super) fn solve(bound: &Bound, from: Option<&Weights>) -> Result<Self, LiveError> {
         let noise = noise::estimate(bound);
         let breakpoints = cells::breakpoints(bound, &noise);
-        let mut solver = Solver::over(bound, &breakpoints);
-        // What was the likeliest kind comes first: it knows how large its sources are.
-        let mut kinds = kinds(solver.has_sources(), false, false);
-        if let Some(from) = from {
-            kinds.sort_by_key(|kind| *kind != from.kind);
-        }
+        // A window has no unknowns that all of its rows share.
+        let mut solver = Solver::over(bound, &breakpoints).without_lines();
+        let kinds = from.map_or_else(|| kinds(solver.has_sources(), false, false), |from| vec![from.kind]);
         let mut place = Place::first(solver.first(&noise), kinds);
         if let Some(from) = from {
             place.state.classes.clone_from(&from.classes);
@@ -82,27 +78,25 @@ impl Stretch {
                 leaning = solver.leaning(KINDS[best.kind], &best.state)?.into_iter().fold(0.0, f64::max);
                 solver.set_smoothness(KINDS[best.kind], &best.state);
                 learned.clone_from(&best.state.learned);
-                spread =
-                    solver.doubted(best.state, &[])?.map(|(_, found, _)| found.covariance.of_shared(learned.len()));
+                spread = solver.doubted(best.state, &[])?.map(|(_, found, _)| found.covariance.corner);
             }
         }
         solver.set_smoothness(KINDS[kind], &state);
         let classes = state.classes.clone();
         let (state, found, _) = solver.doubted(state, &[])?.ok_or(LiveError::Open)?;
-        let mut covariance = found.covariance;
+        let covariance = found.covariance;
         let weights = Weights {
             kind,
             sigma: sigma(&solver, &state),
-            sizes: (0..solver.heads.bases.len()).map(|head| about_zero(&solver, &state, head)).collect(),
+            sizes: (0..solver.heads.bases.len()).map(|head| solver.source_sizes(&state, head)).collect(),
             by_learned: solver.set_learned(&learned),
             scalars: solver.scalars(&learned).to_vec(),
-            spread: spread.unwrap_or_else(|| covariance.of_shared(learned.len())),
             learned,
+            spread: spread.unwrap_or_else(|| covariance.corner.clone()),
             leaning,
             noise,
             classes,
         };
-        covariance.forget_shared(0);
         Ok(Self { weights, heads: solver.heads, theta: state.theta, covariance })
     }
 
@@ -116,14 +110,6 @@ impl Stretch {
         let (first, slopes) = self.heads.value_row(head, at);
         self.covariance.of(first, &slopes, &[]).max(0.0).sqrt()
     }
-}
-
-/// How rough and how large a head is about zero, where it is a source. A window knows no line that its sources keep near to: they are as
-/// much larger as that line is.
-fn about_zero(solver: &Solver<'_>, state: &State, head: usize) -> Option<(f64, f64)> {
-    let (roughness, amplitude) = solver.source_sizes(state, head)?;
-    let line = norm(&state.lines[solver.line(head)]);
-    Some((roughness, amplitude * 1.0_f64.hypot(line / solver.priors[head].beside(roughness, amplitude))))
 }
 
 fn sigma(solver: &Solver<'_>, state: &State) -> Vec<Vec<f64>> {

@@ -2,8 +2,6 @@
 
 /// Cells whose rows are made anew in every step.
 const TAIL: usize = 6;
-/// How many times as long as at first a lag may become.
-const ROOM: f64 = 2.0;
 /// Where equations are asked to hold at an end of the record, in cells from it: the centres of splines of degree five whose
 /// last knots are repeated there. The first and second knot from an end are replaced by these.
 const AT_END: [f64; 4] = [0.0, 0.2, 0.6, 1.2];
@@ -19,15 +17,10 @@ pub(super) struct Grid {
 }
 
 impl Grid {
-    /// A window that reaches back by twice a lag, which may grow. A record that begins at `start` begins with the first cell of the tail.
+    /// A window that reaches back by a lag. A record that begins at `start` begins with the first cell of the tail.
     pub(super) fn new(start: f64, width: f64, lag: f64) -> Self {
-        let cells = (ROOM * lag / width).ceil() as usize + TAIL + 2;
+        let cells = (lag / width).ceil() as usize + TAIL + 2;
         Self { cells, width, zero: start, first: -((cells - TAIL) as i64) }
-    }
-
-    /// The longest lag that the window reaches back by.
-    pub(super) fn most_lag(&self) -> f64 {
-        (self.cells - TAIL - 2) as f64 * self.width
     }
 
     /// Where the window begins.
@@ -50,36 +43,14 @@ impl Grid {
         self.first += 1;
     }
 
-    /// The cell of a place; places outside belong to the nearest. Rows often lie where cells meet: a place keeps its cell whatever the
-    /// window's own beginning is rounded to, since a row that changes over counts twice or not at all.
+    /// The cell of a place; places outside belong to the nearest.
     pub(super) fn cell(&self, at: f64) -> usize {
-        (self.number(at) - self.first).clamp(0, self.cells as i64 - 1) as usize
+        (((at - self.left()) / self.width).floor().max(0.0) as usize).min(self.cells - 1)
     }
 
     /// The first cell of the window that is part of the record.
     pub(super) fn begun(&self) -> usize {
         (-self.first).max(0) as usize
-    }
-
-    /// The number of a place's cell in the record.
-    pub(super) fn number(&self, at: f64) -> i64 {
-        ((at - self.zero) / self.width).floor() as i64
-    }
-
-    /// The number in the record of a cell of the window.
-    pub(super) fn number_of(&self, cell: usize) -> i64 {
-        self.first + cell as i64
-    }
-
-    /// The cell of the window that has a number in the record.
-    pub(super) fn index_of(&self, number: i64) -> Option<usize> {
-        usize::try_from(number - self.first).ok().filter(|cell| *cell < self.cells)
-    }
-
-    /// Whether equations are asked for at the beginning of a cell: the record may begin behind it, or with places of its own.
-    pub(super) fn has_equation(&self, cell: usize) -> bool {
-        let number = self.number_of(cell);
-        number >= 0 && number != 1
     }
 
     /// Places of the equations from the window's first cell on: knots from the cell before the tail on, and those of the end.
@@ -93,7 +64,8 @@ impl Grid {
     /// or with places of its own.
     pub(super) fn cell_of_equation(&self, place: usize) -> Option<usize> {
         let cell = (self.tail_start() - 1 + place).min(self.cells - 1);
-        (self.has_equation(cell) || cell == self.cells - 1).then_some(cell)
+        let number = self.first + cell as i64;
+        (number >= 0 && number != 1 || cell == self.cells - 1).then_some(cell)
     }
 
     /// Places of equations at the beginning of the record, beside those at knots.

@@ -78,11 +78,6 @@ impl Triangle {
 }
 
 impl Covariance {
-    /// Covariances among so many of the first shared unknowns.
-    pub(in super::super) fn of_shared(&self, count: usize) -> Vec<f64> {
-        self.corner.chunks_exact(self.shared.max(1)).take(count).flat_map(|row| &row[..count]).copied().collect()
-    }
-
     /// The covariances within a band that is no wider.
     pub(in super::super) fn within(&self, band: usize) -> Self {
         let rows = self.rows.chunks_exact(self.band).flat_map(|row| &row[..band.min(self.band)]);
