@@ -202,6 +202,12 @@ impl Answers {
         if found.leaning > 0.0 {
             line["leaning"] = json!(found.leaning);
         }
+        if found.given > 0.0 {
+            line["given"] = json!(found.given);
+        }
+        if let Some(doubt) = &found.doubt {
+            line["doubt"] = json!(doubt);
+        }
         line
     }
 }

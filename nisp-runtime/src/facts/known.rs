@@ -19,6 +19,9 @@ pub(crate) struct Score {
     pub(crate) known: Known,
     /// Whether a prior for few sources has a part in it.
     pub(crate) by_prior: bool,
+    /// Slope of the loss by it, and the curvature, where all unknowns follow.
+    pub(crate) slope: f64,
+    pub(crate) curvature: f64,
     /// What the loss would be less.
     pub(crate) gain: f64,
     /// By how much it would be otherwise: a share of a value, of a cloud's size or of its radius, or an angle.
@@ -33,7 +36,7 @@ impl Score {
         const FARTHEST: f64 = 0.3;
         let change = (-slope / curvature).clamp(-FARTHEST, FARTHEST);
         let gain = -change * (slope + 0.5 * curvature * change);
-        (curvature > 0.0 && gain.is_finite()).then_some(Self { known, by_prior, gain, change })
+        (curvature > 0.0 && gain.is_finite()).then_some(Self { known, by_prior, slope, curvature, gain, change })
     }
 }
 

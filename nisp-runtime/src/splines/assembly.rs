@@ -15,7 +15,7 @@ pub(super) const RIDGE: f64 = 1e-6;
 /// derivatives alone may be off by any constant; beside variances much larger than this those of the rest would be rounding.
 const FREE: f64 = 10.0;
 /// Standard deviation of the learned scalars' parameters before any row is seen.
-const LEARNED: f64 = 10.0;
+pub(super) const LEARNED: f64 = 10.0;
 /// The same beside sources, before the first end.
 const HELD: f64 = 0.03;
 

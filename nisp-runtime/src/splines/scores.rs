@@ -14,7 +14,7 @@ use crate::given::{SMALL, given, slope};
 use crate::solve::fault::Fault;
 
 /// Share of what rows say of a number that must be left when the unknowns have taken theirs: below it is rounding.
-const OPEN: f64 = 1e-20;
+pub(super) const OPEN: f64 = 1e-20;
 
 impl Solver<'_> {
     /// Given numbers that can be asked about, by their slots. Under robust losses rows change with their weights, which must not.

@@ -13,7 +13,7 @@ mod equations;
 mod filtered;
 mod gathered;
 mod held;
-mod known;
+pub(crate) mod known;
 pub(crate) mod leaning;
 mod learned;
 mod misfits;
@@ -114,7 +114,8 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
     let sizes = equations::Sizes::of(values);
     let kernels = bound.problem.scene().double();
     // What is given wrongly leaves its traces everywhere: the likely cause comes first.
-    let mut checks: Vec<Check> = known::check(bound, answer).into_iter().collect();
+    let taken = known::Values { scalars: &answer.scalars, clouds: &answer.clouds };
+    let mut checks: Vec<Check> = known::check(bound, &answer.scores, taken).into_iter().collect();
     for (at, (group, facts)) in schema.groups.iter().zip(&answer.facts).enumerate() {
         let programs = kernels[at].programs;
         let rows = facts.rows(programs, group, &answer.scalars);

@@ -5,6 +5,7 @@ use std::collections::VecDeque;
 use super::super::cells::EXACT;
 use super::event::Event;
 use super::first::First;
+use super::given::Given;
 use super::grid::Grid;
 use super::lag::{settled_lag, sought, width};
 use super::met::Nearby;
@@ -52,7 +53,7 @@ impl Begun {
 
     /// Goes on from the first rows, solved.
     fn of(
-        First { bound, stretch, opening }: First,
+        First { bound, stretch, opening, doubt }: First,
         layout: &Layout,
         rows: &[MeasuredRow<Declared>],
         (lag, open): (Option<f64>, f64),
@@ -98,6 +99,7 @@ impl Begun {
         let known = |head: usize, at: f64| (at <= end).then(|| stretch.value(head, at.max(start)));
         let mut window = Window::new(bound, stretch.weights.clone(), grid, &layout.continuous);
         window.guess(&known);
+        let given = Given::behind(end, doubt, &window);
         let mut live = Live {
             window,
             opening: opening.map(|opening| opening.until(end - open * lag)),
@@ -113,6 +115,7 @@ impl Begun {
             recent: VecDeque::new(),
             rows: 0,
             unsound: 0,
+            given,
             due: 2 * rows.len(),
             asked: None,
         };

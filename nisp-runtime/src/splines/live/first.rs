@@ -6,7 +6,7 @@
 
 use super::LiveError;
 use super::evidence::Stretch;
-use super::opening::Opening;
+use super::opening::{Doubt, Opening};
 use super::record::{Layout, MeasuredRow};
 use crate::problem::{Bound, Problem};
 use crate::units::Declared;
@@ -27,6 +27,7 @@ pub(super) struct First {
     pub(super) bound: Bound,
     pub(super) stretch: Stretch,
     pub(super) opening: Option<Opening>,
+    pub(super) doubt: Doubt,
 }
 
 impl First {
@@ -44,7 +45,7 @@ impl First {
         let mut robust = problem.clone();
         robust.set_robust(true);
         let bound = layout.bound(&robust, rows)?;
-        let far = Opening::solve(&bound).map(|opening| farthest(layout, &bound, &opening, rows));
+        let far = Opening::solve(&bound).0.map(|opening| farthest(layout, &bound, &opening, rows));
         let strays = strays(&far.unwrap_or_default());
         if strays.is_empty() {
             return Ok(first);
@@ -60,8 +61,8 @@ impl First {
         rows: &[MeasuredRow<Declared>],
     ) -> Result<Self, LiveError> {
         let bound = layout.bound(problem, rows)?;
-        let (stretch, opening) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
-        Ok(Self { stretch: stretch?, opening, bound })
+        let (stretch, (opening, doubt)) = rayon::join(|| Stretch::solve(&bound, None), || Opening::solve(&bound));
+        Ok(Self { stretch: stretch?, opening, doubt, bound })
     }
 }
 

@@ -53,6 +53,27 @@ impl Grid {
         (-self.first).max(0) as usize
     }
 
+    /// The number of a place's cell in the record.
+    pub(super) fn number(&self, at: f64) -> i64 {
+        ((at - self.zero) / self.width).floor() as i64
+    }
+
+    /// The number in the record of a cell of the window.
+    pub(super) fn number_of(&self, cell: usize) -> i64 {
+        self.first + cell as i64
+    }
+
+    /// The cell of the window that has a number in the record.
+    pub(super) fn index_of(&self, number: i64) -> Option<usize> {
+        usize::try_from(number - self.first).ok().filter(|cell| *cell < self.cells)
+    }
+
+    /// Whether equations are asked for at the beginning of a cell: the record may begin behind it, or with places of its own.
+    pub(super) fn has_equation(&self, cell: usize) -> bool {
+        let number = self.number_of(cell);
+        number >= 0 && number != 1
+    }
+
     /// Places of the equations from the window's first cell on: knots from the cell before the tail on, and those of the end.
     pub(super) fn equations(&self) -> Vec<f64> {
         let knots = (self.tail_start() - 1..self.cells - 1).map(|knot| knot as f64);
@@ -64,8 +85,7 @@ impl Grid {
     /// or with places of its own.
     pub(super) fn cell_of_equation(&self, place: usize) -> Option<usize> {
         let cell = (self.tail_start() - 1 + place).min(self.cells - 1);
-        let number = self.first + cell as i64;
-        (number >= 0 && number != 1 || cell == self.cells - 1).then_some(cell)
+        (self.has_equation(cell) || cell == self.cells - 1).then_some(cell)
     }
 
     /// Places of equations at the beginning of the record, beside those at knots.

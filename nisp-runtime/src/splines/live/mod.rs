@@ -11,6 +11,7 @@ mod begun;
 mod event;
 mod evidence;
 mod first;
+mod given;
 mod grid;
 mod held;
 mod lag;
@@ -27,7 +28,7 @@ use thiserror::Error;
 use crate::problem::BindError;
 use crate::schema::Unit;
 use crate::solve::fault::Fault;
-use crate::verdict::leaning;
+use crate::verdict::{known, leaning};
 
 pub use smoother::FixedLagSmoother;
 
@@ -68,6 +69,11 @@ pub struct Smoothed {
     /// How far a learned scalar moves where sources may be larger, at most, as a share of itself: little is known of one that moves far,
     /// and of the sources beside it. Zero where nothing is learned.
     pub leaning: f64,
+    /// Logarithm of the probability that another value of a given number would gain, by all rows up to here (Rao's score test): a source
+    /// takes over what is given wrongly, and what it cannot take over shows the clearer the longer the record is.
+    pub given: f64,
+    /// Which number that is and what it should rather be, where it gains more than chance does.
+    pub doubt: Option<String>,
     /// Whether the row is a stray: what was observed there is far from what all other rows say, and does not count.
     pub is_stray: bool,
     /// Whether a sensor stood still there, at the end of its range or because it failed: what it shows is no measurement.
@@ -86,14 +92,21 @@ impl Smoothed {
     /// How far a learned scalar may move.
     pub const LEANING: f64 = leaning::FARTHEST;
 
+    /// What another value of a given number may gain.
+    pub const GIVEN: f64 = known::GAIN_OF_DATA;
+
     /// True where equations and data agree, sources are as smooth as they were taken to be, learned scalars do not rest on how large sources
-    /// are taken to be, and no sensor stood still.
+    /// are taken to be, no given number is doubted, and no sensor stood still.
     pub fn is_sound(&self) -> bool {
+        self.is_met() && self.given <= Self::GIVEN && !self.is_held
+    }
+
+    /// The same, whatever is said of given numbers and sensors.
+    fn is_met(&self) -> bool {
         self.misfit <= Self::MISFIT
             && self.nearby <= Self::NEARBY
             && self.bend <= Self::BEND
             && self.leaning <= Self::LEANING
-            && !self.is_held
     }
 }
 

@@ -5,6 +5,7 @@
 
 use super::super::heads::Heads;
 use super::super::kept::KeptSplines;
+use crate::facts::Score;
 use crate::noise;
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status};
@@ -17,14 +18,27 @@ pub(super) struct Opening {
     misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
 }
 
+/// What the first rows say of given numbers.
+#[derive(Default)]
+pub(super) struct Doubt {
+    pub(super) scores: Vec<Score>,
+    /// Whether a window may say it of further rows: it takes each row's noise for its own.
+    pub(super) goes_on: bool,
+}
+
 impl Opening {
-    /// Of the first rows; nothing where they have no answer with deviations.
-    pub(super) fn solve(bound: &Bound) -> Option<Self> {
+    /// Of the first rows, and what they say of given numbers; no opening where they have no answer with deviations.
+    pub(super) fn solve(bound: &Bound) -> (Option<Self>, Doubt) {
         let mut monitor = |_: super::super::Progress<'_>| Flow::Continue;
         let noise = noise::estimate(bound);
-        let found = super::super::solve(bound, &noise, &[], Limits::default(), None, &mut monitor).ok()?;
+        let Ok(found) = super::super::solve(bound, &noise, &[], Limits::default(), None, &mut monitor) else {
+            return (None, Doubt::default());
+        };
         let is_told = found.status == Status::Converged && found.kept.deviations(0, &[]).is_some();
-        is_told.then_some(Self { kept: found.kept, until: f64::INFINITY, misfits: found.misfits })
+        let own = || Self { kept: found.kept, until: f64::INFINITY, misfits: found.misfits };
+        let (scores, shared) = (found.answer.scores, found.answer.shared);
+        let goes_on = !scores.is_empty() && shared.iter().flatten().all(Option::is_none);
+        (is_told.then(own), Doubt { scores, goes_on })
     }
 
     /// As the answer up to a place.

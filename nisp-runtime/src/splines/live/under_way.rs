@@ -1,5 +1,6 @@
 //! Rows under way: what waits for its answer, what was asked last, and how well rows are met.
 
+mod answers;
 mod spoiled;
 
 use std::collections::VecDeque;
@@ -7,7 +8,8 @@ use std::thread::{self, JoinHandle};
 
 use super::event::Event;
 use super::evidence::{Stretch, Weights};
-use super::met::{Nearby, count_all, count_bend, count_near};
+use super::given::Given;
+use super::met::Nearby;
 use super::opening::Opening;
 use super::record::{Inward, Layout, MeasuredRow};
 use super::window::{Known, Window};
@@ -55,6 +57,8 @@ pub(super) struct Live {
     pub(super) rows: usize,
     /// Answers since the last sound one.
     pub(super) unsound: usize,
+    /// What the record says of given numbers.
+    pub(super) given: Given,
     /// Number of the row at which a stretch is asked next, or its answer taken over.
     pub(super) due: usize,
     pub(super) asked: Option<JoinHandle<Result<Weights, LiveError>>>,
@@ -165,20 +169,17 @@ impl Live {
         Ok(())
     }
 
-    /// Answers the rows that have waited for a lag.
-    fn answer(&mut self, found: &mut Vec<Smoothed>) {
-        let slack = SLACK * self.window.grid().width;
-        while self.pending.front().is_some_and(|(at, _)| *at <= self.last - self.lag + slack) {
-            found.extend(self.answer_next());
-        }
-    }
-
     /// True where equations and data no longer agree, or have not for many rows.
     pub(super) fn is_lost(&self) -> bool {
         let nearby = self.nearby[..1].iter().map(|nearby| nearby.square.sqrt());
         nearby.fold(0.0, f64::max) > Smoothed::NEARBY
             || self.square.sqrt() > Smoothed::MISFIT
             || self.unsound >= MANY_UNSOUND
+    }
+
+    /// Says that an answer at a place in the engine's unit is not to be trusted.
+    pub(super) fn leave_out(&mut self, at: f64) {
+        self.given.leave_out(self.window.grid().number(at));
     }
 
     /// Whether the row at a place in the declared unit is among those that were taken.
@@ -217,56 +218,6 @@ impl Live {
 
     pub(super) fn first_waiting(&self) -> Option<f64> {
         self.pending.front().map(|(at, _)| self.inward.at.back(Number::engine(*at)).as_declared())
-    }
-
-    /// Answers the rows that wait before a place in the declared unit.
-    pub(super) fn answer_before(&mut self, place: f64) -> Vec<Smoothed> {
-        let place = self.place(place);
-        let mut found = Vec::new();
-        while self.pending.front().is_some_and(|(at, _)| *at < place) {
-            found.extend(self.answer_next());
-        }
-        found
-    }
-
-    fn answer_next(&mut self) -> Option<Smoothed> {
-        let next = self.pending.front()?.0;
-        self.opening.take_if(|opening| !opening.answers(next));
-        let decided = self.window.decided();
-        let (window, opening) = (&mut self.window, self.opening.as_ref());
-        for nearby in &mut self.nearby {
-            nearby.count_up(&self.pending, decided, &mut |_, events, mean| count_near((window, opening), events, mean));
-        }
-        // The answer to the first rows has a prior of its own.
-        if opening.is_none() {
-            for bends in &mut self.bends {
-                bends.count_up(&self.pending, decided, &mut |at, _, mean| count_bend(window.bend(at), mean));
-            }
-        }
-        let (at, events) = self.pending.pop_front()?;
-        let counted = self.nearby.iter_mut().chain(&mut self.bends);
-        counted.for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
-        count_all((window, opening), &events, &mut self.square);
-        let has_deviations = window.has_deviations();
-        let read = |(head, outward): (usize, &Scale<Engine, Declared>)| {
-            let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
-            let outward = |x| outward.of(Number::engine(x)).as_declared();
-            (outward(value), if has_deviations { outward(deviation) } else { f64::NAN })
-        };
-        let heads = self.outward.iter().enumerate().map(read).collect();
-        let outward = |at| self.inward.at.inverse().of(Number::engine(at)).as_declared();
-        let most = |means: &[Nearby]| means.iter().map(|mean| mean.square.sqrt()).fold(0.0, f64::max);
-        let (nearby, bend) = (most(&self.nearby), most(&self.bends));
-        let (lag, misfit, leaning) = (outward(self.last - at), self.square.sqrt(), self.window.weights().leaning);
-        let is_stray = events.iter().any(|event| event.is_stray);
-        let answer = Smoothed { at: outward(at), lag, heads, misfit, nearby, bend, leaning, is_stray, is_held: false };
-        self.unsound = if answer.is_sound() { 0 } else { self.unsound + 1 };
-        Some(answer)
-    }
-
-    /// Answers all rows that wait.
-    pub(super) fn finish(&mut self) -> Vec<Smoothed> {
-        std::iter::from_fn(|| self.answer_next()).collect()
     }
 
     /// Asks the last rows for noise and smoothness now and then, on another thread. What they say is taken over at a row whose

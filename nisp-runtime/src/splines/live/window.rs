@@ -4,6 +4,7 @@
 //! every step about the present state; rows of older cells have been turned into a triangle once and for all. What that
 //! triangle says of cells that have left the window is in its later rows already (`triangle/lag.rs`).
 
+mod answered;
 mod bends;
 mod read;
 mod tail;
@@ -22,9 +23,6 @@ use crate::splines::group::Group;
 use crate::splines::heads::Heads;
 use crate::splines::triangle::Triangle;
 use tail::{Observed, Split};
-
-/// Noise below this share of the data's spread is rounding.
-const ROUNDING: f64 = 1e-5;
 
 /// Largest change of a coefficient in a step, in natural sizes: rows about a state say little of what is farther off.
 const FARTHEST: f64 = 3.0;
@@ -54,6 +52,8 @@ pub(super) struct Window {
     places: Vec<f64>,
     /// What is asked for in the tail, in the order of the coordinate.
     events: VecDeque<Event>,
+    /// What has left the tail since it was last asked.
+    gone: Vec<Event>,
     /// Whether equations hold up to the end of the newest cell. Where they come with columns they hold up to the last row, and the
     /// newest coefficients may go anywhere.
     reaches_the_end: bool,
@@ -97,6 +97,7 @@ impl Window {
             equations,
             places,
             events: VecDeque::new(),
+            gone: Vec::new(),
             reaches_the_end,
             observed: Vec::new(),
             aside: Vec::new(),
@@ -128,17 +129,27 @@ impl Window {
         &self.weights
     }
 
+    /// A triangle of no rows over the unknowns of three cells next to each other, beside so many that all rows share.
+    pub(super) fn empty_triangle(&self, shared: usize) -> Triangle {
+        Triangle::new(2 * self.heads_count() + self.heads.band, self.heads.band, shared)
+    }
+
+    /// What was asked for in cells that have left the tail since this was last asked.
+    pub(super) fn gone(&mut self) -> impl Iterator<Item = Event> + '_ {
+        self.gone.drain(..)
+    }
+
     /// Whether deviations say anything: data are off by some noise.
     pub(super) fn has_deviations(&self) -> bool {
         self.weights.noise.is_there(self.bound.problem.scene().schema)
     }
 
-    fn heads_count(&self) -> usize {
+    pub(super) fn heads_count(&self) -> usize {
         self.heads.bases.len()
     }
 
     /// The first unknown of a cell.
-    fn first(&self, cell: usize) -> usize {
+    pub(super) fn first(&self, cell: usize) -> usize {
         self.heads_count() * cell
     }
 
@@ -202,7 +213,7 @@ impl Window {
             self.settled.add_all(leaving.walk());
             let grid = &self.grid;
             while self.events.front().is_some_and(|event| grid.cell(event.at) < grid.tail_start()) {
-                self.events.pop_front();
+                self.gone.extend(self.events.pop_front());
             }
         }
         staying.sort();
@@ -267,27 +278,5 @@ impl Window {
     /// Up to where it is known which rows are strays.
     pub(super) fn decided(&self) -> f64 {
         self.aside.first().copied().unwrap_or(f64::INFINITY)
-    }
-
-    /// Gives how far each observation of an event is off, over the noise of neighbours; over that of the fit where neighbours are
-    /// too far apart to say. Other splines than the window's, and their coefficients, may be given for what the heads are.
-    pub(super) fn misfits(&self, event: &Event, other: Option<(&Heads, &[f64])>, take: &mut dyn FnMut(f64)) {
-        let own = || (&self.heads, &self.theta[..], self.grid.left());
-        let (heads, theta, zero) = other.map_or_else(own, |(heads, theta)| (heads, theta, 0.0));
-        let schema = &self.bound.problem.scene().schema.groups[event.group];
-        let columns: Vec<Vec<f64>> = event.columns.iter().map(|&x| vec![x]).collect();
-        let place = [event.at - zero];
-        let mut group = Group::new(schema, self.kernels[event.group], heads, &place, &columns);
-        group.begin_at(&place, zero);
-        let found = group.evaluate(heads, theta, &self.weights.scalars, None);
-        let is_observed = |term: &schema::Term| term.kind == TermKind::Observation && event.measures(term);
-        for (number, term) in schema.terms.iter().enumerate().filter(|(_, term)| is_observed(term)) {
-            let told = self.weights.noise.of(event.group, number);
-            let told = told.map(|noise| noise.deviation.max(ROUNDING * noise.spread));
-            for row in term.first..term.first + term.rows {
-                let misfit = found.row(row, 0) / told.unwrap_or(self.weights.sigma[event.group][row]);
-                take(if misfit.is_nan() { f64::INFINITY } else { misfit });
-            }
-        }
     }
 }

@@ -1,7 +1,14 @@
-//! What the window says of the heads at a place, and how well it is known.
+//! What the window says of the heads at a place, how well it is known, and how far observations are off.
 
 use super::Window;
+use crate::schema::{self, TermKind};
 use crate::solve::vector::dot;
+use crate::splines::group::Group;
+use crate::splines::heads::Heads;
+use crate::splines::live::event::Event;
+
+/// Noise below this share of the data's spread is rounding.
+const ROUNDING: f64 = 1e-5;
 
 impl Window {
     /// A head at a place of the window in the engine's units, and its standard deviation. What the last stretch leaves open of learned
@@ -16,5 +23,27 @@ impl Window {
         let spread = self.weights.spread.chunks_exact(by_learned.len().max(1));
         let of_learned: f64 = by_learned.iter().zip(spread).map(|(one, row)| one * dot(row, &by_learned)).sum();
         (value, (beside * beside + of_learned.max(0.0)).sqrt())
+    }
+
+    /// Gives how far each observation of an event is off, over the noise of neighbours; over that of the fit where neighbours are
+    /// too far apart to say. Other splines than the window's, and their coefficients, may be given for what the heads are.
+    pub(in super::super) fn misfits(&self, event: &Event, other: Option<(&Heads, &[f64])>, take: &mut dyn FnMut(f64)) {
+        let own = || (&self.heads, &self.theta[..], self.grid.left());
+        let (heads, theta, zero) = other.map_or_else(own, |(heads, theta)| (heads, theta, 0.0));
+        let schema = &self.bound.problem.scene().schema.groups[event.group];
+        let columns: Vec<Vec<f64>> = event.columns.iter().map(|&x| vec![x]).collect();
+        let place = [event.at - zero];
+        let mut group = Group::new(schema, self.kernels[event.group], heads, &place, &columns);
+        group.begin_at(&place, zero);
+        let found = group.evaluate(heads, theta, &self.weights.scalars, None);
+        let is_observed = |term: &schema::Term| term.kind == TermKind::Observation && event.measures(term);
+        for (number, term) in schema.terms.iter().enumerate().filter(|(_, term)| is_observed(term)) {
+            let told = self.weights.noise.of(event.group, number);
+            let told = told.map(|noise| noise.deviation.max(ROUNDING * noise.spread));
+            for row in term.first..term.first + term.rows {
+                let misfit = found.row(row, 0) / told.unwrap_or(self.weights.sigma[event.group][row]);
+                take(if misfit.is_nan() { f64::INFINITY } else { misfit });
+            }
+        }
     }
 }
