@@ -21,7 +21,7 @@ pub(crate) fn factorise(matrix: &mut [f64], rows: usize, n: usize) -> bool {
     for first in (0..rows).step_by(PANEL) {
         let (height, left) = (PANEL.min(rows - first), n - first);
         let panel = &mut matrix[first * (n + 1)..];
-        if left - height <= WIDTH {
+        if left - height < 2 * WIDTH {
             if !eliminate(panel, n, 0..height, left) {
                 return false;
             }
