@@ -1,10 +1,9 @@
 //! Archives of NumPy arrays, of which one is the cloud.
 
-use std::io::Read;
+use std::io::{Cursor, Read};
 use std::path::Path;
 
-use flate2::bufread::DeflateDecoder;
-use rawzip::{CompressionMethod, ZipArchive};
+use zip::ZipArchive;
 
 use super::npy::Array;
 use crate::DataError;
@@ -17,23 +16,16 @@ pub(super) fn parse(path: &Path, bytes: &[u8], components: Components<'_>) -> Re
         let text = error.to_string().replace('\n', " ");
         DataError::file(path, format!("not a readable NPZ archive ({text}); save or copy it again"))
     };
-    let archive = ZipArchive::from_slice(bytes).map_err(|error| unreadable(&error))?;
+    let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(|error| unreadable(&error))?;
     let (mut names, mut clouds) = (Vec::new(), Vec::new());
-    let (mut entries, mut count, mut left) = (archive.entries(), 0, MOST_BYTES);
-    while let Some(entry) = entries.next_entry().map_err(|error| unreadable(&error))? {
-        count += 1;
-        let name = entry.file_path().try_normalize().map_err(|error| unreadable(&error))?.as_ref().to_string();
+    let mut left = MOST_BYTES;
+    for index in 0..archive.len() {
+        let entry = archive.by_index(index).map_err(|error| unreadable(&error))?;
+        let name = entry.name().map_err(|error| unreadable(&error))?.to_string();
         let Some(name) = name.strip_suffix(".npy") else { continue };
-        let packed = archive.get_entry(entry.wayfinder()).map_err(|error| unreadable(&error))?;
-        let unpacked: Box<dyn Read> = match entry.compression_method() {
-            CompressionMethod::STORE => Box::new(packed.data()),
-            CompressionMethod::DEFLATE => Box::new(DeflateDecoder::new(packed.data())),
-            _ => return Err(unreadable(&"packed in a way that NumPy has not")),
-        };
         let mut array = Vec::new();
         // To its end, where its checksum is compared.
-        let mut unpacked = packed.verifying_reader(unpacked).take(left + 1);
-        unpacked.read_to_end(&mut array).map_err(|error| unreadable(&error))?;
+        entry.take(left + 1).read_to_end(&mut array).map_err(|error| unreadable(&error))?;
         let Some(rest) = left.checked_sub(array.len() as u64) else {
             let what = format!("unpacks to more than {} MiB; save the cloud alone as .npy", MOST_BYTES >> 20);
             return Err(DataError::file(path, what));
@@ -43,9 +35,6 @@ pub(super) fn parse(path: &Path, bytes: &[u8], components: Components<'_>) -> Re
             clouds.push(array);
         }
         names.push(name.to_string());
-    }
-    if count != archive.entries_hint() {
-        return Err(unreadable(&"not all of its files are there"));
     }
     match clouds.as_slice() {
         [cloud] => Array::new(path, cloud)?.points(path, components),

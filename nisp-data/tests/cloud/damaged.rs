@@ -98,12 +98,12 @@ fn numpy_shapes_that_do_not_fit() {
 #[test]
 fn archives_that_do_not_fit() {
     let cloud = npy_with("'<f8'", "(3, 3)");
-    let stored = |files: &[(&str, &[u8])]| npz(files, false);
+    let stored = |files: &[(&str, &[u8])]| npz(files, zip::CompressionMethod::Stored);
     assert!(refusal("a.npz", &stored(&[("a.npy", &cloud), ("b.npy", &cloud)])).contains("2 of its arrays (a, b)"));
     assert!(refusal("a.npz", &stored(&[("note.txt", b"hello")])).contains("0 of its arrays"));
     // A few hundred kilobytes that unpack to more than any cloud has.
     let zeros = vec![0; 257 << 20];
-    let bomb = npz(&[("a.npy", &zeros)], true);
+    let bomb = npz(&[("a.npy", &zeros)], zip::CompressionMethod::Deflated);
     assert!(bomb.len() < 1 << 20 && refusal("a.npz", &bomb).contains("unpacks to more than 256 MiB"));
 }
 

@@ -1,10 +1,8 @@
 //! The same three points as a file of every kind.
 
-use std::io::Write;
+use std::io::{Cursor, Write};
 
-use flate2::Compression;
-use flate2::write::DeflateEncoder;
-use rawzip::{CompressionMethod, ZipArchiveWriter};
+use npyz::WriterBuilder;
 
 /// What every file holds.
 pub(crate) const POINTS: [[f64; 3]; 3] = [[0.5, -1.25, 2.0], [0.0, 4.0, -8.0], [1.0, 2.0, 3.0]];
@@ -68,65 +66,58 @@ pub(crate) fn pcd_binary() -> Vec<u8> {
     bytes
 }
 
-/// A NumPy array of three rows and columns, whose rows or columns are whole in memory.
-pub(crate) fn npy(is_by_columns: bool, values: impl IntoIterator<Item = f64>) -> Vec<u8> {
-    let order = if is_by_columns { "True" } else { "False" };
-    npy_of(&format!("{{'descr': '<f8', 'fortran_order': {order}, 'shape': (3, 3), }}\n"), values)
+/// A NumPy array.
+pub(crate) fn npy(order: npyz::Order, values: impl IntoIterator<Item = f64>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&[3, 3]).order(order);
+    let mut writer = options.writer(&mut bytes).begin_nd().unwrap();
+    writer.extend(values).unwrap();
+    writer.finish().unwrap();
+    bytes
 }
 
 /// A NumPy array of the points with a header of one's own.
 pub(crate) fn npy_with(descr: &str, shape: &str) -> Vec<u8> {
-    npy_of(&format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}\n"), flat())
-}
-
-fn npy_of(header: &str, values: impl IntoIterator<Item = f64>) -> Vec<u8> {
+    let header = format!("{{'descr': {descr}, 'fortran_order': False, 'shape': {shape}, }}\n");
     let mut bytes = b"\x93NUMPY\x01\x00".to_vec();
     bytes.extend((header.len() as u16).to_le_bytes());
     bytes.extend(header.as_bytes());
-    bytes.extend(values.into_iter().flat_map(f64::to_le_bytes));
+    bytes.extend(flat().flat_map(f64::to_le_bytes));
     bytes
 }
 
 /// An archive of files, packed or not.
-pub(crate) fn npz(files: &[(&str, &[u8])], is_packed: bool) -> Vec<u8> {
-    let mut bytes = Vec::new();
-    let mut archive = ZipArchiveWriter::new(&mut bytes);
-    for (name, content) in files {
-        let method = if is_packed { CompressionMethod::DEFLATE } else { CompressionMethod::STORE };
-        let (mut entry, config) = archive.new_file(name).compression_method(method).start().unwrap();
-        let descriptor = if is_packed {
-            let mut writer = config.wrap(DeflateEncoder::new(&mut entry, Compression::default()));
-            writer.write_all(content).unwrap();
-            let (encoder, descriptor) = writer.finish().unwrap();
-            encoder.finish().unwrap();
-            descriptor
-        } else {
-            let mut writer = config.wrap(&mut entry);
-            writer.write_all(content).unwrap();
-            writer.finish().unwrap().1
-        };
-        entry.finish(descriptor).unwrap();
+pub(crate) fn npz(files: &[(&str, &[u8])], method: zip::CompressionMethod) -> Vec<u8> {
+    let mut archive = zip::ZipWriter::new(Cursor::new(Vec::new()));
+    for (name, bytes) in files {
+        let options = zip::write::SimpleFileOptions::default().compression_method(method);
+        archive.start_file(*name, options).unwrap();
+        archive.write_all(bytes).unwrap();
     }
-    archive.finish().unwrap();
-    bytes
+    archive.finish().unwrap().into_inner()
 }
 
 /// Every kind of file whose length is fixed by what it says of itself, with its name.
 pub(crate) fn counted() -> Vec<(&'static str, Vec<u8>)> {
-    let array = npy(false, flat());
+    let array = npy(npyz::Order::C, flat());
     let files: [(&str, &[u8]); 2] = [("time.npy", &npy_one()), ("cloud.npy", &array)];
     vec![
         ("ascii.ply", ply("ascii", &ply_ascii())),
         ("binary.ply", ply("binary_little_endian", &ply_binary())),
         ("ascii.pcd", pcd_ascii()),
         ("binary.pcd", pcd_binary()),
-        ("stored.npz", npz(&files, false)),
-        ("packed.npz", npz(&files, true)),
+        ("stored.npz", npz(&files, zip::CompressionMethod::Stored)),
+        ("packed.npz", npz(&files, zip::CompressionMethod::Deflated)),
         ("array.npy", array),
     ]
 }
 
 /// An array that is no cloud.
 fn npy_one() -> Vec<u8> {
-    npy_of("{'descr': '<f8', 'fortran_order': False, 'shape': (2,), }\n", [0.5, 1.5])
+    let mut bytes = Vec::new();
+    let options = npyz::WriteOptions::<f64>::new().default_dtype().shape(&[2]);
+    let mut writer = options.writer(&mut bytes).begin_nd().unwrap();
+    writer.extend([0.5, 1.5]).unwrap();
+    writer.finish().unwrap();
+    bytes
 }

@@ -16,7 +16,6 @@ mod counting;
 mod course;
 mod doubts;
 mod draws;
-mod entries;
 mod evaluated;
 mod group;
 mod heads;

@@ -1,13 +1,13 @@
 //! Where a sparse symmetric matrix has entries, of all unknowns or of some, and its Cholesky factors.
 
-use nalgebra::DMatrix;
+use faer::Mat;
+use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
 
 use super::cholesky::{Cholesky, Fill};
-use super::entries::Entries;
 
 /// Entries of the lower triangle, and how factors fill it.
 pub(super) struct Pattern {
-    entries: Entries,
+    entries: SymbolicSparseColMat<usize>,
     fill: Fill,
 }
 
@@ -26,19 +26,24 @@ impl Pattern {
     /// The pattern of a matrix whose columns have entries in these rows, each on and below the diagonal and in order; nothing where memory is too
     /// small.
     pub(super) fn new(columns: &[Vec<usize>]) -> Option<Self> {
-        let entries = Entries::new(columns);
-        let fill = Fill::of(&entries)?;
+        let mut starts = vec![0];
+        starts.extend(columns.iter().scan(0, |end, column| {
+            *end += column.len();
+            Some(*end)
+        }));
+        let entries = SymbolicSparseColMat::new_checked(columns.len(), columns.len(), starts, None, columns.concat());
+        let fill = Fill::of(entries.as_ref())?;
         Some(Self { entries, fill })
     }
 
     /// Where every column begins, and the end of the last.
     pub(super) fn starts(&self) -> &[usize] {
-        self.entries.starts()
+        self.entries.col_ptr()
     }
 
     /// Rows of all entries, column by column.
     pub(super) fn rows(&self) -> &[usize] {
-        self.entries.rows()
+        self.entries.row_idx()
     }
 
     /// The part of the free unknowns; nothing where memory is too small.
@@ -60,7 +65,7 @@ impl Pattern {
     /// Cholesky factors of a matrix with these entries; where rounding spoils that it is positive definite, of one with some more
     /// on its diagonal.
     pub(super) fn factor(&self, values: &[f64]) -> Option<Cholesky> {
-        let try_with = |values: &[f64]| self.fill.factor(values);
+        let try_with = |values: &[f64]| self.fill.factor(SparseColMatRef::new(self.entries.as_ref(), values));
         if !values.iter().all(|value| value.is_finite()) {
             return None;
         }
@@ -101,16 +106,16 @@ impl Part {
     }
 
     /// Solutions by its factors for the columns of a matrix of all unknowns; zero for those that are not free.
-    pub(super) fn solve(&self, factor: &Cholesky, right: &DMatrix<f64>) -> DMatrix<f64> {
-        let own = DMatrix::from_fn(self.numbers.len(), right.ncols(), |row, column| right[(self.numbers[row], column)]);
-        let own = factor.solve(&own);
-        let mut all = DMatrix::zeros(right.nrows(), right.ncols());
+    pub(super) fn solve(&self, factor: &Cholesky, right: &Mat<f64>) -> Option<Mat<f64>> {
+        let own = Mat::from_fn(self.numbers.len(), right.ncols(), |row, column| right[(self.numbers[row], column)]);
+        let own = factor.solve(&own)?;
+        let mut all = Mat::zeros(right.nrows(), right.ncols());
         for column in 0..right.ncols() {
             for (row, &number) in self.numbers.iter().enumerate() {
                 all[(number, column)] = own[(row, column)];
             }
         }
-        all
+        Some(all)
     }
 }
 
@@ -125,8 +130,8 @@ mod tests {
         let values = [4.0, 1.0, 3.0, 1.0, 2.0];
         assert_eq!(pattern.times(&values, &[1.0, 2.0, 3.0]), [6.0, 10.0, 8.0]);
         let part = pattern.part(&[true, false, true]).unwrap();
-        let right = DMatrix::from_fn(3, 1, |row, _| [8.0, 5.0, 3.0][row]);
-        let solution = part.solve(&part.factor(&values).unwrap(), &right);
+        let right = Mat::from_fn(3, 1, |row, _| [8.0, 5.0, 3.0][row]);
+        let solution = part.solve(&part.factor(&values).unwrap(), &right).unwrap();
         for (row, expected) in [2.0, 0.0, 1.5].into_iter().enumerate() {
             assert!((solution[(row, 0)] - expected).abs() < 1e-15, "{row}: {}", solution[(row, 0)]);
         }

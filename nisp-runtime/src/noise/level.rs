@@ -1,6 +1,6 @@
 //! Noise that goes with the level of what is measured: of a counter, or of an instrument that is off by a share of what it shows.
 
-use super::differences::{differences, of_eighth};
+use super::differences::{EIGHT, differences, of_eighth};
 use crate::solve::vector::root_mean_square;
 
 /// Powers of the level that the noise may go with: of counts the root, of readings the level itself.
@@ -13,6 +13,9 @@ const CLEAR: f64 = 6.0;
 const FAR: f64 = 4.0;
 /// Eighth differences that have to say the same for one of them to be its own.
 const SHARED: f64 = 6.0;
+/// Misfits that speak for a law most and are left out, at least, and of how many one is: what hits few large values alone is no noise of all.
+const FEW: usize = 2;
+const MANY: usize = 30;
 /// Measurements that say something of it, at least.
 const LEAST: usize = 20;
 
@@ -30,29 +33,35 @@ pub(crate) fn of_answer(values: &[f64], misfits: &[f64], is_record: bool) -> Opt
         let of = |value: &f64| alike + (1.0 - alike) * (value / level).abs().powf(2.0 * power);
         values.iter().map(of).collect::<Vec<f64>>()
     };
-    let likeliest = |gain: &dyn Fn(&[f64]) -> f64| {
-        let found = laws().map(|law| variances(law)).map(|own| (gain(&own), own));
-        found.max_by(|a, b| a.0.total_cmp(&b.0)).filter(|(gain, _)| *gain > CLEAR).map(|(_, own)| own)
+    let likeliest = |misfits: &[f64], of: &dyn Fn(Vec<f64>) -> Vec<f64>, shared: usize| {
+        let alike = likelihoods(&vec![1.0; misfits.len()], misfits);
+        let gain = |own: &[f64]| {
+            let likely = likelihoods(&of(own.to_vec()), misfits);
+            let mut gains: Vec<f64> = likely.iter().zip(&alike).map(|(own, alike)| own - alike).collect();
+            gains.sort_by(f64::total_cmp);
+            gains.truncate(gains.len().saturating_sub(shared * FEW.max(gains.len() / MANY)));
+            gains.iter().sum::<f64>()
+        };
+        laws().map(|law| variances(law)).map(|own| (gain(&own), own)).max_by(|a, b| a.0.total_cmp(&b.0))
     };
-    let missed = likelihood(&vec![1.0; values.len()], misfits);
-    let found = likeliest(&|own| likelihood(own, misfits) - missed).or_else(|| {
+    let missed = likeliest(misfits, &|own| own, 1).filter(|(gain, _)| *gain > CLEAR);
+    let found = missed.or_else(|| {
         let differences: Vec<f64> = differences(&measured).collect();
-        let alike = likelihood(&vec![1.0; differences.len()], &differences);
-        let gain = |own: &[f64]| (likelihood(&of_eighth(own), &differences) - alike) / SHARED;
-        likeliest(&gain).filter(|_| is_record && differences.len() >= LEAST)
+        let (gain, own) = likeliest(&differences, &|own| of_eighth(&own), EIGHT + 1)?;
+        (is_record && differences.len() >= LEAST && gain > SHARED * CLEAR).then_some((gain, own))
     });
-    let variances = found?;
+    let (_, variances) = found?;
     let mean = variances.iter().sum::<f64>() / variances.len() as f64;
     Some(variances.iter().map(|variance| (variance / mean).sqrt()).collect())
 }
 
-/// Logarithm of the likelihood of normal misfits with such variances, up to a factor that all share and that is the likeliest.
-fn likelihood(variances: &[f64], misfits: &[f64]) -> f64 {
-    let count = misfits.len() as f64;
+/// By misfit, the logarithm of the likelihood of normal ones with such variances, up to a factor that all share and that is the likeliest.
+fn likelihoods(variances: &[f64], misfits: &[f64]) -> Vec<f64> {
     let over: Vec<f64> = misfits.iter().zip(variances).map(|(misfit, variance)| misfit * misfit / variance).collect();
-    let mean = over.iter().sum::<f64>() / count;
-    let near = over.iter().map(|square| square.min(FAR * FAR * mean)).sum::<f64>() / count;
-    -0.5 * (count * near.ln() + variances.iter().map(|variance| variance.ln()).sum::<f64>())
+    let mean = over.iter().sum::<f64>() / over.len() as f64;
+    let near = |square: &f64| square.min(FAR * FAR * mean);
+    let size = over.iter().map(near).sum::<f64>() / over.len() as f64;
+    over.iter().zip(variances).map(|(own, variance)| -0.5 * (near(own) / size + (size * variance).ln())).collect()
 }
 
 #[cfg(test)]

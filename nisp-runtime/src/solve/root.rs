@@ -1,7 +1,9 @@
 //! A square root of the covariance of all parameters: what is known of an answer without the rows that it was found from.
 
+use faer::Mat;
+
 use super::curvature::Curvature;
-use super::{dense, vector};
+use super::vector;
 
 /// `R` with the covariance `R^T R`, upper trapezoidal. A quantity whose derivatives by the parameters are `g` has the standard
 /// deviation `|R g|`: as a root it loses half as many digits as the covariance itself would.
@@ -29,7 +31,11 @@ impl Root {
         let count = parts.len() / len.max(1);
         curvature.cholesky.solve_lower(&mut parts, count);
         curvature.cholesky.solve_upper(&mut parts, count);
-        Self { parameters: len, rows: dense::triangle_of(&parts, len) }
+        let triangle = Mat::from_fn(count, len, |row, column| parts[row * len + column]);
+        let triangle = triangle.qr();
+        let triangle = triangle.thin_R();
+        let row = |row: usize| (row..len).map(move |column| triangle[(row, column)]);
+        Self { parameters: len, rows: (0..count.min(len)).flat_map(row).collect() }
     }
 
     /// From the numbers of [`Root::numbers`]; nothing if they are not those of a root over so many parameters.

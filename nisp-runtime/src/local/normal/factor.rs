@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 
 use super::super::cholesky::Cholesky;
@@ -45,7 +46,7 @@ impl Factor {
 
     /// Solutions for all right-hand sides, drawn from the posterior.
     pub(in super::super) fn deviations(&self, draws: &Draws) -> Option<Deviations> {
-        let solutions = self.solutions(&draws.matrix());
+        let solutions = self.solutions(&draws.matrix())?;
         let mut deviations = Deviations::default();
         for draw in 0..solutions.ncols() {
             let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
@@ -64,8 +65,8 @@ impl Factor {
     }
 
     /// The products of right-hand sides with their solutions: the columns of a matrix, and what is on the right of the border.
-    pub(in super::super) fn products(&self, right: &DMatrix<f64>, below: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let solutions = self.solutions(right);
+    pub(in super::super) fn products(&self, right: &Mat<f64>, below: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let solutions = self.solutions(right)?;
         let product = |(column, below): (usize, &Vec<f64>)| {
             let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
             let shared = self.share(&mut own, below)?;
@@ -94,7 +95,7 @@ impl Factor {
     }
 
     /// Solutions without the border, for the columns of a matrix.
-    fn solutions(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
+    fn solutions(&self, right: &Mat<f64>) -> Option<Mat<f64>> {
         match &self.part {
             Some(part) => part.solve(&self.factor, right),
             None => self.factor.solve(right),
@@ -104,7 +105,7 @@ impl Factor {
     /// Solutions without the border, for several right-hand sides: the factors are read once for all.
     pub(super) fn solve_free(&self, right: &[impl AsRef<[f64]>]) -> Option<Vec<Vec<f64>>> {
         let Some(len) = right.first().map(|first| first.as_ref().len()) else { return Some(Vec::new()) };
-        let solutions = self.solutions(&DMatrix::from_fn(len, right.len(), |row, column| right[column].as_ref()[row]));
+        let solutions = self.solutions(&Mat::from_fn(len, right.len(), |row, column| right[column].as_ref()[row]))?;
         let column = |column: usize| (0..len).map(|row| solutions[(row, column)]).collect();
         Some((0..right.len()).map(column).collect())
     }

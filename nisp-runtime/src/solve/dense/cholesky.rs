@@ -1,22 +1,30 @@
 //! Cholesky factors.
 
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor;
+use faer::linalg::matmul::{self, triangular};
+use faer::linalg::triangular_solve;
+use faer::prelude::{Reborrow, ReborrowMut};
+use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 use super::WIDTH;
-use super::substitution::{solve_backward, solve_forward};
-use super::triangle::factorise;
 use crate::solve::vector;
+
+/// Columns that are factorised before the rest of the matrix is updated.
+const PANEL: usize = 2 * WIDTH;
 
 /// Cholesky factors of positive definite matrices of one size, with the memory that they need.
 pub(crate) struct Cholesky {
     n: usize,
-    /// Lower, column after column.
     factor: Vec<f64>,
+    scratch: MemBuffer,
 }
 
 impl Cholesky {
     pub(crate) fn new(n: usize) -> Self {
-        Self { n, factor: vec![0.0; n * n] }
+        let scratch = factor::cholesky_in_place_scratch::<f64>(n.min(PANEL), Par::Seq, Default::default());
+        Self { n, factor: vec![0.0; n * n], scratch: MemBuffer::new(scratch) }
     }
 
     /// Factorises the matrix that `fill` writes into the lower triangle of its argument; false where the matrix is
@@ -24,7 +32,27 @@ impl Cholesky {
     pub(crate) fn factorise(&mut self, fill: impl FnOnce(&mut [f64])) -> bool {
         fill(&mut self.factor);
         let n = self.n;
-        factorise(&mut self.factor, n, n) && (0..n).all(|i| self.factor[i * (n + 1)].is_finite())
+        let mut done = true;
+        for first in (0..n).step_by(PANEL) {
+            let width = PANEL.min(n - first);
+            let (panel, rest) = self.factor[first * n..].split_at_mut(width * n);
+            let panel = MatMut::from_column_major_slice_mut(panel, n, width);
+            let (mut diagonal, mut below) = panel.split_at_row_mut(first).1.split_at_row_mut(width);
+            let stack = MemStack::new(&mut self.scratch);
+            done &=
+                factor::cholesky_in_place(diagonal.rb_mut(), Default::default(), Par::Seq, stack, Default::default())
+                    .is_ok();
+            strips(below.rb_mut()).into_par_iter().for_each(|strip| {
+                // strip L^T = what stands there
+                triangular_solve::solve_lower_triangular_in_place(diagonal.rb(), strip.transpose_mut(), Par::Seq);
+            });
+            update(below.rb(), rest, n, first + width);
+        }
+        done && (0..n).all(|i| self.factor[i * (n + 1)].is_finite())
+    }
+
+    fn lower(&self) -> MatRef<'_, f64> {
+        MatRef::from_column_major_slice(&self.factor, self.n, self.n)
     }
 
     /// Solves `L L^T x = b` in place, for one right-hand side.
@@ -35,48 +63,21 @@ impl Cholesky {
 
     /// Solves `L x = b` in place for `count` right-hand sides, one after the other in memory.
     pub(crate) fn solve_lower(&self, b: &mut [f64], count: usize) {
-        if count == 1 {
-            for i in 0..self.n {
-                let row = &self.factor[i * self.n + i..][..self.n - i];
-                let x = b[i] / row[0];
-                b[i] = x;
-                vector::add_scaled(&mut b[i + 1..self.n], -x, &row[1..]);
-            }
-        } else {
-            self.by_strips(b, count, solve_forward);
-        }
+        let n = self.n;
+        b[..n * count].par_chunks_mut(n * WIDTH).for_each(|columns| {
+            let width = columns.len() / n;
+            let x = MatMut::from_column_major_slice_mut(columns, n, width);
+            triangular_solve::solve_lower_triangular_in_place(self.lower(), x, Par::Seq);
+        });
     }
 
     /// Solves `L^T x = b` in place for `count` right-hand sides, one after the other in memory.
     pub(crate) fn solve_upper(&self, b: &mut [f64], count: usize) {
-        if count == 1 {
-            for i in (0..self.n).rev() {
-                let row = &self.factor[i * self.n + i..][..self.n - i];
-                b[i] = (b[i] - vector::dot(&row[1..], &b[i + 1..self.n])) / row[0];
-            }
-        } else {
-            self.by_strips(b, count, solve_backward);
-        }
-    }
-
-    /// Turns right-hand sides into columns, solves for them and turns them back.
-    fn by_strips(
-        &self,
-        b: &mut [f64],
-        count: usize,
-        solve: impl Fn(&[f64], usize, std::ops::Range<usize>, &mut [f64], usize) + Sync,
-    ) {
         let n = self.n;
-        b[..n * count].par_chunks_mut((n * WIDTH).max(1)).for_each(|sides| {
-            let width = (sides.len() / n).next_multiple_of(8);
-            let mut strip = vec![0.0; n * width];
-            for (at, side) in sides.chunks_exact(n).enumerate() {
-                strip.iter_mut().skip(at).step_by(width).zip(side).for_each(|(x, b)| *x = *b);
-            }
-            solve(&self.factor, n, 0..n, &mut strip, width);
-            for (at, side) in sides.chunks_exact_mut(n).enumerate() {
-                side.iter_mut().zip(strip.iter().skip(at).step_by(width)).for_each(|(b, x)| *b = *x);
-            }
+        b[..n * count].par_chunks_mut(n * WIDTH).for_each(|columns| {
+            let width = columns.len() / n;
+            let x = MatMut::from_column_major_slice_mut(columns, n, width);
+            triangular_solve::solve_upper_triangular_in_place(self.lower().transpose(), x, Par::Seq);
         });
     }
 
@@ -96,11 +97,45 @@ impl Cholesky {
     }
 }
 
+/// Cuts a matrix into strips of [`WIDTH`] rows.
+fn strips(matrix: MatMut<'_, f64>) -> Vec<MatMut<'_, f64>> {
+    let mut strips = Vec::with_capacity(matrix.nrows().div_ceil(WIDTH));
+    let mut rest = matrix;
+    while rest.nrows() > 0 {
+        let height = WIDTH.min(rest.nrows());
+        let (strip, below) = rest.split_at_row_mut(height);
+        strips.push(strip);
+        rest = below;
+    }
+    strips
+}
+
+/// Subtracts the lower triangle of `l l^T` from columns `first` on, which are `columns`, `n` apart.
+fn update(l: MatRef<'_, f64>, columns: &mut [f64], n: usize, first: usize) {
+    columns.par_chunks_mut(n * WIDTH).enumerate().for_each(|(task, columns)| {
+        let (at, width) = (task * WIDTH, columns.len() / n);
+        let block = MatMut::from_column_major_slice_mut(columns, n, width);
+        let (diagonal, below) = block.split_at_row_mut(first + at).1.split_at_row_mut(width);
+        let (mine, others) = l.split_at_row(at).1.split_at_row(width);
+        triangular::matmul(
+            diagonal,
+            triangular::BlockStructure::TriangularLower,
+            Accum::Add,
+            mine,
+            triangular::BlockStructure::Rectangular,
+            mine.transpose(),
+            triangular::BlockStructure::Rectangular,
+            -1.0,
+            Par::Seq,
+        );
+        matmul::matmul(below, Accum::Add, others, mine.transpose(), -1.0, Par::Seq);
+    });
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::solve::dense::tests::{plain, wavy};
-    use crate::solve::dense::triangle::PANEL;
 
     #[test]
     fn factors_of_any_size_multiply_to_the_matrix() {

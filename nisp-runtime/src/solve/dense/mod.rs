@@ -1,60 +1,79 @@
-//! Products and factorisations of dense matrices, through the products of the engine's layers.
+//! Products and factorisations of dense matrices, through faer.
 //!
 //! Every product is cut into tasks whose number and shape depend on the matrix alone, each computed by one thread, so
 //! that the number of threads does not change a bit. Matrices of rows (Jacobians) are row-major; square matrices are
 //! column-major with only their lower triangle in use.
 
 mod cholesky;
-mod orthogonal;
-mod substitution;
-mod triangle;
 
 pub(crate) use cholesky::Cholesky;
-use nalgebra::{DMatrix, SymmetricEigen};
-pub(crate) use orthogonal::triangle_of;
+use faer::diag::DiagMut;
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::evd;
+use faer::linalg::matmul::{self, triangular};
+use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
-pub(crate) use substitution::{solve_backward, solve_forward};
-pub(crate) use triangle::{factorise, subtract_gram};
 
-use crate::gemm::{Left, Packed, Right, Shape, Write, gemm};
+use crate::gemm::{Left, Right, Shape, Write, gemm};
 use crate::simd::Isa;
 
 /// Columns of a task: wide enough for the kernel, narrow enough to balance two threads at 400 columns.
 const WIDTH: usize = 96;
 
-/// Columns of a right factor that are turned at once: more than a run of the products, and little beside the whole.
-const TURNED: usize = 1024;
-
-/// The lower triangle of `a a^T`, for `a` row-major of `rows x n`, into `out` of `rows x rows`, column-major.
-pub(crate) fn gram_of_rows(a: &[f64], rows: usize, n: usize, out: &mut [f64]) {
-    out[..rows * rows].fill(0.0);
-    let mut turned = Vec::new();
-    for first in (0..n).step_by(TURNED) {
-        let width = TURNED.min(n - first);
-        turned.clear();
-        turned.resize(width * rows, 0.0);
-        turn(&a[first..], n, rows, &mut turned);
-        triangle::add_gram(Left::transposed(&turned, rows), (&turned, rows), width, out, rows, [rows; 2], Write::Add);
-    }
+/// Views `rows x cols` elements, row-major.
+pub(crate) fn row_major(data: &[f64], rows: usize, cols: usize) -> MatRef<'_, f64> {
+    MatRef::from_row_major_slice(&data[..rows * cols], rows, cols)
 }
 
-/// Columns of rows that are `stride` apart, as rows of `out`.
-fn turn(a: &[f64], stride: usize, rows: usize, out: &mut [f64]) {
-    let columns = out.len() / rows.max(1);
-    out.par_chunks_mut((rows * WIDTH).max(1)).enumerate().for_each(|(task, out)| {
-        let first = task * WIDTH;
-        for row in 0..rows {
-            let row_of = &a[row * stride + first..row * stride + columns.min(first + WIDTH)];
-            out.iter_mut().skip(row).step_by(rows).zip(row_of).for_each(|(out, x)| *out = *x);
-        }
+/// The lower triangle of `a a^T`, for `a` of `n x k`, into `out` of `n x n`.
+pub(crate) fn gram(a: MatRef<'_, f64>, out: &mut [f64]) {
+    let n = a.nrows();
+    out[..n * n].par_chunks_mut(n * WIDTH).enumerate().for_each(|(task, columns)| {
+        let (first, width) = (task * WIDTH, columns.len() / n);
+        let block = MatMut::from_column_major_slice_mut(columns, n, width);
+        let (diagonal, below) = block.split_at_row_mut(first).1.split_at_row_mut(width);
+        let mine = a.subrows(first, width);
+        triangular::matmul(
+            diagonal,
+            triangular::BlockStructure::TriangularLower,
+            Accum::Replace,
+            mine,
+            triangular::BlockStructure::Rectangular,
+            mine.transpose(),
+            triangular::BlockStructure::Rectangular,
+            1.0,
+            Par::Seq,
+        );
+        let others = a.subrows(first + width, n - first - width);
+        matmul::matmul(below, Accum::Replace, others, mine.transpose(), 1.0, Par::Seq);
     });
 }
 
 /// The lower triangle of `j^T j`, for `j` row-major of `rows x n`, into `out` of `n x n`, column-major.
 ///
-/// Read row by row, `out` is the upper triangle, and `j` the right factor as it lies.
+/// Read row by row, `out` is the upper triangle, and `j` the right factor as it lies: the products of the engine's layers
+/// do this a third faster than [`gram`] on the transpose.
 pub(crate) fn gram_of_columns(j: &[f64], rows: usize, n: usize, out: &mut [f64]) {
-    triangle::add_gram(Left::transposed(j, n), (j, n), rows, out, n, [n; 2], Write::Set);
+    // Whole blocks of the products; high, for every task reads all of `j`, yet enough tasks to share out.
+    let height = 14 * (n / (8 * 14)).clamp(1, 14);
+    let isa = Isa::detect();
+    // Rows end at whole vectors; what is left over lies at their start.
+    let rest = n % isa.lanes::<f64>();
+    out[..n * n].par_chunks_mut(n * height).enumerate().for_each(|(task, block)| {
+        let first = task * height;
+        let start = (first - (first - rest.min(first)) % isa.lanes::<f64>()).max(rest);
+        if start < n {
+            let shape = Shape { rows: block.len() / n, columns: n - start, inner: rows };
+            let left = Left::transposed(&j[first..], n);
+            let right = Right::Rows { elements: &j[start..], stride: n };
+            gemm(isa, shape, left, right, &mut block[start..], n, Write::Set);
+        }
+        for (a, row) in (first..rest).zip(block.chunks_exact_mut(n)) {
+            for (b, out) in row[..rest].iter_mut().enumerate() {
+                *out = j.chunks_exact(n).map(|j| j[a] * j[b]).sum();
+            }
+        }
+    });
 }
 
 /// `out = j v`, for `j` row-major with `v.len()` columns.
@@ -77,19 +96,16 @@ pub(crate) fn transpose_times(j: &[f64], u: &[f64], out: &mut [f64]) {
 /// Adds to every `out` the squared norm of `b a`, for the rows `a` of one matrix and the matrix `b`, both row-major with `n`
 /// columns.
 pub(crate) fn add_squares_of_products(a: &[f64], b: &[f64], n: usize, out: &mut [f64]) {
-    let count = b.len() / n.max(1);
-    if count == 0 {
+    if b.is_empty() {
         return;
     }
-    let isa = Isa::detect();
-    let mut right = Packed::zeros(isa, n, count);
-    right.pack(Left::transposed(b, n), count);
+    let b = row_major(b, b.len() / n.max(1), n);
     a.par_chunks(n * WIDTH).zip(out.par_chunks_mut(WIDTH)).for_each(|(a, out)| {
-        let width = right.columns();
-        let mut products = vec![0.0; out.len() * width];
-        let shape = Shape { rows: out.len(), columns: width, inner: n };
-        gemm(isa, shape, Left::rows(a, n), Right::Packed(&right), &mut products, width, Write::Set);
-        for (out, products) in out.iter_mut().zip(products.chunks_exact(width)) {
+        let a = row_major(a, out.len(), n);
+        let mut products = vec![0.0; out.len() * b.nrows()];
+        let all = MatMut::from_row_major_slice_mut(&mut products, out.len(), b.nrows());
+        matmul::matmul(all, Accum::Replace, a, b.transpose(), 1.0, Par::Seq);
+        for (out, products) in out.iter_mut().zip(products.chunks_exact(b.nrows())) {
             *out += super::vector::dot(products, products);
         }
     });
@@ -97,23 +113,16 @@ pub(crate) fn add_squares_of_products(a: &[f64], b: &[f64], n: usize, out: &mut 
 
 /// `j -= q q^T j`, for `q` of `rows x k` and `j` of `rows x n`, both row-major.
 pub(crate) fn subtract_projection(q: &[f64], k: usize, j: &mut [f64], n: usize) {
-    let isa = Isa::detect();
     let rows = j.len() / n.max(1);
-    let mut right = Packed::zeros(isa, rows, n);
-    right.pack(Left::rows(j, n), n);
-    let width = right.columns();
-    let mut within = vec![0.0; k * width];
-    let shape = Shape { rows: k, columns: width, inner: rows };
-    gemm(isa, shape, Left::transposed(q, k), Right::Packed(&right), &mut within, width, Write::Set);
-    j.par_chunks_mut((n * WIDTH).max(1)).zip(q.par_chunks(k * WIDTH)).for_each(|(j, q)| {
+    let q = row_major(q, rows, k);
+    let mut within = vec![0.0; k * n];
+    let product = MatMut::from_row_major_slice_mut(&mut within, k, n);
+    matmul::matmul(product, Accum::Replace, q.transpose(), row_major(j, rows, n), 1.0, Par::Seq);
+    let within = row_major(&within, k, n);
+    j.par_chunks_mut(n * WIDTH).enumerate().for_each(|(task, j)| {
         let count = j.len() / n;
-        let mut projected = vec![0.0; count * width];
-        let shape = Shape { rows: count, columns: width, inner: k };
-        let right = Right::Rows { elements: &within, stride: width };
-        gemm(isa, shape, Left::rows(q, k), right, &mut projected, width, Write::Set);
-        for (j, projected) in j.chunks_exact_mut(n).zip(projected.chunks_exact(width)) {
-            j.iter_mut().zip(projected).for_each(|(j, projected)| *j -= projected);
-        }
+        let j = MatMut::from_row_major_slice_mut(j, count, n);
+        matmul::matmul(j, Accum::Add, q.subrows(task * WIDTH, count), within, -1.0, Par::Seq);
     });
 }
 
@@ -129,17 +138,23 @@ pub(crate) fn copy_lower(from: &[f64], to: &mut [f64], n: usize) {
 /// Eigenvalues in descending order, and eigenvectors one after the other in memory, of the symmetric `n x n` matrix
 /// whose lower triangle is given; `None` where the iteration fails.
 pub(crate) fn eigen(matrix: &[f64], n: usize) -> Option<(Vec<f64>, Vec<f64>)> {
-    let matrix = DMatrix::from_column_slice(n, n, &matrix[..n * n]);
-    let found = SymmetricEigen::try_new(matrix, f64::EPSILON, ITERATIONS * n.max(1))?;
-    let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by(|&a, &b| found.eigenvalues[b].total_cmp(&found.eigenvalues[a]));
-    let values = order.iter().map(|&at| found.eigenvalues[at]).collect();
-    let vectors = order.iter().flat_map(|&at| found.eigenvectors.column(at).iter().copied().collect::<Vec<f64>>());
-    Some((values, vectors.collect()))
+    let mut values = vec![0.0; n];
+    let mut vectors = vec![0.0; n * n];
+    let params = Default::default();
+    let scratch = evd::self_adjoint_evd_scratch::<f64>(n, evd::ComputeEigenvectors::Yes, Par::Seq, params);
+    evd::self_adjoint_evd(
+        MatRef::from_column_major_slice(&matrix[..n * n], n, n),
+        DiagMut::from_slice_mut(&mut values),
+        Some(MatMut::from_column_major_slice_mut(&mut vectors, n, n)),
+        Par::Seq,
+        MemStack::new(&mut MemBuffer::new(scratch)),
+        params,
+    )
+    .ok()?;
+    values.reverse();
+    let vectors = vectors.chunks_exact(n).rev().flatten().copied().collect();
+    Some((values, vectors))
 }
-
-/// Iterations for an eigenvalue at most; two or three are usual.
-const ITERATIONS: usize = 64;
 
 #[cfg(test)]
 pub(super) mod tests {
@@ -162,8 +177,7 @@ pub(super) mod tests {
             let expected = plain(&j, n);
             let (mut own, mut general) = (vec![0.0; n * n], vec![0.0; n * n]);
             gram_of_columns(&j, rows, n, &mut own);
-            let turned: Vec<f64> = (0..n).flat_map(|at| j.iter().skip(at).step_by(n).copied()).collect();
-            gram_of_rows(&turned, n, rows, &mut general);
+            gram(row_major(&j, rows, n).transpose(), &mut general);
             for at in (0..n * n).filter(|at| at % n >= at / n) {
                 assert!((own[at] - expected[at]).abs() <= 1e-14 * rows as f64, "{rows} {n} {at}");
                 assert!((general[at] - expected[at]).abs() <= 1e-14 * rows as f64, "{rows} {n} {at}");

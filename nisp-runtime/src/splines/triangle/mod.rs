@@ -260,23 +260,6 @@ mod tests {
         }
     }
 
-    /// Rows `x + b + 3`, `x - b - 1` and `a + 2 b + 5`: where `x` follows, half of their squares is `(b + 2)^2 + (a + 2 b + 5)^2 / 2`, and
-    /// where `a` follows as well, the first part alone.
-    #[test]
-    fn slopes_beside_the_triangle_are_those_of_what_the_others_leave() {
-        let mut triangle = Triangle::new(1, 1, 2);
-        triangle.add(Row { first: 0, slopes: &[1.0], shared: &[0.0, 1.0], value: 3.0 });
-        triangle.add(Row { first: 0, slopes: &[1.0], shared: &[0.0, -1.0], value: -1.0 });
-        triangle.add(Row { first: 0, slopes: &[], shared: &[1.0, 2.0], value: 5.0 });
-        for (last, expected) in [(1, vec![[4.0, 2.0]]), (2, vec![[5.0, 1.0], [14.0, 6.0]])] {
-            let found = triangle.beside(last);
-            assert_eq!(found.len(), last);
-            for (found, expected) in found.as_flattened().iter().zip(expected.as_flattened()) {
-                assert!((found - expected).abs() < 1e-14 * expected, "{last}: {found} {expected}");
-            }
-        }
-    }
-
     #[test]
     fn unknowns_that_no_row_sees_are_open() {
         let mut triangle = Triangle::new(3, 2, 0);
