@@ -3,6 +3,7 @@
 use nisp::solve::driver::Flow;
 use nisp::{Carrier, FixedLagSmoother, LagSettings, Problem, SceneRef, Settings, Smoothed, recover, scene};
 
+mod given;
 mod learned;
 mod rows;
 
