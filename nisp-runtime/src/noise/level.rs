@@ -42,7 +42,7 @@ pub(crate) fn of_answer(values: &[f64], misfits: &[f64], is_record: bool) -> Opt
             gains.truncate(gains.len().saturating_sub(shared * FEW.max(gains.len() / MANY)));
             gains.iter().sum::<f64>()
         };
-        laws().map(|law| variances(law)).map(|own| (gain(&own), own)).max_by(|a, b| a.0.total_cmp(&b.0))
+        laws().map(&variances).map(|own| (gain(&own), own)).max_by(|a, b| a.0.total_cmp(&b.0))
     };
     let missed = likeliest(misfits, &|own| own, 1).filter(|(gain, _)| *gain > CLEAR);
     let found = missed.or_else(|| {

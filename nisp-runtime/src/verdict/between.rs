@@ -29,7 +29,7 @@ pub(super) fn checks(bound: &Bound, answer: &Answer, values: &[Vec<f64>]) -> Vec
     let is_asked = |head: &usize| observed.contains(head) && !schema.heads[*head].source && !shown(head);
     let fields = (0..schema.heads.len()).filter(is_asked);
     let check = |head: usize| {
-        let told = ends(told(bound, answer, head).into_iter());
+        let told = ends(told(bound, answer, head));
         let all = most(&values[head]);
         let range = |(low, high): (f64, f64)| high - low;
         if !(range(told) > 0.0 && range(told).is_finite()) {

@@ -191,8 +191,8 @@ impl Window {
             }
         }
         let last = if end < self.grid.cells { self.first(end) } else { self.theta.len() };
-        for number in self.first(from)..last {
-            let value = RIDGE * about[number];
+        for (number, own) in about.iter().enumerate().take(last).skip(self.first(from)) {
+            let value = RIDGE * own;
             take(number / self.heads_count(), Row { first: number, slopes: &[RIDGE], shared: &none, value });
         }
     }
