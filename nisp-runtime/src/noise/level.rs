@@ -13,7 +13,7 @@ const CLEAR: f64 = 6.0;
 const FAR: f64 = 4.0;
 /// Eighth differences that have to say the same for one of them to be its own.
 const SHARED: f64 = 6.0;
-/// Misfits that speak for a law most and are left out, at least, and of how many one is: what hits few large values alone is no noise of all.
+/// What speaks for a law most is left out: so many values, and one of so many misfits. What hits few large values alone is no noise of all.
 const FEW: usize = 2;
 const MANY: usize = 30;
 /// Measurements that say something of it, at least.
@@ -39,7 +39,7 @@ pub(crate) fn of_answer(values: &[f64], misfits: &[f64], is_record: bool) -> Opt
             let likely = likelihoods(&of(own.to_vec()), misfits);
             let mut gains: Vec<f64> = likely.iter().zip(&alike).map(|(own, alike)| own - alike).collect();
             gains.sort_by(f64::total_cmp);
-            gains.truncate(gains.len().saturating_sub(shared * FEW.max(gains.len() / MANY)));
+            gains.truncate(gains.len().saturating_sub(shared * FEW + gains.len() / MANY));
             gains.iter().sum::<f64>()
         };
         laws().map(&variances).map(|own| (gain(&own), own)).max_by(|a, b| a.0.total_cmp(&b.0))

@@ -209,7 +209,8 @@ fn solve(
                 let again = solve(&bound, None)?;
                 // What hits few large values alone is no noise of all large ones.
                 let is_worse = solution.is_sound() && !again.is_sound();
-                if again.status != Status::Budget && !is_worse {
+                let is_over = again.status != Status::Budget && !is_worse;
+                if is_over || again.status == Status::Interrupted {
                     solution = again;
                 }
             }
