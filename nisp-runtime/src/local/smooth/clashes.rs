@@ -63,7 +63,7 @@ pub(super) fn clashes(bound: &Bound) -> Clashes {
         bound,
         widths: (0..schema.coordinates.len()).map(|axis| width(bound, &groups, axis)).collect(),
         fields: (0..schema.heads.len()).filter(|&head| !schema.heads[head].source).collect(),
-        powers: powers(schema.coordinates.len(), order + 1),
+        powers: powers(schema.coordinates.len(), order + 2),
     };
     let rows: Vec<Row> = groups.iter().flat_map(|&at| rows(bound, at, &smooth.widths)).collect();
     let near = ROWS * smooth.fields.len() * smooth.powers.len();
