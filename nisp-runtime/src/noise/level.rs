@@ -98,10 +98,6 @@ mod tests {
             let misfits: Vec<f64> = (0..100).map(|_| normal(&mut random)).collect();
             assert_eq!(of_answer(&course(100), &misfits, true), None);
         }
-        // One measurement that is far off, where the level is highest.
-        let mut misfits: Vec<f64> = (0..100).map(|_| normal(&mut random)).collect();
-        misfits[0] = 30.0;
-        assert_eq!(of_answer(&course(100), &misfits, true), None);
         assert_eq!(of_answer(&[0.0; 30], &[1.0; 30], true), None);
         assert_eq!(of_answer(&[1.0; 30], &[0.0; 30], true), None);
     }
