@@ -107,7 +107,7 @@ pub struct Held {
 /// A network output or a derivative of it.
 #[derive(Clone, Copy, Debug)]
 pub struct Jet {
-    /// Index of the head in [`Scene::heads`].
+    /// Index of the head in [`Scene::heads`](super::Scene::heads).
     pub head: usize,
     /// The derivative as people write it.
     pub name: &'static str,

@@ -28,9 +28,9 @@ pub struct Term {
     pub first: usize,
     /// Number of rows.
     pub rows: usize,
-    /// What its rows read of the heads, by index in [`Group::jets`].
+    /// What its rows read of the heads, by index in [`Group::jets`](super::Group::jets).
     pub jets: &'static [usize],
-    /// The column that each row compares with, by index in [`Group::columns`], if the term is an observation.
+    /// The column that each row compares with, by index in [`Group::columns`](super::Group::columns), if the term is an observation.
     pub columns: &'static [usize],
     /// True where its rows read columns: they have a value at the points of the group alone.
     pub known: bool,
