@@ -12,6 +12,7 @@ mod leaning;
 mod mixed;
 mod some;
 mod sources;
+mod swings;
 mod units;
 mod waves;
 
