@@ -9,11 +9,11 @@ const POWERS: [f64; 2] = [0.5, 1.0];
 const ALIKE: [f64; 6] = [1e-3, 0.01, 0.03, 0.1, 0.3, 0.6];
 /// Gain of the logarithm of the likelihood from which on noise goes with the level. By chance few gain so much.
 const CLEAR: f64 = 6.0;
-/// Misfits beyond so many deviations count as if they were there: outliers are no noise.
+/// Misfits that are off by more deviations than these count as if they were off by so many: outliers are no noise.
 const FAR: f64 = 4.0;
-/// Eighth differences that have to say the same for one of them to be its own.
+/// Neighbouring eighth differences share most of their values: so many count as one.
 const SHARED: f64 = 6.0;
-/// What speaks for a law most is left out: so many values, and one of so many misfits. What hits few large values alone is no noise of all.
+/// The values that speak for a law most are left out: so many, and one of so many. What hits few large values alone is no noise of all.
 const FEW: usize = 2;
 const MANY: usize = 30;
 /// Measurements that say something of it, at least.
@@ -33,6 +33,7 @@ pub(crate) fn of_answer(values: &[f64], misfits: &[f64], is_record: bool) -> Opt
         let of = |value: &f64| alike + (1.0 - alike) * (value / level).abs().powf(2.0 * power);
         values.iter().map(of).collect::<Vec<f64>>()
     };
+    // The likeliest law and its gain, of misfits that are made of values as `of` makes variances, each value in so many of them.
     let likeliest = |misfits: &[f64], of: &dyn Fn(Vec<f64>) -> Vec<f64>, shared: usize| {
         let alike = likelihoods(&vec![1.0; misfits.len()], misfits);
         let gain = |own: &[f64]| {

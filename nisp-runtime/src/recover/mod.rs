@@ -206,13 +206,7 @@ fn solve(
                 && has_time_for_noise(settings, start)
                 && let Some(bound) = solution.with_noisiness()
             {
-                let again = solve(&bound, None)?;
-                // What hits few large values alone is no noise of all large ones.
-                let is_worse = solution.is_sound() && !again.is_sound();
-                let is_over = again.status != Status::Budget && !is_worse;
-                if is_over || again.status == Status::Interrupted {
-                    solution = again;
-                }
+                solution = with_noise(solution, solve(&bound, None)?);
             }
             let solution = solution.compared(first.as_ref());
             let contradicts = is_witness && solution.verdict.contradicts();
@@ -250,6 +244,18 @@ fn threads(settings: &Settings) -> Result<rayon::ThreadPool, RecoverError> {
 /// Steps and time that a run may take.
 fn limits(settings: &Settings) -> Limits {
     Limits { budget: settings.budget, iterations: settings.iterations.unwrap_or(u64::MAX), ..Limits::default() }
+}
+
+/// Of an answer and another one in which values count by their noise, the one that stands. A law of noise under which a sound answer
+/// contradicts its data is none: a few large values may be off for other reasons. A run that is stopped goes on from where it was.
+fn with_noise(before: Solution, after: Solution) -> Solution {
+    let is_worse = before.is_sound() && !after.is_sound();
+    match after.status {
+        Status::Interrupted => after,
+        Status::Budget => before,
+        _ if is_worse => before,
+        _ => after,
+    }
 }
 
 /// True where what has been found of the noise may be used: steps are not counted, and twice the time so far is in the budget.
