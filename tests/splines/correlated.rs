@@ -8,7 +8,7 @@ use crate::{normals, of, settings, simulated, solve};
 
 nisp::pde! {
     /// A vessel that drains, and what flows into it.
-    mod vessel {
+    pub(crate) mod vessel {
         units: off;
         coordinates: t;
         fields: h;
@@ -18,7 +18,7 @@ nisp::pde! {
     }
 }
 
-const ROWS: usize = 300;
+pub(crate) const ROWS: usize = 300;
 
 fn times() -> Vec<f64> {
     (0..ROWS).map(|row| row as f64 / 15.0).collect()
@@ -40,14 +40,14 @@ fn noise(seed: u64, deviation: f64, shared: f64) -> Vec<f64> {
     (0..ROWS).map(next).collect()
 }
 
-fn with(mut problem: Problem, truth: Vec<f64>, noise: &[f64]) -> Problem {
+pub(crate) fn with(mut problem: Problem, truth: Vec<f64>, noise: &[f64]) -> Problem {
     let measured = truth.iter().zip(noise).map(|(truth, noise)| truth + noise).collect();
     problem.set_group("motion", times().into(), vec![]).unwrap();
     problem.set_group("samples", times().into(), vec![measured]).unwrap();
     problem
 }
 
-fn levels() -> Vec<f64> {
+pub(crate) fn levels() -> Vec<f64> {
     simulated(&times(), [2.0], |t, [h]| [(source(t) - h) / 2.0]).iter().map(|[h]| *h).collect()
 }
 

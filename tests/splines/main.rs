@@ -3,6 +3,7 @@
 use nisp::solve::driver::Flow;
 use nisp::{Carrier, Estimate, Problem, Settings, Solution, recover};
 
+mod averaged;
 mod beside;
 mod blurred;
 mod bounded;

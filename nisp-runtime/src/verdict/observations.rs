@@ -35,8 +35,9 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
     let of = |(at, _)| {
         let shared = answer.shared(group, at);
         let left = Misfits::of(bound, (group, at), rows, (noise, shared))?;
-        let mut checks = of(&left, answer);
-        checks.extend(filtered::check(&left, shared));
+        // Rows that are not as they were measured are the likely cause of all else.
+        let mut checks = filtered::checks(&left, rows, shared);
+        checks.extend(of(&left, answer));
         Some(checks)
     };
     observations.filter_map(of).flatten().collect()
