@@ -32,6 +32,8 @@ pub(super) struct Row {
     rows: usize,
     clustered: bool,
     status: &'static str,
+    /// Checks that fail.
+    failed: Vec<&'static str>,
     /// Mean error and mean magnitude of the source.
     error: f64,
     size: f64,
@@ -116,6 +118,7 @@ pub(super) fn run(
         rows,
         clustered,
         status,
+        failed: solution.verdict.failed().map(|check| check.check).collect(),
         error: mean(&errors),
         size: mean(&truth.iter().map(|truth| truth.abs()).collect::<Vec<f64>>()),
         beyond,
@@ -195,6 +198,7 @@ impl Row {
             "rows": self.rows,
             "clustered": self.clustered,
             "status": self.status,
+            "failed": self.failed,
             "share": self.error / self.size,
             "beyond_two_deviations": self.beyond.map(|beyond| beyond[0]),
             "beyond_four_deviations": self.beyond.map(|beyond| beyond[1]),

@@ -102,7 +102,7 @@ impl Run<'_> {
         }
         if place.shared == 1 && self.has_time_for(2) {
             place.shared = 2;
-            if let Some(rough) = place.shares_noise().cloned() {
+            if let Some(rough) = place.shares_noise().filter(|_| solver.may_be_smooth()).cloned() {
                 place.go_on(&rough, solver.smooth(&rough.state));
                 if self.go(solver, place, save)? == Status::Interrupted {
                     return Ok(Flow::Stop);

@@ -29,6 +29,9 @@ const LONGER: f64 = 1.5;
 const LONGEST: f64 = 0.25;
 /// Length of smooth noise over that of a walk which is as alike at half of its size.
 const SMOOTHER: f64 = 1.4;
+/// Rows below which noise is not asked whether it is smooth from row to row. Of shorter simulated records whose noise is each row's own, one in
+/// ten would be called filtered: few rows that swing, or that lie in clusters, look so.
+const MANY: usize = 100;
 /// Correlation of neighbouring rows at which it is asked whether the evidence grows with it.
 const SLIGHT: f64 = 0.02;
 /// Change of the logarithm of a length over which the slope of the evidence is taken, and the farthest step of it.
@@ -195,6 +198,12 @@ impl Solver<'_> {
             let left = root_mean_square(misfits[group][term].0.iter().copied());
             noise.of(group, term).is_some_and(|noise| noise.is_followed(left))
         })
+    }
+
+    /// Whether rows are enough to tell smooth noise from a source that swings within few of them.
+    pub(super) fn may_be_smooth(&self) -> bool {
+        let shares = self.lengths.iter().enumerate().filter(|(_, terms)| terms.iter().any(Option::is_some));
+        shares.into_iter().all(|(group, _)| self.bound.coordinates[group].len() >= MANY)
     }
 
     /// The same state with noise that is smooth from row to row.

@@ -14,12 +14,14 @@ const APART: f64 = 2.3;
 /// Rows up to which smooth noise and noise that changes as a walk does are alike.
 const LEAST: f64 = 2.0;
 
-/// By how much likelier a moving average has to be than none, and than another: a logarithm.
+/// By how much likelier a moving average has to be than none, and than another, in all and for every row: a logarithm. The course of a signal
+/// may look a little like one at every row.
 const LIKELIER: f64 = 8.0;
+const BY_ROW: f64 = 0.1;
 
 /// How much larger than what an answer leaves the noise of a moving average may be: the answer follows a part of it. What is larger than that is the
 /// signal.
-const FOLLOWED: f64 = 8.0;
+const FOLLOWED: f64 = 6.0;
 
 /// Differences between distances that are rounding, as a share.
 const EVEN: f64 = 1e-3;
@@ -77,7 +79,8 @@ fn treated(left: &Misfits, number: usize, misfits: &[Vec<f64>]) -> Option<Check>
         ),
     };
     let is_noise = found.deviation <= FOLLOWED * root_mean_square(own);
-    is_noise.then(|| Check::new("filtered", left.name(), (found.gain.max(0.0), LIKELIER), said))
+    let limit = LIKELIER.max(BY_ROW * found.of as f64);
+    is_noise.then(|| Check::new("filtered", left.name(), (found.gain.max(0.0), limit), said))
 }
 
 /// The longest run of places that are as far apart as the next.

@@ -36,6 +36,8 @@ pub(super) struct Moving {
     pub(super) gain: f64,
     /// Standard deviation of the noise that it left.
     pub(super) deviation: f64,
+    /// Rows that say so.
+    pub(super) of: usize,
 }
 
 impl Average {
@@ -92,7 +94,12 @@ pub(super) fn of(values: &[f64]) -> Option<Moving> {
     let next = fits.get(1).map_or(none, |(_, next)| next.likelihood.max(none));
     let left: f64 = average.weights().iter().map(|w| w * w).sum();
     let gain = best.likelihood - next;
-    (best.signal <= SEEN).then_some(Moving { average, gain, deviation: scale * (left * best.variance).sqrt() })
+    (best.signal <= SEEN).then_some(Moving {
+        average,
+        gain,
+        deviation: scale * (left * best.variance).sqrt(),
+        of: values.len(),
+    })
 }
 
 /// The likeliest mixture of a signal and noise, of which both went through a filter and an average.
