@@ -2,7 +2,7 @@
 
 use nisp::{LagSettings, LiveError, Smoothed, scene};
 
-use crate::{drive, driven, motion, noise, outflow, record, smoothed, smoother};
+use crate::{drive, driven, fed, motion, noise, outflow, record, smoothed, smoother};
 
 /// Values of one row in fifty are far off, 30 to 90 deviations to either side, in the first rows, in later ones, and beside each other.
 #[test]
@@ -230,6 +230,29 @@ fn gaps_and_bursts_are_taken_as_they_are() {
     let inside = |found: &&Smoothed| (found.heads[1].0 - drive(found.at, 0.0)).abs() < 2.0 * found.heads[1].1;
     let within = found.iter().filter(inside).count();
     assert!(within > 1100, "{within} of 1200 within two deviations");
+}
+
+/// Evenly spaced rows lie where cells meet, and rounding puts them to one side or the other. Each counts once nevertheless, with the equation
+/// of its columns.
+#[test]
+fn answers_do_not_depend_on_where_a_record_begins() {
+    let rows = record(1000, 0.02, 0.01);
+    let answers = |begins: f64| {
+        let settings = LagSettings { lag: Some(1.0), ..LagSettings::default() };
+        let mut smoother = smoother(scene::<fed::recover::Scene>(), settings);
+        let mut found = Vec::new();
+        rows.iter().for_each(|(t, y)| found.extend(smoother.push(begins + t, &[(0.9 * t).sin(), *y]).unwrap()));
+        found.extend(smoother.finish().unwrap());
+        found
+    };
+    let plain = answers(0.0);
+    for begins in [0.3, -7.7, 1e4] {
+        for (row, (found, plain)) in answers(begins).iter().zip(&plain).enumerate() {
+            let ((value, deviation), (other, bar)) = (found.heads[1], plain.heads[1]);
+            assert!((value - other).abs() < 0.01 * bar, "row {row} from {begins} on: {value} and {other} +- {bar}");
+            assert!((deviation / bar - 1.0).abs() < 0.01, "row {row} from {begins} on: +- {deviation} and {bar}");
+        }
+    }
 }
 
 /// Two rows between two gaps are answered too, and those behind the second gap.

@@ -43,9 +43,11 @@ impl Grid {
         self.first += 1;
     }
 
-    /// The cell of a place; places outside belong to the nearest.
+    /// The cell of a place; places outside belong to the nearest. It follows from the place's number in the record: rows often lie where
+    /// two cells meet, and the beginning of the window is rounded differently in every step. A row that changes its cell as it leaves the
+    /// tail would be lost, or count twice.
     pub(super) fn cell(&self, at: f64) -> usize {
-        (((at - self.left()) / self.width).floor().max(0.0) as usize).min(self.cells - 1)
+        (self.number(at) - self.first).clamp(0, self.cells as i64 - 1) as usize
     }
 
     /// The first cell of the window that is part of the record.
@@ -53,9 +55,9 @@ impl Grid {
         (-self.first).max(0) as usize
     }
 
-    /// The number of a place's cell in the record.
+    /// The number of a place's cell in the record. A place that rounding puts before the record belongs to the first cell.
     pub(super) fn number(&self, at: f64) -> i64 {
-        ((at - self.zero) / self.width).floor() as i64
+        ((at - self.zero) / self.width).floor().max(0.0) as i64
     }
 
     /// The number in the record of a cell of the window.
@@ -91,5 +93,37 @@ impl Grid {
     /// Places of equations at the beginning of the record, beside those at knots.
     pub(super) fn beginning(&self) -> impl Iterator<Item = f64> + '_ {
         AT_END[1..].iter().map(|from| self.zero + from * self.width)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Evenly spaced rows lie where cells meet, to rounding. What a row says is kept for good when its cell comes to lie before the tail.
+    #[test]
+    fn a_row_leaves_the_tail_once() {
+        for (start, width) in [(0.0, 0.1), (0.3, 0.02), (-7.7, 1.0 / 3.0), (1e6, 0.01)] {
+            let mut grid = Grid::new(start, width, 10.0 * width);
+            for at in (0..300).map(|row| start + f64::from(row) * width) {
+                while grid.right() < at {
+                    grid.advance();
+                }
+                let mut later = grid.clone();
+                let leaves = |_: &usize| {
+                    later.advance();
+                    later.cell(at) + 1 == later.tail_start()
+                };
+                assert_eq!((0..grid.cells).filter(leaves).count(), 1, "{at} of cells of {width} from {start} on");
+            }
+        }
+    }
+
+    /// A condition where the record begins: what another unit is rounded to may lie before it.
+    #[test]
+    fn the_beginning_belongs_to_the_first_cell() {
+        let grid = Grid::new(0.3, 0.02, 0.2);
+        assert_eq!(grid.number(0.3 - 1e-12), 0);
+        assert_eq!(grid.cell(0.3 - 1e-12), grid.begun());
     }
 }
