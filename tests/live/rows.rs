@@ -63,6 +63,21 @@ fn many_strays_are_left_out_and_told() {
     }
 }
 
+/// When the first 400 rows are asked for noise and smoothness, nothing says yet whether the last of them is a stray.
+#[test]
+fn a_stray_at_the_end_of_a_stretch_makes_no_bars_longer() {
+    let plain = record(800, 0.05, 0.01);
+    let mut spoiled = plain.clone();
+    spoiled[399].1 += 0.8;
+    let [plain, spoiled] = [plain, spoiled]
+        .map(|rows| smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows));
+    assert!(spoiled[399].is_stray);
+    for (row, (spoiled, plain)) in spoiled.iter().zip(&plain).enumerate().take(700).skip(500) {
+        let share = spoiled.heads[1].1 / plain.heads[1].1;
+        assert!((0.8..1.25).contains(&share), "row {row}: bars are {share} times as long");
+    }
+}
+
 /// A level that flows out as its root, `y = 0.3 + 0.1 sin(t / 2)`. No root is that of a value below zero, and the equation cannot be evaluated
 /// about one such value. The record goes on behind it.
 #[test]

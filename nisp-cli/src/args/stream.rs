@@ -116,7 +116,8 @@ Rows of a record:
   measured, times that rise. The first three rows side by side tell the separator, where the header is, and whether days
   or months come first in dates.
   The first 200 rows say how large the noise is, how smooth the sources are, and which lag is worth waiting for; then
-  they are all answered, and every later row when the record is a lag farther. Where the record ends the last rows are
+  they are all answered, and every later row when the record is a lag farther. Later rows may say that a longer lag is
+  worth waiting for, twice the first one at most; one that is given stays. Where the record ends the last rows are
   answered at shorter lags. After a gap longer than the lag it begins anew with the next 200 rows. Where answers no longer
   fit the rows (a source sets in after quiet ones, 50 rows are inconsistent) the last 400 are solved as the first ones
   were. A row that cannot be taken (time that goes back, a word for a number) gets a line that says so, and the next one

@@ -17,7 +17,9 @@ use crate::problem::Problem;
 use crate::units::{Declared, Engine, Number};
 
 /// The last rows, of which nothing says yet whether they are strays. What the first rows say does not rest on them.
-const UNTOLD: usize = 3;
+pub(super) const UNTOLD: usize = 3;
+/// How many times as long as at first a lag that nobody has chosen may become.
+const ROOM: f64 = 2.0;
 /// Cells that a lag may take.
 const MOST_CELLS: usize = 20_000;
 
@@ -79,9 +81,10 @@ impl Begun {
             }
             _ => given.unwrap_or(settled),
         };
+        let most_lag = if given.is_some() { lag } else { ROOM * lag };
         // Where rows are exact, cells are as many as in an answer to all of them.
         let width = if stretch.weights.noise.is_exact() { width / EXACT } else { width };
-        let grid = Grid::new(start, width, lag);
+        let grid = Grid::new(start, width, most_lag);
         let mut conditions: Vec<Event> = Vec::new();
         for (group, declared) in schema.groups.iter().enumerate() {
             let is_condition = declared.columns.is_empty() && !declared.is_beliefs();
@@ -106,6 +109,7 @@ impl Begun {
             inward,
             outward,
             lag,
+            most_lag,
             pending: VecDeque::new(),
             conditions: conditions.into(),
             last: start,

@@ -53,7 +53,11 @@ impl Stretch {
         let breakpoints = cells::breakpoints(bound, &noise);
         // A window has no unknowns that all of its rows share.
         let mut solver = Solver::over(bound, &breakpoints).without_lines();
-        let kinds = from.map_or_else(|| kinds(solver.has_sources(), false, false), |from| vec![from.kind]);
+        // What was the likeliest kind comes first: it knows how large its sources are.
+        let mut kinds = kinds(solver.has_sources(), false, false);
+        if let Some(from) = from {
+            kinds.sort_by_key(|kind| *kind != from.kind);
+        }
         let mut place = Place::first(solver.first(&noise), kinds);
         if let Some(from) = from {
             place.state.classes.clone_from(&from.classes);

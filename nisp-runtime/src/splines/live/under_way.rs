@@ -6,9 +6,11 @@ mod spoiled;
 use std::collections::VecDeque;
 use std::thread::{self, JoinHandle};
 
+use super::begun::UNTOLD;
 use super::event::Event;
 use super::evidence::{Stretch, Weights};
 use super::given::Given;
+use super::lag::{settled_lag, sought};
 use super::met::Nearby;
 use super::opening::Opening;
 use super::record::{Inward, Layout, MeasuredRow};
@@ -40,6 +42,8 @@ pub(super) struct Live {
     /// Of each head.
     pub(super) outward: Vec<Scale<Engine, Declared>>,
     pub(super) lag: f64,
+    /// As long as it may become: later rows may say that a longer one is worth waiting for.
+    pub(super) most_lag: f64,
     /// Places of rows that have no answer yet, with what was measured there.
     pub(super) pending: VecDeque<(f64, Vec<Event>)>,
     /// Conditions at places that the record has not reached yet.
@@ -61,7 +65,7 @@ pub(super) struct Live {
     pub(super) given: Given,
     /// Number of the row at which a stretch is asked next, or its answer taken over.
     pub(super) due: usize,
-    pub(super) asked: Option<JoinHandle<Result<Weights, LiveError>>>,
+    pub(super) asked: Option<JoinHandle<Result<(Weights, f64), LiveError>>>,
 }
 
 /// Whether a row could be reached from the last one.
@@ -220,7 +224,7 @@ impl Live {
         self.pending.front().map(|(at, _)| self.inward.at.back(Number::engine(*at)).as_declared())
     }
 
-    /// Asks the last rows for noise and smoothness now and then, on another thread. What they say is taken over at a row whose
+    /// Asks the last rows for noise, smoothness and lag now and then, on another thread. What they say is taken over at a row whose
     /// number is known beforehand, so that answers do not depend on time.
     fn renew(&mut self, layout: &Layout) -> Result<(), LiveError> {
         if self.rows < self.due {
@@ -230,19 +234,35 @@ impl Live {
         match self.asked.take() {
             Some(asked) => {
                 // A stretch that cannot be solved leaves what is known as it is.
-                if let Ok(Ok(weights)) = asked.join() {
+                if let Ok(Ok((weights, lag))) = asked.join() {
                     self.window.weigh(weights);
+                    self.lag = self.lag.max(lag.min(self.most_lag));
                 }
                 self.due = self.rows + between;
             }
             None => {
-                let stretch = layout.stretch(&self.window.bound, self.recent.make_contiguous());
+                let Some(rows) = told(self.recent.make_contiguous(), self.window.decided()) else { return Ok(()) };
+                let ends = (rows[0].at, rows[rows.len() - 1].at);
+                let stretch = layout.stretch(&self.window.bound, rows);
                 let from = self.window.weights().clone();
-                let solve = move || Stretch::solve(&stretch, Some(&from)).map(|stretch| stretch.weights);
+                let (sought, width) = (sought(&self.window.bound), self.window.grid().width);
+                let solve = move || {
+                    let found = Stretch::solve(&stretch, Some(&from))?;
+                    let lag = settled_lag(&found, &sought, ends, width);
+                    Ok((found.weights, lag))
+                };
                 self.asked = thread::Builder::new().name("evidence".into()).spawn(solve).ok();
                 self.due = self.rows + between / 4;
             }
         }
         Ok(())
     }
+}
+
+/// Rows of which it is known whether they are strays: those before the first that is not decided, but for the last ones. Nothing where these
+/// are less than half.
+fn told(rows: &[MeasuredRow<Engine>], decided: f64) -> Option<&[MeasuredRow<Engine>]> {
+    let last = rows.len().saturating_sub(UNTOLD);
+    let told = last.min(rows.partition_point(|row| row.at < decided));
+    (2 * told >= rows.len()).then(|| &rows[..told])
 }

@@ -8,6 +8,10 @@ use crate::splines::group::Group;
 use crate::splines::live::event::Event;
 use crate::splines::triangle::Row;
 
+/// How much larger sources may be than the stretch says, where rows say what given numbers are. What a prior smooths away adds up along a
+/// record, as what rows say of the numbers does: sources may be larger than for a whole record ([`LARGER`]).
+const FREER: f64 = LARGER * LARGER;
+
 impl Window {
     /// Gives the rows of a cell about the reference, each with its derivatives by given numbers. Priors are those of larger sources about the
     /// present state: they say nothing of the numbers, and let unknowns follow them.
@@ -33,7 +37,7 @@ impl Window {
         }
         let about: Vec<f64> = self.reference.iter().zip(&self.theta).map(|(about, own)| about - own).collect();
         let none = vec![0.0; given.len()];
-        self.priors((cell, cell + 1), LARGER, &about, &mut |_, row| take(row, &none));
+        self.priors((cell, cell + 1), FREER, &about, &mut |_, row| take(row, &none));
         Ok(())
     }
 
