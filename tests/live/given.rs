@@ -1,8 +1,8 @@
-//! Numbers that are given wrongly.
+//! Numbers that are given wrongly, and bounds.
 
 use nisp::{FixedLagSmoother, LagSettings, Problem, Smoothed, scene};
 
-use crate::noise;
+use crate::{noise, smoothed, smoother};
 
 nisp::pde! {
     /// Two tanks, the second of which nothing flows into but from the first.
@@ -15,6 +15,19 @@ nisp::pde! {
         on first { fed: d(upper, t) == u - k * (upper - lower); }
         on second { flows: d(lower, t) == k * (upper - lower) - c * lower; }
         on samples { observe upper, lower; }
+        scene recover { }
+    }
+}
+
+nisp::pde! {
+    /// A level that is fed, and never drawn from.
+    mod fed {
+        units: off;
+        coordinates: t;
+        fields: y;
+        sources: u >= 0;
+        on tank { balance: d(y, t) + 0.5 * y == u; }
+        on samples { observe y; }
         scene recover { }
     }
 }
@@ -57,4 +70,29 @@ fn numbers_that_are_right_are_not_doubted_however_long_the_record_is() {
         let most = found.iter().map(|found| found.given).fold(0.0, f64::max);
         assert!(most < Smoothed::GIVEN && found.iter().all(|found| found.doubt.is_none()), "{most}");
     }
+}
+
+/// What is fed is `level + cos(t)`: the equation's answer to it, but for what has died away.
+fn fed_by(level: f64) -> Vec<(f64, f64)> {
+    let mut noise = noise(4);
+    let times = (0..1200).map(|at| 0.05 * f64::from(at));
+    times.map(|t| (t, 2.0 * level + (0.5 * t.cos() + t.sin()) / 1.25 + 0.01 * noise())).collect()
+}
+
+/// A source that touches its bound again and again is never beyond it.
+#[test]
+fn sources_keep_their_bounds() {
+    let found = smoothed(&mut smoother(scene::<fed::recover::Scene>(), LagSettings::default()), &fed_by(1.0));
+    assert!(found.iter().all(|found| found.heads[1].0 >= 0.0));
+    let is_off = |found: &&Smoothed| (found.heads[1].0 - 1.0 - found.at.cos()).abs() > 5.0 * found.heads[1].1;
+    let (off, sound) = (found.iter().filter(is_off).count(), found.iter().filter(|found| found.is_sound()).count());
+    assert!(off < 12 && sound > 1150, "{off} rows are off, and {sound} sound");
+}
+
+/// Rows that speak of a source far beyond its bound contradict it.
+#[test]
+fn rows_that_contradict_a_bound_are_not_called_sound() {
+    let found = smoothed(&mut smoother(scene::<fed::recover::Scene>(), LagSettings::default()), &fed_by(0.0));
+    let beyond = found.iter().filter(|found| found.at.cos() < -0.5 && found.is_sound()).count();
+    assert_eq!(beyond, 0);
 }

@@ -136,11 +136,12 @@ Answers to rows, one JSON object a line:
   held        true where a measured value has stood still while noise says that it moves: a sensor at the end of its range, or
               one that failed
   leaning     how far a learned parameter moves where sources may be larger, as a share of itself
+  beyond      how far the rows draw a field or a source beyond its bounds, in its deviations; values are within them
   given       logarithm of the probability that another value of a given number would gain, by all rows so far
   doubt       which number that is, and about what it should be, where that is more than chance makes
   status      converged, inconsistent (misfit above 1.6 or nearby above 2: equation or parameters do not fit; bend above 3:
-              a source is rougher than it was; leaning above .1: little is known of what is learned;
-              given above 10: a given number is wrong, or its equation; held), or error
+              a source is rougher than it was; leaning above .1: little is known of what is learned; beyond above 4.5:
+              rows contradict a bound; given above 10: a given number is wrong, or its equation; held), or error
               (`error` says why)
   latency_ms  work of the row that brought the answer
 

@@ -202,6 +202,9 @@ impl Answers {
         if found.leaning > 0.0 {
             line["leaning"] = json!(found.leaning);
         }
+        if found.beyond > 0.0 {
+            line["beyond"] = json!(found.beyond);
+        }
         if found.given > 0.0 {
             line["given"] = json!(found.given);
         }

@@ -48,9 +48,11 @@ impl Heads {
         heads
     }
 
-    /// Heads of these degrees over so many cells of one width. Every cell has as many numbers of its own as there are heads: a
+    /// The heads of a problem, of these degrees, over so many cells of one width. Every cell has as many numbers of its own as there are heads: a
     /// shift by a cell is a shift by so many numbers. Heads of lower degrees leave some at both ends to nobody.
-    pub(super) fn uniform(cells: usize, width: f64, degrees: &[usize], offset: Vec<f64>, scale: Vec<f64>) -> Self {
+    pub(super) fn uniform(bound: &Bound, degrees: &[usize], cells: usize, width: f64) -> Self {
+        let limits = limits(bound.problem.scene().schema, &bound.system);
+        let (offset, scale) = sizes(bound, &limits);
         let bases: Vec<Basis> = degrees.iter().map(|&degree| Basis::uniform(degree, cells, width)).collect();
         let (count, highest) = (degrees.len(), degrees.iter().copied().max().unwrap_or(0));
         let number = |head: usize, function: usize| {
@@ -58,7 +60,6 @@ impl Heads {
             count * (function + shift) + head
         };
         let numbers = bases.iter().enumerate().map(|(head, basis)| (0..basis.len()).map(|i| number(head, i)).collect());
-        let limits = vec![None; count];
         let mut heads = Self { numbers: numbers.collect(), bases, offset, scale, limits, band: 0 };
         let all: Vec<usize> = (0..count).collect();
         heads.band = heads.span(&all, 0).1;

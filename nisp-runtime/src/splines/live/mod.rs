@@ -69,6 +69,8 @@ pub struct Smoothed {
     /// How far a learned scalar moves where sources may be larger, at most, as a share of itself: little is known of one that moves far,
     /// and of the sources beside it. Zero where nothing is learned.
     pub leaning: f64,
+    /// How far the rows draw a field or a source beyond its bounds, in its deviations, at most. Values are within their bounds.
+    pub beyond: f64,
     /// Logarithm of the probability that another value of a given number would gain, by all rows up to here (Rao's score test): a source
     /// takes over what is given wrongly, and what it cannot take over shows the clearer the longer the record is.
     pub given: f64,
@@ -92,11 +94,14 @@ impl Smoothed {
     /// How far a learned scalar may move.
     pub const LEANING: f64 = leaning::FARTHEST;
 
+    /// How far a bound may be passed: chance makes four deviations of it in one of many rows.
+    pub const BEYOND: f64 = 4.5;
+
     /// What another value of a given number may gain.
     pub const GIVEN: f64 = known::GAIN_OF_DATA;
 
-    /// True where equations and data agree, sources are as smooth as they were taken to be, learned scalars do not rest on how large sources
-    /// are taken to be, no given number is doubted, and no sensor stood still.
+    /// True where equations and data agree, sources are as smooth as they were taken to be and within their bounds, learned scalars do not
+    /// rest on how large sources are taken to be, no given number is doubted, and no sensor stood still.
     pub fn is_sound(&self) -> bool {
         self.is_met() && self.given <= Self::GIVEN && !self.is_held
     }
@@ -107,6 +112,7 @@ impl Smoothed {
             && self.nearby <= Self::NEARBY
             && self.bend <= Self::BEND
             && self.leaning <= Self::LEANING
+            && self.beyond <= Self::BEYOND
     }
 }
 

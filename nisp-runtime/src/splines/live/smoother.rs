@@ -44,8 +44,7 @@ impl FixedLagSmoother {
     /// A scene that splines over one coordinate do not do, or that observes nothing.
     pub fn new(problem: Problem, settings: LagSettings) -> Result<Self, LiveError> {
         let schema = problem.scene().schema;
-        let bounded = schema.heads.iter().any(|head| head.transformed).then_some("bounds of fields and sources");
-        if let Some(what) = super::super::refused(schema).or(bounded) {
+        if let Some(what) = super::super::refused(schema) {
             return Err(LiveError::Scene(what));
         }
         let layout = Layout::of(&problem)?;

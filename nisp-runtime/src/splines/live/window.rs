@@ -75,8 +75,7 @@ impl Window {
     pub(super) fn new(bound: Bound, weights: Weights, grid: Grid, continuous: &[usize]) -> Self {
         let schema = bound.problem.scene().schema;
         let degrees = crate::splines::cells::degrees(schema).unwrap_or_default();
-        let scale = (0..degrees.len()).map(|head| bound.head_scale(head)).collect();
-        let heads = Heads::uniform(grid.cells, grid.width, &degrees, bound.scaling.offset.clone(), scale);
+        let heads = Heads::uniform(&bound, &degrees, grid.cells, grid.width);
         let highest = degrees.iter().copied().max().unwrap_or(0);
         let unknowns = degrees.len() * (grid.cells + highest);
         let places = grid.equations();

@@ -45,8 +45,11 @@ impl Live {
         counted.for_each(|nearby| nearby.counted = nearby.counted.saturating_sub(1));
         count_all((window, opening), &events, &mut self.square);
         let has_deviations = window.has_deviations();
+        let mut beyond = 0.0_f64;
         let read = |(head, outward): (usize, &Scale<Engine, Declared>)| {
             let (value, deviation) = opening.map_or_else(|| window.read(head, at), |opening| opening.read(head, at));
+            let (value, far) = window.within(head, (value, deviation));
+            beyond = beyond.max(far);
             let outward = |x| outward.of(Number::engine(x)).as_declared();
             (outward(value), if has_deviations { outward(deviation) } else { f64::NAN })
         };
@@ -65,6 +68,7 @@ impl Live {
             nearby,
             bend,
             leaning,
+            beyond,
             given: given.map_or(0.0, |check| check.value),
             doubt: given.filter(|check| !check.passed).map(|check| check.message.clone()),
             is_stray,

@@ -7,6 +7,8 @@ use crate::splines::group::Group;
 use crate::splines::heads::Heads;
 use crate::splines::live::event::Event;
 
+/// How far a head may be beyond its bounds as a share of its scale: exact data leave it no deviation.
+const SLIGHT: f64 = 1e-3;
 /// Noise below this share of the data's spread is rounding.
 const ROUNDING: f64 = 1e-5;
 
@@ -23,6 +25,13 @@ impl Window {
         let spread = self.weights.spread.chunks_exact(by_learned.len().max(1));
         let of_learned: f64 = by_learned.iter().zip(spread).map(|(one, row)| one * dot(row, &by_learned)).sum();
         (value, (beside * beside + of_learned.max(0.0)).sqrt())
+    }
+
+    /// A head's value within its bounds, and how far it is beyond them, over its deviation and rounding. Steps do not keep bounds: where a
+    /// head is at one of them noise puts it beyond now and then, and no farther than that.
+    pub(in super::super) fn within(&self, head: usize, (value, deviation): (f64, f64)) -> (f64, f64) {
+        let within = self.heads.limits[head].map_or(value, |limits| limits.within(value));
+        (within, (within - value).abs() / deviation.max(SLIGHT * self.heads.scale[head]))
     }
 
     /// Gives how far each observation of an event is off, over the noise of neighbours; over that of the fit where neighbours are
