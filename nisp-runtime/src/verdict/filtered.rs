@@ -11,6 +11,9 @@ use crate::shared_noise::{Alike, SharedNoise, spacing};
 /// Lengths of smooth noise from which on two rows hardly share any: a tenth.
 const APART: f64 = 2.3;
 
+/// Rows that an answer needs, at least.
+const ENOUGH: f64 = 20.0;
+
 /// Rows up to which smooth noise and noise that changes as a walk does are alike.
 const LEAST: f64 = 2.0;
 
@@ -26,12 +29,12 @@ const FOLLOWED: f64 = 6.0;
 /// Differences between distances that are rounding, as a share.
 const EVEN: f64 = 1e-3;
 
-/// Checks of an observation, of which an answer leaves `misfits`, by row. A filter keeps noise that changes as slowly as a source does. A
+/// Checks of an observation. A filter keeps noise that changes as slowly as a source does. A
 /// moving average of the rows before is late, and interpolated rows count what was measured more than once.
-pub(super) fn checks(left: &Misfits, misfits: &[Vec<f64>], shared: Option<SharedNoise>) -> Vec<Check> {
+pub(super) fn checks(left: &Misfits, shared: Option<SharedNoise>) -> Vec<Check> {
     let mut checks: Vec<Check> = smooth(left, shared).into_iter().collect();
     if left.is_record() && !left.is_exact() {
-        checks.extend((0..left.term.columns.len()).filter_map(|number| treated(left, number, misfits)));
+        checks.extend((0..left.term.columns.len()).filter_map(|number| treated(left, number)));
     }
     checks
 }
@@ -41,16 +44,21 @@ fn smooth(left: &Misfits, shared: Option<SharedNoise>) -> Option<Check> {
     let shared = shared.filter(|own| own.alike == Alike::Smooth)?;
     let rows = shared.length / spacing(&left.places)?;
     let every = (APART * rows).ceil().max(2.0);
+    let fewer = if every * ENOUGH <= left.places.len() as f64 {
+        format!(", or only one of every {every}")
+    } else {
+        String::new()
+    };
     let said = format!(
         "the noise of `{0}` is smooth over about {rows:.1} rows, as a filter leaves it, and a source takes what of it changes more slowly: give the \
-         rows as they were measured, or only one of every {every}, or say how exact they are (`observe {0} within ...`)",
+         rows as they were measured{fewer}, or say how exact they are (`observe {0} within ...`)",
         left.term.name
     );
     Some(Check::new("filtered", left.name(), (rows, LEAST), said))
 }
 
 /// A column that was interpolated, or that went through a moving average.
-fn treated(left: &Misfits, number: usize, misfits: &[Vec<f64>]) -> Option<Check> {
+fn treated(left: &Misfits, number: usize) -> Option<Check> {
     let (bound, term) = (left.bound, left.term);
     let column = term.columns[number];
     let values = bound.measured(left.group, term, &bound.columns[left.group][column]);
@@ -64,7 +72,6 @@ fn treated(left: &Misfits, number: usize, misfits: &[Vec<f64>]) -> Option<Check>
         );
         return Some(Check::new("filtered", left.name(), (every as f64, 1.0), said));
     }
-    let own = bound.measured(left.group, term, &misfits[term.first + number]);
     let found = moving::of(values)?;
     let rows = found.average.rows();
     let said = match found.average {
@@ -78,7 +85,7 @@ fn treated(left: &Misfits, number: usize, misfits: &[Vec<f64>]) -> Option<Check>
              give the rows as they were measured"
         ),
     };
-    let is_noise = found.deviation <= FOLLOWED * root_mean_square(own);
+    let is_noise = found.deviation <= FOLLOWED * root_mean_square(left.plain.get(number)?.iter().copied());
     let limit = LIKELIER.max(BY_ROW * found.of as f64);
     is_noise.then(|| Check::new("filtered", left.name(), (found.gain.max(0.0), limit), said))
 }

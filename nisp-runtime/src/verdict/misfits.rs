@@ -22,7 +22,9 @@ pub(super) struct Misfits<'a> {
     /// The term's number in its group.
     pub(super) at: usize,
     pub(super) term: &'static schema::Term,
-    /// By column, then by point, where it was measured; in the engine's units, as is all that follows.
+    /// By column, then by point, where it was measured, in the engine's units, as is all that follows: what the answer is more than the values.
+    pub(super) plain: Vec<Vec<f64>>,
+    /// The same over how noisy each value is, and beside what those before let expect where neighbours share noise.
     pub(super) rows: Vec<Vec<f64>>,
     /// Coordinates of the points, flat.
     pub(super) places: Vec<f64>,
@@ -44,8 +46,10 @@ impl<'a> Misfits<'a> {
         (noise, shared): (&Noise, Option<SharedNoise>),
     ) -> Option<Self> {
         let term = &bound.problem.scene().schema.groups[group].terms[at];
-        let own = |row: usize| bound.evened((group, term), row, bound.measured(group, term, &left[row]));
-        let mut rows: Vec<Vec<f64>> = (term.first..term.first + term.rows).map(own).collect();
+        let all = term.first..term.first + term.rows;
+        let plain: Vec<Vec<f64>> = all.clone().map(|row| bound.measured(group, term, &left[row])).collect();
+        let mut rows: Vec<Vec<f64>> =
+            all.zip(&plain).map(|(row, own)| bound.evened((group, term), row, own.clone())).collect();
         let places = bound.measured(group, term, &bound.coordinates[group]);
         let mut noise = noise.of(group, at);
         if let Some(shared) = shared {
@@ -62,7 +66,7 @@ impl<'a> Misfits<'a> {
         }
         let is_robust = bound.losses[group][at].is_robust();
         let size = if is_robust { middle(&rows) } else { root_mean_square(rows.iter().flatten().copied()) };
-        (!places.is_empty()).then_some(Self { bound, group, at, term, rows, places, noise, is_robust, size })
+        (!places.is_empty()).then_some(Self { bound, group, at, term, plain, rows, places, noise, is_robust, size })
     }
 
     /// The names of the group and of the term.

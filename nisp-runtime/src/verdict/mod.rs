@@ -24,6 +24,7 @@ mod outliers;
 mod outside;
 mod parts;
 mod patterns;
+mod scaled;
 pub(crate) mod settled;
 mod slow;
 mod smooth;

@@ -2,7 +2,7 @@
 
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
-use super::{Check, filtered, held, outliers, parts, patterns, root_mean_square, taken};
+use super::{Check, filtered, held, outliers, parts, patterns, root_mean_square, scaled, taken};
 use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
@@ -36,7 +36,7 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
         let shared = answer.shared(group, at);
         let left = Misfits::of(bound, (group, at), rows, (noise, shared))?;
         // Rows that are not as they were measured are the likely cause of all else.
-        let mut checks = filtered::checks(&left, rows, shared);
+        let mut checks = filtered::checks(&left, shared);
         checks.extend(of(&left, answer));
         Some(checks)
     };
@@ -128,6 +128,9 @@ fn misfit(left: &Misfits, finer: &str) -> Option<Check> {
 fn cause(left: &Misfits, finer: &str) -> String {
     if let Some(noisy) = taken::noisy(left.bound) {
         return noisy;
+    }
+    if let Some(scaled) = scaled::factor(left) {
+        return scaled;
     }
     let all = format!("the equations or a parameter do not fit these data, or the carrier is too coarse ({finer})");
     let middle = left.middle();

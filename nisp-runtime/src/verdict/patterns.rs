@@ -7,6 +7,7 @@ use crate::correlation;
 use crate::facts::Answer;
 use crate::noise::in_order;
 use crate::rhythm::{FAINT, rhythm};
+use crate::schema::{Term, TermKind};
 
 /// Excess of slow misfits in standard deviations.
 const PATTERN: f64 = 4.0;
@@ -67,8 +68,13 @@ fn along(left: &Misfits, row: &[f64]) -> Check {
     let value = if share > SLIGHT { excess } else { excess.min(PATTERN) };
     let mean = row.iter().sum::<f64>() / row.len() as f64;
     let said = if mean.abs() > CONSTANT * root_mean_square(row.iter().copied()) {
+        let others = of_the_same(left)
+            .iter()
+            .map(|name| format!(", or that of `{name}`, which measures the same field"))
+            .collect::<String>();
         format!(
-            "`{}` is off by {} all along: its sensor has an offset, its column is in another unit, or the equations do not describe it",
+            "`{}` is off by {} all along: its sensor has an offset{others}, its column is in another unit, or the equations do not \
+             describe it",
             left.term.name,
             left.words(-mean)
         )
@@ -81,6 +87,19 @@ fn along(left: &Misfits, row: &[f64]) -> Check {
         )
     };
     Check::new("pattern", left.name(), (value, PATTERN), said)
+}
+
+/// Other observations of the same field's value: which of their sensors is off the answer does not tell.
+fn of_the_same(left: &Misfits) -> Vec<&'static str> {
+    let groups = left.bound.problem.scene().schema.groups;
+    let field = |group: usize, term: &Term| match *term.jets {
+        [jet] if groups[group].jets[jet].is_value() => Some(groups[group].jets[jet].head),
+        _ => None,
+    };
+    let own = field(left.group, left.term);
+    let all = groups.iter().enumerate().flat_map(|(group, schema)| schema.terms.iter().map(move |term| (group, term)));
+    let others = all.filter(|(_, term)| term.kind == TermKind::Observation && !std::ptr::eq(*term, left.term));
+    others.filter(|(group, term)| own.is_some() && field(*group, term) == own).map(|(_, term)| term.name).collect()
 }
 
 /// A stretch of a record that is missed, however well the rest is met.

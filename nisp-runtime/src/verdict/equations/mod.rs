@@ -115,14 +115,22 @@ impl Judged<'_> {
             // What the noise of its columns makes of an equation is not left by the answer.
             let beside = if rms <= blurs[row] { 0.0 } else { (rms * rms - blurs[row] * blurs[row]).sqrt() };
             let value = if beside == 0.0 { 0.0 } else { beside / scale };
-            let message = format!(
-                "`{name}.{}` is off by {:.2e}{unit}, where {said} is {:.2e}{unit}: the answer does not solve it; check the \
-                 parameters and data that contradict it, or the carrier is too coarse ({})",
-                term.name,
-                outward(rms),
-                outward(scale),
-                self.finer
-            );
+            let message = if value.is_finite() {
+                format!(
+                    "`{name}.{}` is off by {:.2e}{unit}, where {said} is {:.2e}{unit}: the answer does not solve it; check the \
+                     parameters and data that contradict it, or the carrier is too coarse ({})",
+                    term.name,
+                    outward(rms),
+                    outward(scale),
+                    self.finer
+                )
+            } else {
+                format!(
+                    "`{name}.{}` is not defined where it is to hold: check it, and the numbers that it reads, for a division by zero, a \
+                     logarithm or a root of a negative number",
+                    term.name
+                )
+            };
             let check = Check::new(kind, (name, term.name), (value, limit), message);
             if worst.as_ref().is_none_or(|worst| check.value.total_cmp(&worst.value).is_gt()) {
                 worst = Some(check);
