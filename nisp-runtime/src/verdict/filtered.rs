@@ -29,8 +29,8 @@ const FOLLOWED: f64 = 6.0;
 /// Differences between distances that are rounding, as a share.
 const EVEN: f64 = 1e-3;
 
-/// Checks of an observation. A filter keeps noise that changes as slowly as a source does. A
-/// moving average of the rows before is late, and interpolated rows count what was measured more than once.
+/// Checks of an observation. A filter keeps noise that changes as slowly as a source does. A moving average of the rows before is late, and
+/// interpolated rows count what was measured more than once.
 pub(super) fn checks(left: &Misfits, shared: Option<SharedNoise>) -> Vec<Check> {
     let mut checks: Vec<Check> = smooth(left, shared).into_iter().collect();
     if left.is_record() && !left.is_exact() {

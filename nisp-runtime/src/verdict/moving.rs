@@ -6,7 +6,7 @@ use super::root_mean_square;
 const ORDER: usize = 3;
 /// Rows that are looked at, at least and at most.
 const LEAST: usize = 20;
-const MOST: usize = 1000;
+const MOST: usize = 400;
 /// Longest running mean, and longest parabola on each side, in rows.
 const LONGEST: usize = 13;
 const WIDEST: usize = 10;
