@@ -10,14 +10,12 @@ use super::grid::Grid;
 use super::lag::{settled_lag, sought, width};
 use super::met::Nearby;
 use super::record::{Inward, Layout, MeasuredRow};
-use super::under_way::{Live, SLACK};
+use super::under_way::{Live, SLACK, UNTOLD};
 use super::window::Window;
 use super::{LiveError, Smoothed};
 use crate::problem::Problem;
 use crate::units::{Declared, Engine, Number};
 
-/// The last rows, of which nothing says yet whether they are strays. What the first rows say does not rest on them.
-pub(super) const UNTOLD: usize = 3;
 /// How many times as long as at first a lag that nobody has chosen may become.
 const ROOM: f64 = 2.0;
 /// Cells that a lag may take.

@@ -6,7 +6,6 @@ mod spoiled;
 use std::collections::VecDeque;
 use std::thread::{self, JoinHandle};
 
-use super::begun::UNTOLD;
 use super::event::Event;
 use super::evidence::{Stretch, Weights};
 use super::given::Given;
@@ -19,6 +18,8 @@ use super::{LiveError, Smoothed};
 use crate::solve::fault::Fault;
 use crate::units::{Declared, Engine, Number, Scale};
 
+/// The last rows, of which nothing says yet whether they are strays. What a stretch says does not rest on them.
+pub(super) const UNTOLD: usize = 3;
 /// Steps over the first cells at most, and the change that no longer matters.
 const FIRST_STEPS: usize = 20;
 const SETTLED: f64 = 1e-8;
