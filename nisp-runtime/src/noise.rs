@@ -34,8 +34,9 @@ pub(crate) struct ObservationNoise {
     pub(crate) spread: f64,
 }
 
-/// Misfits that are smaller than this share of the noise are of an answer that goes through the data.
-const FOLLOWED: f64 = 0.01;
+/// Misfits that are smaller than this share of the noise are of an answer that goes through the data: what neighbours show as noise is then the
+/// course of a source that changes from row to row.
+const FOLLOWED: f64 = 0.05;
 /// Noise below this share of the data's spread is taken for rounding: that of numbers with five digits and more.
 const EXACT: f64 = 1e-5;
 

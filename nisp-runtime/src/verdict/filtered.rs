@@ -33,7 +33,8 @@ const EVEN: f64 = 1e-3;
 /// interpolated rows count what was measured more than once.
 pub(super) fn checks(left: &Misfits, shared: Option<SharedNoise>) -> Vec<Check> {
     let mut checks: Vec<Check> = smooth(left, shared).into_iter().collect();
-    if left.is_record() && !left.is_exact() {
+    // Outliers that come again and again are alike to an average.
+    if left.is_record() && !left.is_exact() && !left.is_robust {
         checks.extend((0..left.term.columns.len()).filter_map(|number| treated(left, number)));
     }
     checks
