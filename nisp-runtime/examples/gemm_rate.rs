@@ -1,41 +1,41 @@
-//! Rates of the three products of a layer, one thread, beside faer's and matrixmultiply's: a share of the peak that is
-//! measured in the same run.
+//! Rates of the three products of a layer, one thread, beside matrixmultiply's: a share of the peak that is measured in the
+//! same run.
 //!
 //! `cargo run --release -p nisp-runtime --example gemm_rate [rows ...]`
 
-use faer::linalg::matmul::matmul;
-use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par};
 use nisp_runtime::aligned::AlignedVec;
 use nisp_runtime::gemm::{Left, Packed, Right, Shape, Write, gemm};
 use nisp_runtime::peak::fma_peak;
 use nisp_runtime::simd::{Element, Isa};
 use std::time::{Duration, Instant};
 
-/// The other libraries' products, which are not generic over the element type in the same way.
+/// A matrix as another library takes it: its first element, and the distances between rows and between columns.
+type View<T> = (T, [isize; 2]);
+
+/// The other library's product, which is not generic over the element type in the same way.
 trait Rival: Element {
-    /// `C = A B` or, if `add`, `C += A B` by faer.
-    fn faer(c: MatMut<Self>, add: bool, a: MatRef<Self>, b: MatRef<Self>);
-    /// The same by matrixmultiply.
-    fn matrixmultiply(c: MatMut<Self>, add: bool, a: MatRef<Self>, b: MatRef<Self>);
+    /// `C = A B` or, if `add`, `C += A B` by matrixmultiply, for `[rows, inner, columns]`.
+    ///
+    /// # Safety
+    /// The views must hold what the extents reach.
+    unsafe fn product(extents: [usize; 3], c: View<*mut Self>, add: bool, a: View<*const Self>, b: View<*const Self>);
 }
 
 macro_rules! rival {
     ($elem:ident, $gemm:ident) => {
         impl Rival for $elem {
-            fn faer(c: MatMut<Self>, add: bool, a: MatRef<Self>, b: MatRef<Self>) {
-                matmul(c, if add { Accum::Add } else { Accum::Replace }, a, b, 1.0, Par::Seq);
-            }
-            fn matrixmultiply(c: MatMut<Self>, add: bool, a: MatRef<Self>, b: MatRef<Self>) {
-                let (beta, a_at, b_at) = (if add { 1.0 } else { 0.0 }, a.as_ptr(), b.as_ptr());
-                let ((a_row, a_col), (b_row, b_col)) =
-                    ((a.row_stride(), a.col_stride()), (b.row_stride(), b.col_stride()));
-                let (m, k, n, c_row, c_col) = (a.nrows(), a.ncols(), b.ncols(), c.row_stride(), c.col_stride());
-                let c_at = c.as_ptr_mut();
-                // SAFETY: extents and strides are those of faer's views.
+            unsafe fn product(
+                [m, k, n]: [usize; 3],
+                (c, [c_row, c_column]): View<*mut Self>,
+                add: bool,
+                (a, [a_row, a_column]): View<*const Self>,
+                (b, [b_row, b_column]): View<*const Self>,
+            ) {
+                let beta = if add { 1.0 } else { 0.0 };
+                // SAFETY: the caller vouches for the views.
                 unsafe {
                     matrixmultiply::$gemm(
-                        m, k, n, 1.0, a_at, a_row, a_col, b_at, b_row, b_col, beta, c_at, c_row, c_col,
+                        m, k, n, 1.0, a, a_row, a_column, b, b_row, b_column, beta, c, c_row, c_column,
                     );
                 }
             }
@@ -103,35 +103,37 @@ impl<E: Rival> Layer<E> {
     }
 
     /// The same by another library.
-    fn rival(&mut self, product: fn(MatMut<E>, bool, MatRef<E>, MatRef<E>)) -> [f64; 3] {
+    fn rival(&mut self) -> [f64; 3] {
         let Self { rows, width, stride, .. } = *self;
-        let x = MatRef::from_row_major_slice_with_stride(&self.x, rows, width, stride);
-        let w = MatRef::from_row_major_slice(&self.w, width, width);
-        // Not `from_row_major_slice_with_stride_mut`: in faer 0.24 it swaps the strides and writes past the slice.
-        let mut y = MatMut::from_column_major_slice_with_stride_mut(&mut self.y, width, rows, stride).transpose_mut();
-        let mut gradient = MatMut::from_row_major_slice_mut(&mut self.gradient, width, width);
-        [
-            best(|| product(y.rb_mut(), false, x, w.transpose())),
-            best(|| product(y.rb_mut(), false, x, w)),
-            best(|| product(gradient.rb_mut(), true, y.rb().transpose(), x)),
-        ]
+        let (long, across) = (stride as isize, width as isize);
+        let (x, w) = ((self.x.as_ptr(), [long, 1]), self.w.as_ptr());
+        let y = self.y.as_mut_ptr();
+        let gradient = (self.gradient.as_mut_ptr(), [across, 1]);
+        let by_weights = [rows, width, width];
+        // SAFETY: extents and distances are those of the layer's arrays.
+        unsafe {
+            [
+                best(|| E::product(by_weights, (y, [long, 1]), false, x, (w, [1, across]))),
+                best(|| E::product(by_weights, (y, [long, 1]), false, x, (w, [across, 1]))),
+                best(|| E::product([width, rows, width], gradient, true, (y.cast_const(), [1, long]), x)),
+            ]
+        }
     }
 }
 
 fn table<E: Rival>(isa: Isa, heights: &[usize]) {
     let peak = fma_peak::<E>(isa, 1) / 1e9;
     println!("\n{} {}: peak {peak:.0} GF/s; forward / adjoint / gradient in GF/s", E::NAME, isa.name());
-    println!("{:>5} {:>5}  {:^26}  {:^17}  {:^17}", "width", "rows", "here (share of peak)", "faer", "matrixmultiply");
+    println!("{:>5} {:>5}  {:^26}  {:^17}", "width", "rows", "here (share of peak)", "matrixmultiply");
     for width in [256, 128, 64, 32, 16] {
         for &rows in heights {
             let operations = (2 * rows * width * width) as f64 / 1e9;
             let mut layer = Layer::<E>::new(rows, width);
             let ours = layer.ours(isa).map(|seconds| operations / seconds);
-            let faer = layer.rival(E::faer).map(|seconds| operations / seconds);
-            let plain = layer.rival(E::matrixmultiply).map(|seconds| operations / seconds);
+            let plain = layer.rival().map(|seconds| operations / seconds);
             let share = ours.iter().sum::<f64>() / 3.0 / peak;
             let rates = |[a, b, c]: [f64; 3]| format!("{a:>5.0} {b:>5.0} {c:>5.0}");
-            println!("{width:>5} {rows:>5}  {}   ({share:.2})  {}  {}", rates(ours), rates(faer), rates(plain));
+            println!("{width:>5} {rows:>5}  {}   ({share:.2})  {}", rates(ours), rates(plain));
         }
     }
 }

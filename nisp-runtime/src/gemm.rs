@@ -79,9 +79,18 @@ pub enum Write {
     SetFromShortSums,
     /// The product is added to them.
     Add,
+    /// The product is subtracted from them.
+    Subtract,
 }
 
-/// `C = A B` or `C += A B` with vectors of `isa`; element (i, j) of C is `c[i * stride + j]`.
+impl Write {
+    /// What happens to elements that hold a part of their sum.
+    fn after(self) -> Self {
+        if self == Self::Subtract { Self::Subtract } else { Self::Add }
+    }
+}
+
+/// `C = A B`, `C += A B` or `C -= A B` with vectors of `isa`; element (i, j) of C is `c[i * stride + j]`.
 ///
 /// # Panics
 /// If a factor or C is too short for the shape, if the number of columns is not a multiple of the lanes of `isa`, or if
@@ -111,7 +120,7 @@ pub fn gemm<E: Element>(isa: Isa, shape: Shape, a: Left<E>, b: Right<E>, c: &mut
         b_row,
         c: c.as_mut_ptr(),
         c_row: stride,
-        add: write == Write::Add,
+        write,
         summed: if write == Write::SetFromShortSums { E::SUMMED } else { usize::MAX },
     };
     // SAFETY: the assertions above cover every element that the shape reaches; a number of four bytes is an f32, one of eight
@@ -140,7 +149,7 @@ struct Task<E> {
     b_row: Option<usize>,
     c: *mut E,
     c_row: usize,
-    add: bool,
+    write: Write,
     /// Products that are summed before their sum is added to others.
     summed: usize,
 }
@@ -148,8 +157,8 @@ struct Task<E> {
 impl<E> Task<E> {
     /// The same task of another element type, which the caller knows `E` to be.
     fn of<F>(self) -> Task<F> {
-        let Self { shape, a, a_row, a_column, b, b_row, c, c_row, add, summed } = self;
-        Task { shape, a: a.cast(), a_row, a_column, b: b.cast(), b_row, c: c.cast(), c_row, add, summed }
+        let Self { shape, a, a_row, a_column, b, b_row, c, c_row, write, summed } = self;
+        Task { shape, a: a.cast(), a_row, a_column, b: b.cast(), b_row, c: c.cast(), c_row, write, summed }
     }
 }
 

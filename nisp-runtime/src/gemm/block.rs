@@ -1,5 +1,6 @@
 //! The innermost loops: a block of C held in registers while the inner index runs.
 
+use super::Write;
 use crate::simd::Simd;
 
 /// Where a block lives and how to step through it. Distances are in elements.
@@ -12,7 +13,7 @@ pub(super) struct Block<E> {
     pub(super) b_row: usize,
     pub(super) c: *mut E,
     pub(super) c_row: usize,
-    pub(super) add: bool,
+    pub(super) write: Write,
     /// Products that are summed before their sum goes to C.
     pub(super) summed: usize,
 }
@@ -61,7 +62,7 @@ unsafe fn with_rows<V: Simd, const ROWS: usize, const VECTORS: usize>(at: Block<
 #[inline(always)]
 unsafe fn accumulate<V: Simd, const ROWS: usize, const VECTORS: usize>(at: Block<V::Elem>) {
     let (mut a, mut b) = (at.a, at.b);
-    let (mut left, mut add) = (at.inner, at.add);
+    let (mut left, mut write) = (at.inner, at.write);
     loop {
         let count = left.min(at.summed);
         let mut sums = [[V::lit(0.0); VECTORS]; ROWS];
@@ -88,12 +89,16 @@ unsafe fn accumulate<V: Simd, const ROWS: usize, const VECTORS: usize>(at: Block
                 // SAFETY: the caller vouches for these rows and vectors of C.
                 unsafe {
                     let c = at.c.add(i * at.c_row + v * V::LANES);
-                    let sum = if add { V::load(c).add(sum) } else { sum };
+                    let sum = match write {
+                        Write::Set | Write::SetFromShortSums => sum,
+                        Write::Add => V::load(c).add(sum),
+                        Write::Subtract => V::load(c).sub(sum),
+                    };
                     sum.store(c);
                 }
             }
         }
-        (left, add) = (left - count, true);
+        (left, write) = (left - count, write.after());
         if left == 0 {
             break;
         }

@@ -63,7 +63,7 @@ unsafe fn sweep_panel<V: Simd, const VECTORS: usize>(task: &Task<V::Elem>, colum
                 b_row,
                 c: task.c.add(row * task.c_row + column),
                 c_row: task.c_row,
-                add: task.add || run.start > 0,
+                write: if run.start > 0 { task.write.after() } else { task.write },
                 summed: task.summed,
             };
             block::<V, VECTORS>(height, at);

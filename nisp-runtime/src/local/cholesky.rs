@@ -1,81 +1,224 @@
 //! Cholesky factors of a sparse symmetric matrix, and what they say of it.
+//!
+//! Node by node (multifrontal; Duff and Reid 1983): the rows of a node are eliminated as a dense strip, and what they leave to others
+//! waits beside it until their parent takes it up.
 
 use std::sync::Arc;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
-use faer::sparse::linalg::cholesky::{
-    LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering, factorize_symbolic_cholesky,
-};
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
-use faer::{Conj, Mat, Side, get_global_parallelism};
+use rayon::prelude::*;
 
-use super::ordering::order;
+use super::fill::{Fill, Node};
+use crate::gemm::{Left, Right, Shape, Write, gemm};
+use crate::simd::Isa;
+use crate::solve::dense::rows::{ALIGN, Strip};
 
-/// Where factors have entries.
-#[derive(Clone)]
-pub(super) struct Fill(Arc<SymbolicCholesky<usize>>);
+/// Right-hand sides that are solved for side by side.
+const SIDES: usize = 32;
 
-/// The factor `L` of `H = L L^T`.
+/// The factor `U` of `H = U^T U`.
 pub(super) struct Cholesky {
-    fill: Fill,
-    lower: Vec<f64>,
+    fill: Arc<Fill>,
+    isa: Isa,
+    /// The strips of all nodes.
+    rows: Vec<f64>,
     /// What the diagonal of `H` was raised by, as a share of itself.
     pub(super) lift: f64,
 }
 
-impl Fill {
-    /// Factors of matrices whose lower triangle has these entries; nothing where memory is too small.
-    pub(super) fn of(entries: SymbolicSparseColMatRef<'_, usize>) -> Option<Self> {
-        let order = order(entries)?;
-        let order = SymmetricOrdering::Custom(order.as_ref());
-        let symbolic = factorize_symbolic_cholesky(entries, Side::Lower, order, Default::default());
-        Some(Self(Arc::new(symbolic.ok()?)))
-    }
-
-    /// Factors of a matrix, of which the lower triangle is given; nothing where it is not positive definite, or memory too small.
-    pub(super) fn factor(&self, matrix: SparseColMatRef<'_, usize, f64>) -> Option<Cholesky> {
-        let (symbolic, both) = (&self.0, get_global_parallelism());
-        let mut lower = Vec::new();
-        lower.try_reserve_exact(symbolic.len_val()).ok()?;
-        lower.resize(symbolic.len_val(), 0.0);
-        let scratch = symbolic.factorize_numeric_llt_scratch::<f64>(both, Default::default());
-        let mut memory = MemBuffer::try_new(scratch).ok()?;
-        let (stack, as_it_is) = (MemStack::new(&mut memory), Default::default());
-        symbolic
-            .factorize_numeric_llt(&mut lower, matrix, Side::Lower, as_it_is, both, stack, Default::default())
-            .ok()?;
-        Some(Cholesky { fill: self.clone(), lower, lift: 0.0 })
-    }
+/// A node's rows of the factor, and what they leave to the others that they meet.
+struct Front<'a> {
+    rows: &'a mut [f64],
+    left: Vec<f64>,
 }
 
 impl Cholesky {
-    /// `H^-1` times the columns of a matrix; nothing where memory is too small.
-    pub(super) fn solve(&self, right: &Mat<f64>) -> Option<Mat<f64>> {
-        let factor = LltRef::new(&self.fill.0, &self.lower);
-        let (mut solutions, all) = (right.clone(), get_global_parallelism());
-        let scratch = self.fill.0.solve_in_place_scratch::<f64>(right.ncols(), all);
-        let mut memory = MemBuffer::try_new(scratch).ok()?;
-        factor.solve_in_place_with_conj(Conj::No, solutions.as_mut(), all, MemStack::new(&mut memory));
-        Some(solutions)
+    /// Factors of a matrix, of which the lower triangle is given; nothing where it is not positive definite, or memory too small.
+    pub(super) fn of(fill: &Arc<Fill>, values: &[f64]) -> Option<Self> {
+        let isa = Isa::detect();
+        let mut rows = zeros(fill.nodes.iter().map(|node| node.strip.len()).sum())?;
+        fill.targets.iter().zip(values).for_each(|(&target, value)| rows[target] += value);
+        let mut rest = rows.as_mut_slice();
+        let front = |node: &Node| {
+            let (rows, after) = std::mem::take(&mut rest).split_at_mut(node.strip.len());
+            rest = after;
+            Front { rows, left: Vec::new() }
+        };
+        let mut fronts: Vec<Front> = fill.nodes.iter().map(front).collect();
+        let (mut rest, mut done) = (fronts.as_mut_slice(), 0);
+        let subtree = |subtree: &std::ops::Range<usize>| {
+            let after = std::mem::take(&mut rest).split_at_mut(subtree.start - done).1;
+            let (own, after) = after.split_at_mut(subtree.len());
+            (rest, done) = (after, subtree.end);
+            (subtree.start, own)
+        };
+        let subtrees: Vec<(usize, &mut [Front])> = fill.subtrees.iter().map(subtree).collect();
+        let whole = |(first, own): (usize, &mut [Front])| {
+            let mut nodes = first..first + own.len();
+            nodes.try_for_each(|node| eliminate(fill, isa, (first, own), node))
+        };
+        subtrees.into_par_iter().map(whole).collect::<Option<()>>()?;
+        let mut above = (0..fill.nodes.len()).filter(|&node| !fill.subtrees.iter().any(|own| own.contains(&node)));
+        above.try_for_each(|node| eliminate(fill, isa, (0, &mut fronts), node))?;
+        rows.iter().all(|x| x.is_finite()).then(|| Self { fill: fill.clone(), isa, rows, lift: 0.0 })
+    }
+
+    /// `H^-1` times vectors; nothing where memory is too small.
+    pub(super) fn solve(&self, right: &[impl AsRef<[f64]>]) -> Option<Vec<Vec<f64>>> {
+        let right: Vec<&[f64]> = right.iter().map(AsRef::as_ref).collect();
+        let some: Option<Vec<Vec<Vec<f64>>>> = right.par_chunks(SIDES).map(|some| self.solve_some(some)).collect();
+        Some(some?.into_iter().flatten().collect())
+    }
+
+    /// Solves for a few right-hand sides, which lie side by side meanwhile.
+    fn solve_some(&self, right: &[&[f64]]) -> Option<Vec<Vec<f64>>> {
+        let (fill, isa, sides) = (&*self.fill, self.isa, right.len().next_multiple_of(ALIGN));
+        let mut x = zeros(fill.places.len() * sides)?;
+        for (side, right) in right.iter().enumerate() {
+            fill.places.iter().zip(*right).for_each(|(place, b)| x[place * sides + side] = *b);
+        }
+        let most = fill.nodes.iter().map(|node| node.others.len()).max().unwrap_or(0);
+        let mut of_others = zeros(most * sides)?;
+        let own = |node: &Node| node.first * sides..(node.first + node.strip.width) * sides;
+        for node in &fill.nodes {
+            let (rows, strip, count) = (self.rows_of(node), node.strip, node.others.len());
+            strip.solve_transposed(isa, rows, &mut x[own(node)], sides);
+            let shape = Shape { rows: count, columns: sides, inner: strip.width };
+            let right = Right::Rows { elements: &x[own(node)], stride: sides };
+            let left = Left::transposed(&rows[strip.others()..], strip.stride);
+            gemm(isa, shape, left, right, &mut of_others, sides, Write::Set);
+            for (&other, row) in node.others.iter().zip(of_others.chunks_exact(sides)) {
+                x[other * sides..][..sides].iter_mut().zip(row).for_each(|(x, row)| *x -= row);
+            }
+        }
+        for node in fill.nodes.iter().rev() {
+            let (rows, strip, count) = (self.rows_of(node), node.strip, node.others.len());
+            for (&other, row) in node.others.iter().zip(of_others.chunks_exact_mut(sides)) {
+                row.copy_from_slice(&x[other * sides..][..sides]);
+            }
+            let shape = Shape { rows: strip.width, columns: sides, inner: count };
+            let right = Right::Rows { elements: &of_others, stride: sides };
+            let left = Left::rows(&rows[strip.others()..], strip.stride);
+            gemm(isa, shape, left, right, &mut x[own(node)], sides, Write::Subtract);
+            strip.solve(isa, rows, &mut x[own(node)], sides);
+        }
+        let solution = |side: usize| fill.places.iter().map(|place| x[place * sides + side]).collect();
+        Some((0..right.len()).map(solution).collect())
+    }
+
+    fn rows_of(&self, node: &Node) -> &[f64] {
+        &self.rows[node.start..][..node.strip.len()]
     }
 
     /// Logarithm of the determinant of `H`; nothing where rounding has made it another one.
     pub(super) fn log_determinant(&self) -> Option<f64> {
-        if self.lift > 0.0 {
-            return None;
-        }
-        let logarithms: f64 = match self.fill.0.raw() {
-            SymbolicCholeskyRaw::Simplicial(own) => (0..own.ncols()).map(|at| self.lower[own.col_ptr()[at]].ln()).sum(),
-            SymbolicCholeskyRaw::Supernodal(own) => {
-                let factor = SupernodalLltRef::new(own, &self.lower);
-                let block = |at: usize| {
-                    let block = factor.supernode(at).val();
-                    (0..block.ncols()).map(|at| block[(at, at)].ln()).sum::<f64>()
-                };
-                (0..own.n_supernodes()).map(block).sum()
-            }
+        let of_node = |node: &Node| {
+            let diagonal = self.rows_of(node).iter().step_by(node.strip.stride + 1);
+            diagonal.map(|x| x.ln()).sum::<f64>()
         };
-        Some(2.0 * logarithms)
+        (self.lift == 0.0).then(|| 2.0 * self.fill.nodes.iter().map(of_node).sum::<f64>())
+    }
+}
+
+/// Eliminates a node, whose children were eliminated, among fronts of which the number of the first is given; nothing where it is not
+/// positive definite, or memory too small.
+fn eliminate(fill: &Fill, isa: Isa, (first, fronts): (usize, &mut [Front]), at: usize) -> Option<()> {
+    let node = &fill.nodes[at];
+    let (below, own) = fronts.split_at_mut(at - first);
+    let front = &mut own[0];
+    front.left = zeros(node.others.len() * apart(node))?;
+    for &child in &node.children {
+        let left = std::mem::take(&mut below[child - first].left);
+        front.take_up(node, &fill.nodes[child], &left);
+    }
+    if !node.strip.eliminate(isa, front.rows) {
+        return None;
+    }
+    node.strip.update(isa, front.rows, &mut front.left);
+    Some(())
+}
+
+impl Front<'_> {
+    /// Adds what a child has left to this node.
+    fn take_up(&mut self, node: &Node, child: &Node, left: &[f64]) {
+        let Strip { width, stride } = node.strip;
+        let others = node.strip.others();
+        for ((at, &row), left) in child.columns.iter().enumerate().zip(left.chunks_exact(apart(child).max(1))) {
+            let (own, shift) = if row < width {
+                (&mut self.rows[row * stride..][..stride], 0)
+            } else {
+                (&mut self.left[(row - others) * apart(node)..], others)
+            };
+            child.columns[at..].iter().zip(&left[at..]).for_each(|(column, x)| own[column - shift] += x);
+        }
+    }
+}
+
+/// Length of the rows of what a node leaves to others.
+fn apart(node: &Node) -> usize {
+    node.strip.stride - node.strip.others()
+}
+
+/// Zeros; nothing where memory is too small.
+fn zeros(len: usize) -> Option<Vec<f64>> {
+    let mut zeros = Vec::new();
+    zeros.try_reserve_exact(len).ok()?;
+    zeros.resize(len, 0.0);
+    Some(zeros)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::local::fill::Entries;
+
+    /// Unknowns on a lattice of nodes with some fields each, which meet those of neighbouring nodes.
+    fn lattice(side: usize, fields: usize) -> (Entries, Vec<f64>) {
+        let place = |unknown: usize| (unknown / fields % side, unknown / fields / side);
+        let near = |a: usize, b: usize| {
+            let (a, b) = (place(a), place(b));
+            a.0.abs_diff(b.0) < 2 && a.1.abs_diff(b.1) < 2
+        };
+        let count = side * side * fields;
+        let columns: Vec<Vec<usize>> = (0..count).map(|a| (a..count).filter(|&b| near(a, b)).collect()).collect();
+        let starts: Vec<usize> = (0..=count).map(|end| columns[..end].iter().map(Vec::len).sum()).collect();
+        let entry = |(a, b): (usize, usize)| if a == b { 12.0 * fields as f64 } else { ((a * 7 + b * 3) as f64).sin() };
+        let values =
+            columns.iter().enumerate().flat_map(|(a, rows)| rows.iter().map(move |&b| entry((a, b)))).collect();
+        (Entries { starts, rows: columns.concat() }, values)
+    }
+
+    /// Against dense factors, on lattices small enough for one subtree and large enough for several.
+    #[test]
+    fn solutions_and_determinants_are_those_of_the_dense_matrix() {
+        for (side, fields) in [(1, 1), (4, 1), (9, 3), (30, 1)] {
+            let (entries, values) = lattice(side, fields);
+            let count = entries.len();
+            let mut dense = nalgebra::DMatrix::zeros(count, count);
+            for column in 0..count {
+                for at in entries.starts[column]..entries.starts[column + 1] {
+                    dense[(entries.rows[at], column)] = values[at];
+                    dense[(column, entries.rows[at])] = values[at];
+                }
+            }
+            let fill = Arc::new(Fill::of(&entries).unwrap());
+            let factor = Cholesky::of(&fill, &values).unwrap();
+            let sides: Vec<Vec<f64>> =
+                (0..SIDES + 3).map(|side| (0..count).map(|at| ((at * side) as f64 * 0.3).cos()).collect()).collect();
+            let dense = dense.cholesky().unwrap();
+            for (found, side) in factor.solve(&sides).unwrap().iter().zip(&sides) {
+                let expected = dense.solve(&nalgebra::DVector::from_column_slice(side));
+                let off = found.iter().zip(expected.iter()).map(|(x, y)| (x - y).abs()).fold(0.0, f64::max);
+                assert!(off < 1e-12, "{side:?}: {off:e}");
+            }
+            let expected: f64 = (0..count).map(|at| 2.0 * dense.l_dirty()[(at, at)].ln()).sum();
+            assert!((factor.log_determinant().unwrap() - expected).abs() < 1e-9 * count as f64);
+        }
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_positive_definite_has_no_factors() {
+        let (entries, mut values) = lattice(6, 2);
+        values[entries.starts[17]] = -1.0;
+        assert!(Cholesky::of(&Arc::new(Fill::of(&entries).unwrap()), &values).is_none());
     }
 }

@@ -3,7 +3,6 @@
 //! Where rows `r + J x` of unit variance have the normal matrix `H = J^T J`, a vector `J^T z` of standard normal `z` has
 //! covariance `H`, so that `H^-1 J^T z` has covariance `H^-1`: one right-hand side a draw, and no inverse.
 
-use faer::Mat;
 use rand::SeedableRng;
 use rand::rngs::StdRng;
 
@@ -84,8 +83,9 @@ impl Draws {
         add(&mut self.below, at, slope, &z);
     }
 
-    pub(super) fn matrix(&self) -> Mat<f64> {
-        Mat::from_fn(self.right.len() / COUNT, COUNT, |at, draw| self.right[at * COUNT + draw])
+    /// Right-hand sides of the coefficients, draw by draw.
+    pub(super) fn sides(&self) -> Vec<Vec<f64>> {
+        (0..COUNT).map(|draw| self.right.iter().skip(draw).step_by(COUNT).copied().collect()).collect()
     }
 
     /// Right-hand side of the learned scalars.

@@ -17,6 +17,7 @@ mod course;
 mod doubts;
 mod draws;
 mod evaluated;
+mod fill;
 mod group;
 mod heads;
 mod integrals;

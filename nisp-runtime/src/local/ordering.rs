@@ -5,42 +5,50 @@
 
 use std::collections::HashMap;
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::perm::Perm;
-use faer::sparse::linalg::amd;
-use faer::sparse::{SymbolicSparseColMat, SymbolicSparseColMatRef};
+use super::fill::Entries;
 
-/// An order of the unknowns of a matrix, of which the lower triangle has these entries; nothing where memory is too small.
-pub(super) fn order(entries: SymbolicSparseColMatRef<'_, usize>) -> Option<Perm<usize>> {
-    let members = alike(entries);
-    let mut kind = vec![0; entries.ncols()];
-    for (number, members) in members.iter().enumerate() {
-        members.iter().for_each(|&member| kind[member] = number);
+/// Unknowns by kind, in the order in which the kinds are eliminated, and which kinds meet.
+pub(super) struct Ordering {
+    /// Unknowns of every kind.
+    pub(super) members: Vec<Vec<usize>>,
+    /// By kind, those that come later and meet it.
+    pub(super) later: Vec<Vec<usize>>,
+}
+
+impl Ordering {
+    /// Of a matrix, of which the lower triangle has these entries; nothing where they are no such triangle.
+    pub(super) fn of(entries: &Entries) -> Option<Self> {
+        let members = alike(entries);
+        let mut kind = vec![0; entries.len()];
+        for (number, members) in members.iter().enumerate() {
+            members.iter().for_each(|&member| kind[member] = number);
+        }
+        // The first of every kind stand for all.
+        let (mut starts, mut rows) = (vec![0], Vec::new());
+        for first in members.iter().map(|members| members[0]) {
+            let own = entries.column(first).iter().filter(|&&row| members[kind[row]][0] == row);
+            rows.extend(own.map(|&row| kind[row]));
+            starts.push(rows.len());
+        }
+        let (order, places, _) = amd::order(members.len(), &starts, &rows, &amd::Control::default()).ok()?;
+        let mut later = vec![Vec::new(); members.len()];
+        for column in 0..members.len() {
+            for &row in rows[starts[column]..starts[column + 1]].iter().filter(|&&row| row != column) {
+                let (a, b) = (places[column], places[row]);
+                later[a.min(b)].push(a.max(b));
+            }
+        }
+        let mut members: Vec<Option<Vec<usize>>> = members.into_iter().map(Some).collect();
+        let members = order.into_iter().filter_map(|kind| members[kind].take()).collect();
+        Some(Self { members, later })
     }
-    // The first of every kind stand for all.
-    let (mut starts, mut rows) = (vec![0], Vec::new());
-    for first in members.iter().map(|members| members[0]) {
-        let own = entries.row_idx_of_col(first).filter(|&row| members[kind[row]][0] == row);
-        rows.extend(own.map(|row| kind[row]));
-        starts.push(rows.len());
-    }
-    let count = members.len();
-    let (mut forward, mut inverse) = (vec![0; count], vec![0; count]);
-    let mut memory = MemBuffer::try_new(amd::order_scratch::<usize>(count, rows.len())).ok()?;
-    let reduced = SymbolicSparseColMat::new_checked(count, count, starts, None, rows);
-    let stack = MemStack::new(&mut memory);
-    amd::order(&mut forward, &mut inverse, reduced.as_ref(), Default::default(), stack).ok()?;
-    let all: Vec<usize> = forward.into_iter().flat_map(|kind| members[kind].iter().copied()).collect();
-    let mut places = vec![0; all.len()];
-    all.iter().enumerate().for_each(|(place, &unknown)| places[unknown] = place);
-    Some(Perm::new_checked(all.into(), places.into(), kind.len()))
 }
 
 /// Unknowns that have entries with the same others, by kind; kinds in the order of their first.
-fn alike(entries: SymbolicSparseColMatRef<'_, usize>) -> Vec<Vec<usize>> {
-    let mut sums = vec![0u64; entries.ncols()];
-    for column in 0..entries.ncols() {
-        for row in entries.row_idx_of_col(column) {
+fn alike(entries: &Entries) -> Vec<Vec<usize>> {
+    let mut sums = vec![0u64; entries.len()];
+    for column in 0..entries.len() {
+        for &row in entries.column(column) {
             sums[column] = sums[column].wrapping_add(scrambled(row));
             if row != column {
                 sums[row] = sums[row].wrapping_add(scrambled(column));
@@ -81,15 +89,17 @@ mod tests {
         };
         let columns: Vec<Vec<usize>> = (0..8).map(column).collect();
         let starts = (0..=8).map(|end| columns[..end].iter().map(Vec::len).sum()).collect();
-        let entries = SymbolicSparseColMat::new_checked(8, 8, starts, None, columns.concat());
-        assert_eq!(alike(entries.as_ref()), [[0, 4], [1, 5], [2, 6], [3, 7]]);
-        let order = order(entries.as_ref()).unwrap();
-        let (forward, inverse) = order.arrays();
-        for pair in forward.chunks_exact(2) {
-            assert_eq!(place(pair[0]), place(pair[1]));
+        let entries = Entries { starts, rows: columns.concat() };
+        assert_eq!(alike(&entries), [[0, 4], [1, 5], [2, 6], [3, 7]]);
+        let ordering = Ordering::of(&entries).unwrap();
+        for members in &ordering.members {
+            assert_eq!(place(members[0]), place(members[1]));
         }
-        (0..8).for_each(|place| assert_eq!(inverse[forward[place]], place));
-        // An end of the chain goes first.
-        assert!([0, 3].contains(&place(forward[0])));
+        let mut all = ordering.members.concat();
+        all.sort_unstable();
+        assert_eq!(all, (0..8).collect::<Vec<usize>>());
+        // An end of the chain goes first, and meets one other.
+        assert!([0, 3].contains(&place(ordering.members[0][0])) && ordering.later[0].len() == 1);
+        assert_eq!(ordering.later.iter().map(Vec::len).sum::<usize>(), 3);
     }
 }

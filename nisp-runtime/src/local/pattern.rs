@@ -1,14 +1,14 @@
 //! Where a sparse symmetric matrix has entries, of all unknowns or of some, and its Cholesky factors.
 
-use faer::Mat;
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMat};
+use std::sync::Arc;
 
-use super::cholesky::{Cholesky, Fill};
+use super::cholesky::Cholesky;
+use super::fill::{Entries, Fill};
 
 /// Entries of the lower triangle, and how factors fill it.
 pub(super) struct Pattern {
-    entries: SymbolicSparseColMat<usize>,
-    fill: Fill,
+    entries: Entries,
+    fill: Arc<Fill>,
 }
 
 /// The unknowns that are free, while the others stay where they are.
@@ -31,19 +31,19 @@ impl Pattern {
             *end += column.len();
             Some(*end)
         }));
-        let entries = SymbolicSparseColMat::new_checked(columns.len(), columns.len(), starts, None, columns.concat());
-        let fill = Fill::of(entries.as_ref())?;
+        let entries = Entries { starts, rows: columns.concat() };
+        let fill = Arc::new(Fill::of(&entries)?);
         Some(Self { entries, fill })
     }
 
     /// Where every column begins, and the end of the last.
     pub(super) fn starts(&self) -> &[usize] {
-        self.entries.col_ptr()
+        &self.entries.starts
     }
 
     /// Rows of all entries, column by column.
     pub(super) fn rows(&self) -> &[usize] {
-        self.entries.row_idx()
+        &self.entries.rows
     }
 
     /// The part of the free unknowns; nothing where memory is too small.
@@ -65,7 +65,7 @@ impl Pattern {
     /// Cholesky factors of a matrix with these entries; where rounding spoils that it is positive definite, of one with some more
     /// on its diagonal.
     pub(super) fn factor(&self, values: &[f64]) -> Option<Cholesky> {
-        let try_with = |values: &[f64]| self.fill.factor(SparseColMatRef::new(self.entries.as_ref(), values));
+        let try_with = |values: &[f64]| Cholesky::of(&self.fill, values);
         if !values.iter().all(|value| value.is_finite()) {
             return None;
         }
@@ -105,17 +105,16 @@ impl Part {
         self.pattern.factor(&own)
     }
 
-    /// Solutions by its factors for the columns of a matrix of all unknowns; zero for those that are not free.
-    pub(super) fn solve(&self, factor: &Cholesky, right: &Mat<f64>) -> Option<Mat<f64>> {
-        let own = Mat::from_fn(self.numbers.len(), right.ncols(), |row, column| right[(self.numbers[row], column)]);
-        let own = factor.solve(&own)?;
-        let mut all = Mat::zeros(right.nrows(), right.ncols());
-        for column in 0..right.ncols() {
-            for (row, &number) in self.numbers.iter().enumerate() {
-                all[(number, column)] = own[(row, column)];
-            }
-        }
-        Some(all)
+    /// Solutions by its factors for right-hand sides of all unknowns; zero for those that are not free.
+    pub(super) fn solve(&self, factor: &Cholesky, right: &[impl AsRef<[f64]>]) -> Option<Vec<Vec<f64>>> {
+        let own = |right: &[f64]| self.numbers.iter().map(|&number| right[number]).collect();
+        let own: Vec<Vec<f64>> = right.iter().map(|right| own(right.as_ref())).collect();
+        let all = |own: Vec<f64>| {
+            let mut all = vec![0.0; self.free.len()];
+            self.numbers.iter().zip(own).for_each(|(&number, x)| all[number] = x);
+            all
+        };
+        Some(factor.solve(&own)?.into_iter().map(all).collect())
     }
 }
 
@@ -130,10 +129,9 @@ mod tests {
         let values = [4.0, 1.0, 3.0, 1.0, 2.0];
         assert_eq!(pattern.times(&values, &[1.0, 2.0, 3.0]), [6.0, 10.0, 8.0]);
         let part = pattern.part(&[true, false, true]).unwrap();
-        let right = Mat::from_fn(3, 1, |row, _| [8.0, 5.0, 3.0][row]);
-        let solution = part.solve(&part.factor(&values).unwrap(), &right).unwrap();
-        for (row, expected) in [2.0, 0.0, 1.5].into_iter().enumerate() {
-            assert!((solution[(row, 0)] - expected).abs() < 1e-15, "{row}: {}", solution[(row, 0)]);
+        let solution = part.solve(&part.factor(&values).unwrap(), &[[8.0, 5.0, 3.0]]).unwrap();
+        for (x, expected) in solution[0].iter().zip([2.0, 0.0, 1.5]) {
+            assert!((x - expected).abs() < 1e-15, "{solution:?}");
         }
     }
 

@@ -171,7 +171,7 @@ impl RowSpace {
         for (k, j) in k.chunks_exact_mut(len).zip(j.chunks_exact(len)) {
             k.iter_mut().zip(j).zip(root.iter()).for_each(|((k, j), root)| *k = j * root);
         }
-        dense::gram(dense::row_major(k, rows, len), matrix);
+        dense::gram(k, rows, len, matrix);
         let solvable = cholesky.factorise(|factor| {
             dense::copy_lower(matrix, factor, rows);
             (0..rows).for_each(|i| factor[i * (rows + 1)] += 1.0);

@@ -60,10 +60,13 @@ pub fn spread(curvature: &Curvature, derivatives: &[f64]) -> Vec<f64> {
 /// nothing moves.
 pub fn leading(spread: &[f64], count: usize) -> Option<Direction> {
     let len = spread.len().checked_div(count).filter(|len| *len > 0)?;
-    let view = dense::row_major(spread, count, len);
     let small = count.min(len);
     let mut gram = vec![0.0; small * small];
-    dense::gram(if count <= len { view } else { view.transpose() }, &mut gram);
+    if count <= len {
+        dense::gram(spread, count, len, &mut gram);
+    } else {
+        dense::gram_of_columns(spread, count, len, &mut gram);
+    }
     let (values, vectors) = dense::eigen(&gram, small)?;
     let variance = values.first().copied().filter(|value| *value > 0.0)?;
     let deviation = variance.sqrt();

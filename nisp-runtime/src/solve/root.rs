@@ -1,16 +1,15 @@
 //! A square root of the covariance of all parameters: what is known of an answer without the rows that it was found from.
 
-use faer::Mat;
-
 use super::curvature::Curvature;
+use super::dense::{self, Cholesky};
 use super::vector;
 
-/// `R` with the covariance `R^T R`, upper trapezoidal. A quantity whose derivatives by the parameters are `g` has the standard
-/// deviation `|R g|`: as a root it loses half as many digits as the covariance itself would.
+/// `R` with the covariance `R^T R`. A quantity whose derivatives by the parameters are `g` has the standard deviation `|R g|`: as
+/// a root it loses half as many digits as the covariance itself would.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Root {
     parameters: usize,
-    /// Row after row, each from its diagonal on.
+    /// Row after row.
     rows: Vec<f64>,
 }
 
@@ -28,23 +27,17 @@ impl Root {
             parts.resize(row + len, 0.0);
             parts[row + at] = prior_factor * precision.sqrt();
         }
-        let count = parts.len() / len.max(1);
-        curvature.cholesky.solve_lower(&mut parts, count);
-        curvature.cholesky.solve_upper(&mut parts, count);
-        let triangle = Mat::from_fn(count, len, |row, column| parts[row * len + column]);
-        let triangle = triangle.qr();
-        let triangle = triangle.thin_R();
-        let row = |row: usize| (row..len).map(move |column| triangle[(row, column)]);
-        Self { parameters: len, rows: (0..count.min(len)).flat_map(row).collect() }
+        let mut rows = fewer(parts, len);
+        let count = rows.len() / len.max(1);
+        curvature.cholesky.solve_lower(&mut rows, count);
+        curvature.cholesky.solve_upper(&mut rows, count);
+        Self { parameters: len, rows }
     }
 
     /// From the numbers of [`Root::numbers`]; nothing if they are not those of a root over so many parameters.
     pub(crate) fn restored(parameters: usize, rows: Vec<f64>) -> Option<Self> {
-        let mut lengths = (1..=parameters).rev().scan(0, |end, width| {
-            *end += width;
-            Some(*end)
-        });
-        (rows.is_empty() || lengths.any(|end| end == rows.len())).then_some(Self { parameters, rows })
+        (rows.is_empty() || parameters > 0 && rows.len().is_multiple_of(parameters))
+            .then_some(Self { parameters, rows })
     }
 
     /// All of its entries.
@@ -54,15 +47,37 @@ impl Root {
 
     /// The standard deviation of a quantity with these derivatives by the parameters.
     pub(crate) fn deviation(&self, slopes: &[f64]) -> f64 {
-        let (mut rest, mut square) = (self.rows.as_slice(), 0.0);
-        for first in 0..self.parameters {
-            let Some((row, after)) = rest.split_at_checked(self.parameters - first).filter(|(row, _)| !row.is_empty())
-            else {
-                break;
-            };
-            square += vector::dot(row, &slopes[first..]).powi(2);
-            rest = after;
+        let rows = self.rows.chunks_exact(self.parameters.max(1));
+        rows.map(|row| vector::dot(row, slopes).powi(2)).sum::<f64>().sqrt()
+    }
+}
+
+/// As many rows as there are columns, or fewer, with the same products of columns: those of their triangle, where this can be
+/// found.
+fn fewer(parts: Vec<f64>, len: usize) -> Vec<f64> {
+    let mut cholesky = Cholesky::new(len);
+    let count = parts.len() / len.max(1);
+    if count <= len || !cholesky.factorise(|normal| dense::gram_of_columns(&parts, count, len, normal)) {
+        return parts;
+    }
+    cholesky.upper()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fewer_rows_have_the_same_products_of_columns() {
+        let len = 7;
+        for count in [3, 7, 40] {
+            let parts: Vec<f64> = (0..count * len).map(|at| (at as f64 * 0.7 + (at % 5) as f64).sin()).collect();
+            let found = fewer(parts.clone(), len);
+            assert_eq!(found.len(), count.min(len) * len);
+            for (i, j) in (0..len).flat_map(|i| (0..len).map(move |j| (i, j))) {
+                let product = |of: &[f64]| of.chunks_exact(len).map(|row| row[i] * row[j]).sum::<f64>();
+                assert!((product(&parts) - product(&found)).abs() < 1e-12 * count as f64, "{count}: {i} {j}");
+            }
         }
-        square.sqrt()
     }
 }

@@ -2,7 +2,6 @@
 
 use std::sync::Arc;
 
-use faer::Mat;
 use nalgebra::{DMatrix, DVector};
 
 use super::super::cholesky::Cholesky;
@@ -46,10 +45,8 @@ impl Factor {
 
     /// Solutions for all right-hand sides, drawn from the posterior.
     pub(in super::super) fn deviations(&self, draws: &Draws) -> Option<Deviations> {
-        let solutions = self.solutions(&draws.matrix())?;
         let mut deviations = Deviations::default();
-        for draw in 0..solutions.ncols() {
-            let mut coefficients: Vec<f64> = (0..solutions.nrows()).map(|i| solutions[(i, draw)]).collect();
+        for (draw, mut coefficients) in self.solve_free(&draws.sides())?.into_iter().enumerate() {
             let mut shared = self.share(&mut coefficients, &draws.below(draw))?;
             shared.truncate(self.learned);
             deviations.learned.push(shared);
@@ -64,16 +61,14 @@ impl Factor {
         Some(vectors.iter().zip(&solutions).map(|(vector, solution)| vector::dot(vector, solution)).collect())
     }
 
-    /// The products of right-hand sides with their solutions: the columns of a matrix, and what is on the right of the border.
-    pub(in super::super) fn products(&self, right: &Mat<f64>, below: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let solutions = self.solutions(right)?;
-        let product = |(column, below): (usize, &Vec<f64>)| {
-            let mut own: Vec<f64> = (0..solutions.nrows()).map(|row| solutions[(row, column)]).collect();
+    /// The products of right-hand sides with their solutions: of the coefficients, and what is on the right of the border.
+    pub(in super::super) fn products(&self, right: &[impl AsRef<[f64]>], below: &[Vec<f64>]) -> Option<Vec<f64>> {
+        let solutions = self.solve_free(right)?;
+        let product = |((mut own, right), below): ((Vec<f64>, &[f64]), &Vec<f64>)| {
             let shared = self.share(&mut own, below)?;
-            let along = own.iter().enumerate().map(|(row, x)| x * right[(row, column)]).sum::<f64>();
-            Some(along + vector::dot(&shared[..below.len()], below))
+            Some(vector::dot(&own, right) + vector::dot(&shared[..below.len()], below))
         };
-        below.iter().enumerate().map(product).collect()
+        solutions.into_iter().zip(right.iter().map(AsRef::as_ref)).zip(below).map(product).collect()
     }
 
     /// Logarithm of the determinant of the matrix with its border; nothing where rounding spoils it.
@@ -94,19 +89,11 @@ impl Factor {
         self.schur.clone().lu().solve(&unit).map(|column| column[at])
     }
 
-    /// Solutions without the border, for the columns of a matrix.
-    fn solutions(&self, right: &Mat<f64>) -> Option<Mat<f64>> {
+    /// Solutions without the border, for several right-hand sides: the factors are read once for some of them.
+    pub(super) fn solve_free(&self, right: &[impl AsRef<[f64]>]) -> Option<Vec<Vec<f64>>> {
         match &self.part {
             Some(part) => part.solve(&self.factor, right),
             None => self.factor.solve(right),
         }
-    }
-
-    /// Solutions without the border, for several right-hand sides: the factors are read once for all.
-    pub(super) fn solve_free(&self, right: &[impl AsRef<[f64]>]) -> Option<Vec<Vec<f64>>> {
-        let Some(len) = right.first().map(|first| first.as_ref().len()) else { return Some(Vec::new()) };
-        let solutions = self.solutions(&Mat::from_fn(len, right.len(), |row, column| right[column].as_ref()[row]))?;
-        let column = |column: usize| (0..len).map(|row| solutions[(row, column)]).collect();
-        Some((0..right.len()).map(column).collect())
     }
 }

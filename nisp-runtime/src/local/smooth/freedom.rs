@@ -1,6 +1,5 @@
 //! How many numbers of a head its data settle: those that its prior alone does not, and equations do not by themselves.
 
-use faer::Mat;
 use rand::rngs::StdRng;
 use rand::{RngExt, SeedableRng};
 
@@ -17,7 +16,7 @@ const RIDGE: f64 = 1e-10;
 /// Random combinations of the rows of a head's prior, and how many numbers the prior alone settles of each.
 pub(super) struct Freedom {
     first: usize,
-    probes: Mat<f64>,
+    probes: Vec<Vec<f64>>,
     alone: Vec<f64>,
 }
 
@@ -39,17 +38,18 @@ impl Freedom {
             sum
         };
         let probes: Vec<Vec<f64>> = (0..PROBES).map(|_| probe()).collect();
-        let probes = Mat::from_fn(len, PROBES, |row, column| probes[column][row]);
         let alone = factor.products(&probes, &vec![Vec::new(); PROBES])?;
         Some(Self { first, probes, alone })
     }
 
     /// How many numbers the data settle under a roughness, where there are `len` coefficients of all heads.
     pub(super) fn settled(&self, factor: &Factor, len: usize, roughness: f64) -> Option<f64> {
-        let own = self.first..self.first + self.probes.nrows();
-        let right = Mat::from_fn(len, PROBES, |row, column| {
-            if own.contains(&row) { self.probes[(row - own.start, column)] / roughness } else { 0.0 }
-        });
+        let side = |probe: &Vec<f64>| {
+            let mut side = vec![0.0; len];
+            side[self.first..][..probe.len()].iter_mut().zip(probe).for_each(|(x, probe)| *x = probe / roughness);
+            side
+        };
+        let right: Vec<Vec<f64>> = self.probes.iter().map(side).collect();
         let together = factor.products(&right, &vec![Vec::new(); PROBES])?;
         Some(self.alone.iter().zip(together).map(|(alone, together)| alone - together).sum::<f64>() / PROBES as f64)
     }

@@ -1,7 +1,6 @@
 //! What rows say of their noise after a step: what is left of them, and how many unknowns they settle, in the mean over random
 //! combinations of them (Hutchinson 1990).
 
-use faer::Mat;
 use rand::RngExt;
 use rand::rngs::StdRng;
 use rayon::prelude::*;
@@ -59,10 +58,9 @@ impl Sampled {
 
     /// How many unknowns the rows settle; nothing where the factor gives no products.
     pub(super) fn used(&self, factor: &Factor) -> Option<f64> {
-        let (len, count) = (self.probes[0].by.len(), self.probes.len());
-        let probes = Mat::from_fn(len, count, |row, column| self.probes[column].by[row]);
+        let probes: Vec<&[f64]> = self.probes.iter().map(|probe| probe.by.as_slice()).collect();
         let below: Vec<Vec<f64>> = self.probes.iter().map(|probe| probe.below.clone()).collect();
-        Some(factor.products(&probes, &below)?.iter().sum::<f64>() / count as f64)
+        Some(factor.products(&probes, &below)?.iter().sum::<f64>() / probes.len() as f64)
     }
 
     /// What the rows say, of which so many count.

@@ -1,58 +1,43 @@
 //! Cholesky factors.
 
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::cholesky::llt::factor;
-use faer::linalg::matmul::{self, triangular};
-use faer::linalg::triangular_solve;
-use faer::prelude::{Reborrow, ReborrowMut};
-use faer::{Accum, MatMut, MatRef, Par};
 use rayon::prelude::*;
 
 use super::WIDTH;
+use super::rows::{ALIGN, Strip};
+use crate::simd::Isa;
 use crate::solve::vector;
 
-/// Columns that are factorised before the rest of the matrix is updated.
-const PANEL: usize = 2 * WIDTH;
-
-/// Cholesky factors of positive definite matrices of one size, with the memory that they need.
+/// Cholesky factors of positive definite matrices of one size.
 pub(crate) struct Cholesky {
     n: usize,
+    isa: Isa,
+    /// `A = L L^T`: the rows of `L^T`.
     factor: Vec<f64>,
-    scratch: MemBuffer,
 }
 
 impl Cholesky {
     pub(crate) fn new(n: usize) -> Self {
-        let scratch = factor::cholesky_in_place_scratch::<f64>(n.min(PANEL), Par::Seq, Default::default());
-        Self { n, factor: vec![0.0; n * n], scratch: MemBuffer::new(scratch) }
+        Self { n, isa: Isa::detect(), factor: vec![0.0; Strip::new(n, 0).len()] }
     }
 
-    /// Factorises the matrix that `fill` writes into the lower triangle of its argument; false where the matrix is
-    /// not positive definite in this precision.
+    /// Factorises the matrix that `fill` writes into the lower triangle of its argument, column by column; false where the
+    /// matrix is not positive definite in this precision.
     pub(crate) fn factorise(&mut self, fill: impl FnOnce(&mut [f64])) -> bool {
-        fill(&mut self.factor);
-        let n = self.n;
-        let mut done = true;
-        for first in (0..n).step_by(PANEL) {
-            let width = PANEL.min(n - first);
-            let (panel, rest) = self.factor[first * n..].split_at_mut(width * n);
-            let panel = MatMut::from_column_major_slice_mut(panel, n, width);
-            let (mut diagonal, mut below) = panel.split_at_row_mut(first).1.split_at_row_mut(width);
-            let stack = MemStack::new(&mut self.scratch);
-            done &=
-                factor::cholesky_in_place(diagonal.rb_mut(), Default::default(), Par::Seq, stack, Default::default())
-                    .is_ok();
-            strips(below.rb_mut()).into_par_iter().for_each(|strip| {
-                // strip L^T = what stands there
-                triangular_solve::solve_lower_triangular_in_place(diagonal.rb(), strip.transpose_mut(), Par::Seq);
-            });
-            update(below.rb(), rest, n, first + width);
+        let (n, strip) = (self.n, self.strip());
+        fill(&mut self.factor[..n * n]);
+        for row in (0..n).rev() {
+            self.factor.copy_within(row * n..(row + 1) * n, row * strip.stride);
+            self.factor[row * strip.stride + n..(row + 1) * strip.stride].fill(0.0);
         }
-        done && (0..n).all(|i| self.factor[i * (n + 1)].is_finite())
+        strip.eliminate(self.isa, &mut self.factor) && (0..n).all(|i| self.diagonal(i).is_finite())
     }
 
-    fn lower(&self) -> MatRef<'_, f64> {
-        MatRef::from_column_major_slice(&self.factor, self.n, self.n)
+    fn strip(&self) -> Strip {
+        Strip::new(self.n, 0)
+    }
+
+    fn diagonal(&self, at: usize) -> f64 {
+        self.factor[at * (self.strip().stride + 1)]
     }
 
     /// Solves `L L^T x = b` in place, for one right-hand side.
@@ -63,27 +48,40 @@ impl Cholesky {
 
     /// Solves `L x = b` in place for `count` right-hand sides, one after the other in memory.
     pub(crate) fn solve_lower(&self, b: &mut [f64], count: usize) {
-        let n = self.n;
-        b[..n * count].par_chunks_mut(n * WIDTH).for_each(|columns| {
-            let width = columns.len() / n;
-            let x = MatMut::from_column_major_slice_mut(columns, n, width);
-            triangular_solve::solve_lower_triangular_in_place(self.lower(), x, Par::Seq);
-        });
+        self.solve_all(b, count, |x, sides| self.strip().solve_transposed(self.isa, &self.factor, x, sides));
     }
 
     /// Solves `L^T x = b` in place for `count` right-hand sides, one after the other in memory.
     pub(crate) fn solve_upper(&self, b: &mut [f64], count: usize) {
+        self.solve_all(b, count, |x, sides| self.strip().solve(self.isa, &self.factor, x, sides));
+    }
+
+    /// Solves for right-hand sides, some of them at a time, side by side.
+    fn solve_all(&self, b: &mut [f64], count: usize, solve: impl Fn(&mut [f64], usize) + Sync) {
         let n = self.n;
-        b[..n * count].par_chunks_mut(n * WIDTH).for_each(|columns| {
-            let width = columns.len() / n;
-            let x = MatMut::from_column_major_slice_mut(columns, n, width);
-            triangular_solve::solve_upper_triangular_in_place(self.lower().transpose(), x, Par::Seq);
+        b[..n * count].par_chunks_mut((n * WIDTH).max(1)).for_each(|b| {
+            let sides = (b.len() / n).next_multiple_of(ALIGN);
+            let mut x = vec![0.0; n * sides];
+            for (side, b) in b.chunks_exact(n).enumerate() {
+                b.iter().enumerate().for_each(|(at, b)| x[at * sides + side] = *b);
+            }
+            solve(&mut x, sides);
+            for (side, b) in b.chunks_exact_mut(n).enumerate() {
+                b.iter_mut().enumerate().for_each(|(at, b)| *b = x[at * sides + side]);
+            }
         });
+    }
+
+    /// `L^T`, row by row.
+    pub(crate) fn upper(&self) -> Vec<f64> {
+        let (n, stride) = (self.n, self.strip().stride);
+        let entry = |row: usize, column: usize| if column < row { 0.0 } else { self.factor[row * stride + column] };
+        (0..n).flat_map(|row| (0..n).map(move |column| entry(row, column))).collect()
     }
 
     /// Logarithm of the determinant of `L L^T`.
     pub(crate) fn log_determinant(&self) -> f64 {
-        2.0 * (0..self.n).map(|i| self.factor[i * (self.n + 1)].ln()).sum::<f64>()
+        2.0 * (0..self.n).map(|i| self.diagonal(i).ln()).sum::<f64>()
     }
 
     /// Diagonal of the inverse of `L L^T`.
@@ -97,60 +95,30 @@ impl Cholesky {
     }
 }
 
-/// Cuts a matrix into strips of [`WIDTH`] rows.
-fn strips(matrix: MatMut<'_, f64>) -> Vec<MatMut<'_, f64>> {
-    let mut strips = Vec::with_capacity(matrix.nrows().div_ceil(WIDTH));
-    let mut rest = matrix;
-    while rest.nrows() > 0 {
-        let height = WIDTH.min(rest.nrows());
-        let (strip, below) = rest.split_at_row_mut(height);
-        strips.push(strip);
-        rest = below;
-    }
-    strips
-}
-
-/// Subtracts the lower triangle of `l l^T` from columns `first` on, which are `columns`, `n` apart.
-fn update(l: MatRef<'_, f64>, columns: &mut [f64], n: usize, first: usize) {
-    columns.par_chunks_mut(n * WIDTH).enumerate().for_each(|(task, columns)| {
-        let (at, width) = (task * WIDTH, columns.len() / n);
-        let block = MatMut::from_column_major_slice_mut(columns, n, width);
-        let (diagonal, below) = block.split_at_row_mut(first + at).1.split_at_row_mut(width);
-        let (mine, others) = l.split_at_row(at).1.split_at_row(width);
-        triangular::matmul(
-            diagonal,
-            triangular::BlockStructure::TriangularLower,
-            Accum::Add,
-            mine,
-            triangular::BlockStructure::Rectangular,
-            mine.transpose(),
-            triangular::BlockStructure::Rectangular,
-            -1.0,
-            Par::Seq,
-        );
-        matmul::matmul(below, Accum::Add, others, mine.transpose(), -1.0, Par::Seq);
-    });
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::solve::dense::tests::{plain, wavy};
 
     #[test]
-    fn factors_of_any_size_multiply_to_the_matrix() {
-        for n in [1, 50, PANEL, PANEL + 1, 500] {
+    fn solutions_solve_and_determinants_are_products() {
+        for n in [1, 50, 193, 500] {
             let mut matrix = plain(&wavy(n + 20, n), n);
             matrix.iter_mut().step_by(n + 1).for_each(|d| *d += 1.0);
             let mut cholesky = Cholesky::new(n);
+            // Leftovers of another matrix do not matter.
+            cholesky.factor.fill(f64::NAN);
             assert!(cholesky.factorise(|factor| factor.copy_from_slice(&matrix)));
-            let l = |i: usize, k: usize| cholesky.factor[i + k * n];
-            for i in 0..n {
-                for k in 0..=i {
-                    let product: f64 = (0..=k).map(|m| l(i, m) * l(k, m)).sum();
-                    assert!((product - matrix[i + k * n]).abs() <= 1e-12 * n as f64, "{n}: {i} {k}");
-                }
-            }
+            let expected = wavy(1, n);
+            let mut x: Vec<f64> = matrix.chunks_exact(n).map(|row| vector::dot(row, &expected)).collect();
+            cholesky.solve(&mut x);
+            assert!(x.iter().zip(&expected).all(|(x, y)| (x - y).abs() < 1e-9), "{n}");
+            let other = nalgebra::DMatrix::from_row_slice(n, n, &matrix).cholesky().unwrap();
+            let logarithm: f64 = (0..n).map(|i| 2.0 * other.l_dirty()[(i, i)].ln()).sum();
+            assert!((cholesky.log_determinant() - logarithm).abs() < 1e-9 * n as f64, "{n}");
+            let inverse = other.inverse();
+            let found = cholesky.inverse_diagonal();
+            assert!((0..n).all(|i| (found[i] / inverse[(i, i)] - 1.0).abs() < 1e-9), "{n}");
             matrix[n * n - 1] = -1.0;
             assert!(!cholesky.factorise(|factor| factor.copy_from_slice(&matrix)));
         }

@@ -1,17 +1,14 @@
-//! Products and factorisations of dense matrices, through faer.
+//! Products and factorisations of dense matrices, by the products of the engine's layers.
 //!
 //! Every product is cut into tasks whose number and shape depend on the matrix alone, each computed by one thread, so
 //! that the number of threads does not change a bit. Matrices of rows (Jacobians) are row-major; square matrices are
-//! column-major with only their lower triangle in use.
+//! column-major with only their lower triangle in use: row-major, with only their upper triangle.
 
 mod cholesky;
+pub(crate) mod rows;
 
 pub(crate) use cholesky::Cholesky;
-use faer::diag::DiagMut;
-use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd;
-use faer::linalg::matmul::{self, triangular};
-use faer::{Accum, MatMut, MatRef, Par};
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 
 use crate::gemm::{Left, Right, Shape, Write, gemm};
@@ -20,39 +17,33 @@ use crate::simd::Isa;
 /// Columns of a task: wide enough for the kernel, narrow enough to balance two threads at 400 columns.
 const WIDTH: usize = 96;
 
-/// Views `rows x cols` elements, row-major.
-pub(crate) fn row_major(data: &[f64], rows: usize, cols: usize) -> MatRef<'_, f64> {
-    MatRef::from_row_major_slice(&data[..rows * cols], rows, cols)
+/// The transpose of `rows x n` elements, with rows that end at whole vectors, and their length.
+fn transposed(a: &[f64], rows: usize, n: usize) -> (Vec<f64>, usize) {
+    let stride = rows.next_multiple_of(rows::ALIGN);
+    let mut out = vec![0.0; n * stride];
+    // Some rows at a time, which a cache holds together with what becomes of them.
+    for (block, a) in a[..rows * n].chunks((n * rows::ALIGN).max(1)).enumerate() {
+        for (column, out) in out.chunks_exact_mut(stride.max(1)).enumerate() {
+            let out = &mut out[block * rows::ALIGN..];
+            a.chunks_exact(n).zip(out).for_each(|(a, out)| *out = a[column]);
+        }
+    }
+    (out, stride)
 }
 
-/// The lower triangle of `a a^T`, for `a` of `n x k`, into `out` of `n x n`.
-pub(crate) fn gram(a: MatRef<'_, f64>, out: &mut [f64]) {
-    let n = a.nrows();
-    out[..n * n].par_chunks_mut(n * WIDTH).enumerate().for_each(|(task, columns)| {
-        let (first, width) = (task * WIDTH, columns.len() / n);
-        let block = MatMut::from_column_major_slice_mut(columns, n, width);
-        let (diagonal, below) = block.split_at_row_mut(first).1.split_at_row_mut(width);
-        let mine = a.subrows(first, width);
-        triangular::matmul(
-            diagonal,
-            triangular::BlockStructure::TriangularLower,
-            Accum::Replace,
-            mine,
-            triangular::BlockStructure::Rectangular,
-            mine.transpose(),
-            triangular::BlockStructure::Rectangular,
-            1.0,
-            Par::Seq,
-        );
-        let others = a.subrows(first + width, n - first - width);
-        matmul::matmul(below, Accum::Replace, others, mine.transpose(), 1.0, Par::Seq);
-    });
+/// The lower triangle of `a a^T`, for `a` row-major of `rows x n`, into `out` of `rows x rows`.
+pub(crate) fn gram(a: &[f64], rows: usize, n: usize, out: &mut [f64]) {
+    let (turned, stride) = transposed(a, rows, n);
+    let mut wide = vec![0.0; stride * stride];
+    gram_of_columns(&turned, n, stride, &mut wide);
+    out.chunks_exact_mut(rows.max(1))
+        .zip(wide.chunks_exact(stride.max(1)))
+        .for_each(|(out, wide)| out.copy_from_slice(&wide[..rows]));
 }
 
 /// The lower triangle of `j^T j`, for `j` row-major of `rows x n`, into `out` of `n x n`, column-major.
 ///
-/// Read row by row, `out` is the upper triangle, and `j` the right factor as it lies: the products of the engine's layers
-/// do this a third faster than [`gram`] on the transpose.
+/// Read row by row, `out` is the upper triangle, and `j` the right factor as it lies.
 pub(crate) fn gram_of_columns(j: &[f64], rows: usize, n: usize, out: &mut [f64]) {
     // Whole blocks of the products; high, for every task reads all of `j`, yet enough tasks to share out.
     let height = 14 * (n / (8 * 14)).clamp(1, 14);
@@ -99,13 +90,14 @@ pub(crate) fn add_squares_of_products(a: &[f64], b: &[f64], n: usize, out: &mut 
     if b.is_empty() {
         return;
     }
-    let b = row_major(b, b.len() / n.max(1), n);
+    let (b, columns) = transposed(b, b.len() / n.max(1), n);
+    let isa = Isa::detect();
     a.par_chunks(n * WIDTH).zip(out.par_chunks_mut(WIDTH)).for_each(|(a, out)| {
-        let a = row_major(a, out.len(), n);
-        let mut products = vec![0.0; out.len() * b.nrows()];
-        let all = MatMut::from_row_major_slice_mut(&mut products, out.len(), b.nrows());
-        matmul::matmul(all, Accum::Replace, a, b.transpose(), 1.0, Par::Seq);
-        for (out, products) in out.iter_mut().zip(products.chunks_exact(b.nrows())) {
+        let mut products = vec![0.0; out.len() * columns];
+        let (shape, right) =
+            (Shape { rows: out.len(), columns, inner: n }, Right::Rows { elements: &b, stride: columns });
+        gemm(isa, shape, Left::rows(a, n), right, &mut products, columns, Write::Set);
+        for (out, products) in out.iter_mut().zip(products.chunks_exact(columns)) {
             *out += super::vector::dot(products, products);
         }
     });
@@ -113,16 +105,25 @@ pub(crate) fn add_squares_of_products(a: &[f64], b: &[f64], n: usize, out: &mut 
 
 /// `j -= q q^T j`, for `q` of `rows x k` and `j` of `rows x n`, both row-major.
 pub(crate) fn subtract_projection(q: &[f64], k: usize, j: &mut [f64], n: usize) {
-    let rows = j.len() / n.max(1);
-    let q = row_major(q, rows, k);
+    let (rows, isa) = (j.len() / n.max(1), Isa::detect());
+    // Columns that whole vectors do not reach are done one by one.
+    let whole = n - n % isa.lanes::<f64>();
     let mut within = vec![0.0; k * n];
-    let product = MatMut::from_row_major_slice_mut(&mut within, k, n);
-    matmul::matmul(product, Accum::Replace, q.transpose(), row_major(j, rows, n), 1.0, Par::Seq);
-    let within = row_major(&within, k, n);
-    j.par_chunks_mut(n * WIDTH).enumerate().for_each(|(task, j)| {
-        let count = j.len() / n;
-        let j = MatMut::from_row_major_slice_mut(j, count, n);
-        matmul::matmul(j, Accum::Add, q.subrows(task * WIDTH, count), within, -1.0, Par::Seq);
+    let shape = Shape { rows: k, columns: whole, inner: rows };
+    gemm(isa, shape, Left::transposed(q, k), Right::Rows { elements: j, stride: n }, &mut within, n, Write::Set);
+    for (q, j) in q.chunks_exact(k.max(1)).zip(j.chunks_exact(n.max(1))) {
+        for (q, within) in q.iter().zip(within.chunks_exact_mut(n)) {
+            within[whole..].iter_mut().zip(&j[whole..]).for_each(|(within, j)| *within += q * j);
+        }
+    }
+    j.par_chunks_mut(n * WIDTH).zip(q.par_chunks(k * WIDTH)).for_each(|(j, q)| {
+        let shape = Shape { rows: j.len() / n, columns: whole, inner: k };
+        gemm(isa, shape, Left::rows(q, k), Right::Rows { elements: &within, stride: n }, j, n, Write::Subtract);
+        for (j, q) in j.chunks_exact_mut(n).zip(q.chunks_exact(k)) {
+            for (q, within) in q.iter().zip(within.chunks_exact(n)) {
+                j[whole..].iter_mut().zip(&within[whole..]).for_each(|(j, within)| *j -= q * within);
+            }
+        }
     });
 }
 
@@ -136,24 +137,15 @@ pub(crate) fn copy_lower(from: &[f64], to: &mut [f64], n: usize) {
 }
 
 /// Eigenvalues in descending order, and eigenvectors one after the other in memory, of the symmetric `n x n` matrix
-/// whose lower triangle is given; `None` where the iteration fails.
+/// whose lower triangle is given; `None` where it is not finite.
 pub(crate) fn eigen(matrix: &[f64], n: usize) -> Option<(Vec<f64>, Vec<f64>)> {
-    let mut values = vec![0.0; n];
-    let mut vectors = vec![0.0; n * n];
-    let params = Default::default();
-    let scratch = evd::self_adjoint_evd_scratch::<f64>(n, evd::ComputeEigenvectors::Yes, Par::Seq, params);
-    evd::self_adjoint_evd(
-        MatRef::from_column_major_slice(&matrix[..n * n], n, n),
-        DiagMut::from_slice_mut(&mut values),
-        Some(MatMut::from_column_major_slice_mut(&mut vectors, n, n)),
-        Par::Seq,
-        MemStack::new(&mut MemBuffer::new(scratch)),
-        params,
-    )
-    .ok()?;
-    values.reverse();
-    let vectors = vectors.chunks_exact(n).rev().flatten().copied().collect();
-    Some((values, vectors))
+    let lower = |row: usize, column: usize| matrix[row.min(column) * n + row.max(column)];
+    let matrix = DMatrix::from_fn(n, n, lower);
+    let found = matrix.iter().all(|x| x.is_finite()).then(|| matrix.symmetric_eigen())?;
+    let mut order: Vec<usize> = (0..n).collect();
+    order.sort_by(|&a, &b| found.eigenvalues[b].total_cmp(&found.eigenvalues[a]));
+    let vectors = order.iter().flat_map(|&at| found.eigenvectors.column(at).iter().copied().collect::<Vec<f64>>());
+    Some((order.iter().map(|&at| found.eigenvalues[at]).collect(), vectors.collect()))
 }
 
 #[cfg(test)]
@@ -177,7 +169,9 @@ pub(super) mod tests {
             let expected = plain(&j, n);
             let (mut own, mut general) = (vec![0.0; n * n], vec![0.0; n * n]);
             gram_of_columns(&j, rows, n, &mut own);
-            gram(row_major(&j, rows, n).transpose(), &mut general);
+            let (turned, stride) = transposed(&j, rows, n);
+            let turned: Vec<f64> = turned.chunks_exact(stride).flat_map(|row| &row[..rows]).copied().collect();
+            gram(&turned, n, rows, &mut general);
             for at in (0..n * n).filter(|at| at % n >= at / n) {
                 assert!((own[at] - expected[at]).abs() <= 1e-14 * rows as f64, "{rows} {n} {at}");
                 assert!((general[at] - expected[at]).abs() <= 1e-14 * rows as f64, "{rows} {n} {at}");
@@ -199,5 +193,20 @@ pub(super) mod tests {
             }
         }
         add_squares_of_products(&[], &[], 0, &mut []);
+    }
+
+    /// Less its part along orthonormal columns, a matrix is orthogonal to them.
+    #[test]
+    fn projections_leave_nothing_along_the_columns() {
+        for (rows, k, n) in [(5, 1, 1), (200, 9, 30)] {
+            let basis = nalgebra::DMatrix::from_row_slice(rows, k, &wavy(rows, k)).qr().q();
+            let q: Vec<f64> = (0..rows * k).map(|at| basis[(at / k, at % k)]).collect();
+            let before = wavy(rows, n);
+            let mut j = before.clone();
+            subtract_projection(&q, k, &mut j, n);
+            let expected = nalgebra::DMatrix::from_row_slice(rows, n, &before);
+            let expected = &expected - &basis * (basis.transpose() * &expected);
+            assert!((0..rows * n).all(|at| (j[at] - expected[(at / n, at % n)]).abs() < 1e-12), "{rows} {k} {n}");
+        }
     }
 }

@@ -1,0 +1,288 @@
+//! Cholesky factors `A = U^T U` row by row: some rows of a matrix are eliminated, and what is left of the others follows.
+//!
+//! Rows lie one after the other, `stride` apart, and only what stands on and right of the diagonal counts. So the products of
+//! the engine's layers do nearly all of the work, with `U` as both of their factors as it lies.
+
+use rayon::prelude::*;
+
+use crate::gemm::{Left, Right, Shape, Write, gemm};
+use crate::simd::{Isa, Kernel, Simd, dispatch};
+
+/// Rows are as long as a multiple of this: whole vectors of any instruction set.
+pub(crate) const ALIGN: usize = 8;
+/// Rows that are eliminated one by one, before all that is below them is.
+const BLOCK: usize = 32;
+/// Rows of a task: their number and shape depend on the matrix alone, so that the number of threads changes no bit.
+const HEIGHT: usize = 96;
+/// Products of numbers for which waking a second thread pays.
+const SHARED: usize = 1 << 17;
+
+/// Rows that are eliminated together: `width` of them, whose columns are their own `width`, and from the next multiple of
+/// [`ALIGN`] on those of others. What lies between is zero.
+#[derive(Clone, Copy)]
+pub(crate) struct Strip {
+    pub(crate) width: usize,
+    pub(crate) stride: usize,
+}
+
+impl Strip {
+    /// Of so many rows, which so many others meet.
+    pub(crate) fn new(width: usize, others: usize) -> Self {
+        Self { width, stride: width.next_multiple_of(ALIGN) + others.next_multiple_of(ALIGN) }
+    }
+
+    /// Where the columns of others begin.
+    pub(crate) fn others(self) -> usize {
+        self.width.next_multiple_of(ALIGN)
+    }
+
+    /// Numbers in its rows.
+    pub(crate) fn len(self) -> usize {
+        self.width * self.stride
+    }
+
+    /// From rows of a matrix to those of its factor; false where it is not positive definite in this precision.
+    pub(crate) fn eliminate(self, isa: Isa, rows: &mut [f64]) -> bool {
+        let Self { width, stride } = self;
+        let mut solved = Vec::new();
+        let mut inverse = [0.0; BLOCK * BLOCK];
+        for first in (0..width).step_by(BLOCK) {
+            let count = BLOCK.min(width - first);
+            let (own, below) = rows[first * stride..].split_at_mut(count * stride);
+            if !dispatch(isa, Diagonal { rows: &mut own[first..], stride, count, inverse: &mut inverse }) {
+                return false;
+            }
+            let start = (first + count).next_multiple_of(ALIGN);
+            let columns = stride - start;
+            if columns == 0 {
+                continue;
+            }
+            // Right of the diagonal: U^-T times what stands there.
+            solved.resize(count * columns, 0.0);
+            let (shape, left) = (Shape { rows: count, columns, inner: count }, Left::transposed(&inverse, BLOCK));
+            gemm(isa, shape, left, Right::Rows { elements: &own[start..], stride }, &mut solved, columns, Write::Set);
+            for (row, solved) in own.chunks_exact_mut(stride).zip(solved.chunks_exact(columns)) {
+                row[start..].copy_from_slice(solved);
+            }
+            subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
+        }
+        true
+    }
+
+    /// Subtracts from the matrix of the others, of rows as long as the next multiple of [`ALIGN`], what the eliminated rows say of it.
+    pub(crate) fn update(self, isa: Isa, rows: &[f64], others: &mut [f64]) {
+        if !others.is_empty() {
+            let own = (&rows[self.others()..], self.stride, self.width);
+            subtract_square(isa, own, others, (self.stride - self.others(), 0));
+        }
+    }
+
+    /// Solves `U^T x = b` in place, for its own columns and so many right-hand sides, a multiple of [`ALIGN`]; row by row.
+    pub(crate) fn solve_transposed(self, isa: Isa, rows: &[f64], x: &mut [f64], sides: usize) {
+        let Self { width, stride } = self;
+        for first in (0..width).step_by(BLOCK) {
+            let count = BLOCK.min(width - first);
+            let (before, x) = x.split_at_mut(first * sides);
+            let shape = Shape { rows: count, columns: sides, inner: first };
+            if first > 0 {
+                let right = Right::Rows { elements: before, stride: sides };
+                gemm(isa, shape, Left::transposed(&rows[first..], stride), right, x, sides, Write::Subtract);
+            }
+            let rows = &rows[first * (stride + 1)..];
+            dispatch(isa, Substitution { rows, stride, count, x, sides, transposed: true });
+        }
+    }
+
+    /// Solves `U x = b` in place, as [`Strip::solve_transposed`] does.
+    pub(crate) fn solve(self, isa: Isa, rows: &[f64], x: &mut [f64], sides: usize) {
+        let Self { width, stride } = self;
+        for first in (0..width).step_by(BLOCK).rev() {
+            let count = BLOCK.min(width - first);
+            let (x, after) = x[first * sides..].split_at_mut(count * sides);
+            let rows = &rows[first * (stride + 1)..];
+            let shape = Shape { rows: count, columns: sides, inner: width - first - count };
+            if shape.inner > 0 {
+                let right = Right::Rows { elements: after, stride: sides };
+                gemm(isa, shape, Left::rows(&rows[count..], stride), right, x, sides, Write::Subtract);
+            }
+            dispatch(isa, Substitution { rows, stride, count, x, sides, transposed: false });
+        }
+    }
+}
+
+/// Subtracts `u^T u` from rows, on and right of the diagonal: `u` has so many rows, as far apart as given; the rows are as far
+/// apart as given, and the first one's diagonal stands in the given column.
+fn subtract_square(isa: Isa, (u, apart, inner): (&[f64], usize, usize), rows: &mut [f64], own: (usize, usize)) {
+    let (stride, start) = own;
+    let task = |(task, rows): (usize, &mut [f64])| {
+        let at = task * HEIGHT;
+        let shape = Shape { rows: rows.len() / stride, columns: stride - start - at, inner };
+        let (left, right) = (Left::transposed(&u[at..], apart), Right::Rows { elements: &u[at..], stride: apart });
+        gemm(isa, shape, left, right, &mut rows[start + at..], stride, Write::Subtract);
+    };
+    if rows.len() * inner < SHARED {
+        rows.chunks_mut(HEIGHT * stride).enumerate().for_each(task);
+    } else {
+        rows.par_chunks_mut(HEIGHT * stride).enumerate().for_each(task);
+    }
+}
+
+/// The factor of a block on the diagonal, in place, and its inverse.
+struct Diagonal<'a> {
+    rows: &'a mut [f64],
+    stride: usize,
+    count: usize,
+    inverse: &'a mut [f64; BLOCK * BLOCK],
+}
+
+impl Kernel<f64> for Diagonal<'_> {
+    type Output = bool;
+    #[inline(always)]
+    fn run<V: Simd<Elem = f64>>(self) -> bool {
+        let Self { rows, stride, count, inverse } = self;
+        for k in 0..count {
+            let end = rows.len().min((k + 1) * stride);
+            let (upper, below) = rows.split_at_mut(end);
+            let row = &mut upper[k * stride..][..count];
+            let pivot = row[k];
+            if pivot.is_nan() || pivot <= 0.0 {
+                return false;
+            }
+            let root = pivot.sqrt();
+            row[k..].iter_mut().for_each(|x| *x /= root);
+            for (i, other) in below.chunks_mut(stride).take(count - k - 1).enumerate() {
+                subtract(&mut other[k + 1 + i..count], row[k + 1 + i], &row[k + 1 + i..]);
+            }
+        }
+        for i in (0..count).rev() {
+            let (row, below) = inverse[i * BLOCK..].split_at_mut(BLOCK);
+            row.fill(0.0);
+            row[i] = 1.0;
+            for (k, other) in below.chunks_exact(BLOCK).take(count - i - 1).enumerate() {
+                subtract(row, rows[i * stride + i + 1 + k], other);
+            }
+            let diagonal = rows[i * stride + i];
+            row.iter_mut().for_each(|x| *x /= diagonal);
+        }
+        true
+    }
+}
+
+/// Solves with a block on the diagonal, or with its transpose.
+struct Substitution<'a> {
+    rows: &'a [f64],
+    stride: usize,
+    count: usize,
+    x: &'a mut [f64],
+    sides: usize,
+    transposed: bool,
+}
+
+impl Kernel<f64> for Substitution<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: Simd<Elem = f64>>(self) {
+        let Self { rows, stride, count, x, sides, transposed } = self;
+        for step in 0..count {
+            let k = if transposed { step } else { count - 1 - step };
+            let (own, after) = x[k * sides..].split_at_mut(sides);
+            let row = &rows[k * (stride + 1)..][..count - k];
+            let others = after.chunks_exact_mut(sides).zip(&row[1..]);
+            if transposed {
+                own.iter_mut().for_each(|x| *x /= row[0]);
+                others.for_each(|(other, factor)| subtract(other, *factor, own));
+            } else {
+                others.for_each(|(other, factor)| subtract(own, *factor, other));
+                own.iter_mut().for_each(|x| *x /= row[0]);
+            }
+        }
+    }
+}
+
+/// Subtracts a multiple.
+#[inline(always)]
+fn subtract(from: &mut [f64], factor: f64, what: &[f64]) {
+    from.iter_mut().zip(what).for_each(|(from, what)| *from -= factor * what);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows of a positive definite matrix: sines beside a diagonal that outweighs them.
+    fn matrix(size: usize) -> impl Fn(usize, usize) -> f64 {
+        move |i, j| if i == j { 2.0 * size as f64 } else { ((i.min(j) * 7 + i.max(j) * 3) as f64).sin() }
+    }
+
+    /// The factor's product with itself is the matrix, and what is left of the others is their Schur complement, which the
+    /// factor of the whole has as the product of its last rows.
+    #[test]
+    fn some_rows_are_eliminated_as_in_the_whole() {
+        let isa = Isa::detect();
+        for (width, others) in [(1, 0), (3, 2), (8, 8), (33, 5), (70, 150), (200, 1)] {
+            let size = width + others;
+            let entry = matrix(size);
+            let whole = Strip::new(size, 0);
+            let mut factor = vec![0.0; whole.len()];
+            (0..size).for_each(|i| (i..size).for_each(|j| factor[i * whole.stride + j] = entry(i, j)));
+            assert!(whole.eliminate(isa, &mut factor));
+            let u = |i: usize, j: usize| factor[i * whole.stride + j];
+            for i in 0..size {
+                for j in i..size {
+                    let product: f64 = (0..=i).map(|k| u(k, i) * u(k, j)).sum();
+                    assert!((product - entry(i, j)).abs() < 1e-13 * size as f64, "{width} {others}: {i} {j}");
+                }
+            }
+            let strip = Strip::new(width, others);
+            let place = |j: usize| if j < width { j } else { strip.others() + j - width };
+            let mut rows = vec![0.0; strip.len()];
+            (0..width).for_each(|i| (i..size).for_each(|j| rows[i * strip.stride + place(j)] = entry(i, j)));
+            let apart = strip.stride - strip.others();
+            let mut rest = vec![0.0; others * apart];
+            (0..others).for_each(|i| (i..others).for_each(|j| rest[i * apart + j] = entry(width + i, width + j)));
+            assert!(strip.eliminate(isa, &mut rows));
+            strip.update(isa, &rows, &mut rest);
+            for i in 0..width {
+                for j in i..size {
+                    let found = rows[i * strip.stride + place(j)];
+                    assert!((found - u(i, j)).abs() < 1e-13 * size as f64, "{width} {others}: {i} {j}");
+                }
+            }
+            for i in 0..others {
+                for j in i..others {
+                    let left: f64 = (0..=i).map(|k| u(width + k, width + i) * u(width + k, width + j)).sum();
+                    assert!((rest[i * apart + j] - left).abs() < 1e-13 * size as f64, "{width} {others}: {i} {j}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn solutions_of_both_triangles_are_those_that_were_multiplied() {
+        let isa = Isa::detect();
+        for (size, sides) in [(1, 8), (31, 8), (64, 16), (133, 24)] {
+            let (entry, strip) = (matrix(size), Strip::new(size, 0));
+            let mut factor = vec![0.0; strip.len()];
+            (0..size).for_each(|i| (i..size).for_each(|j| factor[i * strip.stride + j] = entry(i, j)));
+            assert!(strip.eliminate(isa, &mut factor));
+            let solution: Vec<f64> = (0..size * sides).map(|at| (at as f64 * 0.37).cos()).collect();
+            // A x = b by both triangles, one after the other.
+            let mut x: Vec<f64> = (0..size * sides)
+                .map(|at| (0..size).map(|k| entry(at / sides, k) * solution[k * sides + at % sides]).sum())
+                .collect();
+            strip.solve_transposed(isa, &factor, &mut x, sides);
+            strip.solve(isa, &factor, &mut x, sides);
+            assert!(x.iter().zip(&solution).all(|(x, y)| (x - y).abs() < 1e-12), "{size} {sides}");
+        }
+    }
+
+    #[test]
+    fn a_matrix_that_is_not_positive_definite_is_refused() {
+        for (size, at) in [(1, 0), (40, 39), (100, 50)] {
+            let strip = Strip::new(size, 0);
+            let mut rows = vec![0.0; strip.len()];
+            (0..size).for_each(|i| rows[i * (strip.stride + 1)] = if i == at { -1.0 } else { 1.0 });
+            assert!(!strip.eliminate(Isa::detect(), &mut rows), "{size}");
+        }
+    }
+}
