@@ -8,6 +8,7 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::fill::{Fill, Node};
+use super::spare::Spare;
 use crate::gemm::{Left, Right, Shape, Write, gemm};
 use crate::simd::Isa;
 use crate::solve::dense::rows::{ALIGN, Strip};
@@ -35,8 +36,9 @@ impl Cholesky {
     /// Factors of a matrix, of which the lower triangle is given; nothing where it is not positive definite, or memory too small.
     pub(super) fn of(fill: &Arc<Fill>, values: &[f64]) -> Option<Self> {
         let isa = Isa::detect();
-        let mut rows = zeros(fill.nodes.iter().map(|node| node.strip.len()).sum())?;
+        let mut rows = fill.spare.zeros(fill.nodes.iter().map(|node| node.strip.len()).sum())?;
         fill.targets.iter().zip(values).for_each(|(&target, value)| rows[target] += value);
+        let between = Spare::default();
         let mut rest = rows.as_mut_slice();
         let front = |node: &Node| {
             let (rows, after) = std::mem::take(&mut rest).split_at_mut(node.strip.len());
@@ -54,11 +56,11 @@ impl Cholesky {
         let subtrees: Vec<(usize, &mut [Front])> = fill.subtrees.iter().map(subtree).collect();
         let whole = |(first, own): (usize, &mut [Front])| {
             let mut nodes = first..first + own.len();
-            nodes.try_for_each(|node| eliminate(fill, isa, (first, own), node))
+            nodes.try_for_each(|node| eliminate(fill, isa, &between, (first, own), node))
         };
         subtrees.into_par_iter().map(whole).collect::<Option<()>>()?;
         let mut above = (0..fill.nodes.len()).filter(|&node| !fill.subtrees.iter().any(|own| own.contains(&node)));
-        above.try_for_each(|node| eliminate(fill, isa, (0, &mut fronts), node))?;
+        above.try_for_each(|node| eliminate(fill, isa, &between, (0, &mut fronts), node))?;
         rows.iter().all(|x| x.is_finite()).then(|| Self { fill: fill.clone(), isa, rows, lift: 0.0 })
     }
 
@@ -72,12 +74,12 @@ impl Cholesky {
     /// Solves for a few right-hand sides, which lie side by side meanwhile.
     fn solve_some(&self, right: &[&[f64]]) -> Option<Vec<Vec<f64>>> {
         let (fill, isa, sides) = (&*self.fill, self.isa, right.len().next_multiple_of(ALIGN));
-        let mut x = zeros(fill.places.len() * sides)?;
+        let mut x = fill.spare.zeros(fill.places.len() * sides)?;
         for (side, right) in right.iter().enumerate() {
             fill.places.iter().zip(*right).for_each(|(place, b)| x[place * sides + side] = *b);
         }
         let most = fill.nodes.iter().map(|node| node.others.len()).max().unwrap_or(0);
-        let mut of_others = zeros(most * sides)?;
+        let mut of_others = fill.spare.zeros(most * sides)?;
         let own = |node: &Node| node.first * sides..(node.first + node.strip.width) * sides;
         for node in &fill.nodes {
             let (rows, strip, count) = (self.rows_of(node), node.strip, node.others.len());
@@ -102,7 +104,9 @@ impl Cholesky {
             strip.solve(isa, rows, &mut x[own(node)], sides);
         }
         let solution = |side: usize| fill.places.iter().map(|place| x[place * sides + side]).collect();
-        Some((0..right.len()).map(solution).collect())
+        let solutions = (0..right.len()).map(solution).collect();
+        [x, of_others].into_iter().for_each(|vector| fill.spare.give_back(vector));
+        Some(solutions)
     }
 
     fn rows_of(&self, node: &Node) -> &[f64] {
@@ -119,16 +123,23 @@ impl Cholesky {
     }
 }
 
-/// Eliminates a node, whose children were eliminated, among fronts of which the number of the first is given; nothing where it is not
-/// positive definite, or memory too small.
-fn eliminate(fill: &Fill, isa: Isa, (first, fronts): (usize, &mut [Front]), at: usize) -> Option<()> {
+impl Drop for Cholesky {
+    fn drop(&mut self) {
+        self.fill.spare.give_back(std::mem::take(&mut self.rows));
+    }
+}
+
+/// Eliminates a node, whose children were eliminated, among fronts of which the number of the first is given; memory goes from one
+/// node to the next. Nothing where the matrix is not positive definite, or memory too small.
+fn eliminate(fill: &Fill, isa: Isa, between: &Spare, (first, fronts): (usize, &mut [Front]), at: usize) -> Option<()> {
     let node = &fill.nodes[at];
     let (below, own) = fronts.split_at_mut(at - first);
     let front = &mut own[0];
-    front.left = zeros(node.others.len() * apart(node))?;
+    front.left = between.zeros(node.others.len() * apart(node))?;
     for &child in &node.children {
         let left = std::mem::take(&mut below[child - first].left);
         front.take_up(node, &fill.nodes[child], &left);
+        between.give_back(left);
     }
     if !node.strip.eliminate(isa, front.rows) {
         return None;
@@ -156,14 +167,6 @@ impl Front<'_> {
 /// Length of the rows of what a node leaves to others.
 fn apart(node: &Node) -> usize {
     node.strip.stride - node.strip.others()
-}
-
-/// Zeros; nothing where memory is too small.
-fn zeros(len: usize) -> Option<Vec<f64>> {
-    let mut zeros = Vec::new();
-    zeros.try_reserve_exact(len).ok()?;
-    zeros.resize(len, 0.0);
-    Some(zeros)
 }
 
 #[cfg(test)]
@@ -200,7 +203,7 @@ mod tests {
                     dense[(column, entries.rows[at])] = values[at];
                 }
             }
-            let fill = Arc::new(Fill::of(&entries).unwrap());
+            let fill = Arc::new(Fill::of(&entries, Arc::default()).unwrap());
             let factor = Cholesky::of(&fill, &values).unwrap();
             let sides: Vec<Vec<f64>> =
                 (0..SIDES + 3).map(|side| (0..count).map(|at| ((at * side) as f64 * 0.3).cos()).collect()).collect();
@@ -219,6 +222,6 @@ mod tests {
     fn a_matrix_that_is_not_positive_definite_has_no_factors() {
         let (entries, mut values) = lattice(6, 2);
         values[entries.starts[17]] = -1.0;
-        assert!(Cholesky::of(&Arc::new(Fill::of(&entries).unwrap()), &values).is_none());
+        assert!(Cholesky::of(&Arc::new(Fill::of(&entries, Arc::default()).unwrap()), &values).is_none());
     }
 }

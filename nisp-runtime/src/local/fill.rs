@@ -5,8 +5,10 @@
 //! comes next for them, its parent.
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::ordering::Ordering;
+use super::spare::Spare;
 use crate::solve::dense::rows::Strip;
 
 /// Entries of the lower triangle of a square matrix, column by column: on and below the diagonal, in order.
@@ -25,6 +27,8 @@ pub(super) struct Fill {
     pub(super) nodes: Vec<Node>,
     /// By entry of the matrix, its place in the factor.
     pub(super) targets: Vec<usize>,
+    /// Memory for factors and what they need.
+    pub(super) spare: Arc<Spare>,
     /// Nodes that are worked off beside each other: one with all that is below it.
     pub(super) subtrees: Vec<Range<usize>>,
 }
@@ -75,7 +79,7 @@ impl Entries {
 
 impl Fill {
     /// Of matrices whose lower triangle has these entries; nothing where they are no such triangle.
-    pub(super) fn of(entries: &Entries) -> Option<Self> {
+    pub(super) fn of(entries: &Entries, spare: Arc<Spare>) -> Option<Self> {
         let ordering = Ordering::of(entries)?;
         let growing = grown(&ordering);
         let order = postorder(&growing);
@@ -110,7 +114,7 @@ impl Fill {
             }
         };
         let nodes = order.iter().map(node).collect();
-        let mut fill = Self { places, nodes, targets: vec![0; entries.rows.len()], subtrees: Vec::new() };
+        let mut fill = Self { places, nodes, targets: vec![0; entries.rows.len()], spare, subtrees: Vec::new() };
         fill.find(entries);
         fill.share();
         Some(fill)

@@ -46,6 +46,7 @@ mod sites;
 pub(crate) mod smooth;
 mod solver;
 mod sorted;
+mod spare;
 mod surface;
 mod tabled;
 mod taken;

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use super::cholesky::Cholesky;
 use super::fill::{Entries, Fill};
+use super::spare::Spare;
 
 /// Entries of the lower triangle, and how factors fill it.
 pub(super) struct Pattern {
@@ -26,13 +27,18 @@ impl Pattern {
     /// The pattern of a matrix whose columns have entries in these rows, each on and below the diagonal and in order; nothing where memory is too
     /// small.
     pub(super) fn new(columns: &[Vec<usize>]) -> Option<Self> {
+        Self::with(columns, Arc::default())
+    }
+
+    /// The same, with memory that others have left.
+    fn with(columns: &[Vec<usize>], spare: Arc<Spare>) -> Option<Self> {
         let mut starts = vec![0];
         starts.extend(columns.iter().scan(0, |end, column| {
             *end += column.len();
             Some(*end)
         }));
         let entries = Entries { starts, rows: columns.concat() };
-        let fill = Arc::new(Fill::of(&entries)?);
+        let fill = Arc::new(Fill::of(&entries, spare)?);
         Some(Self { entries, fill })
     }
 
@@ -59,7 +65,7 @@ impl Pattern {
             kept.iter().map(|&place| own[self.rows()[place]]).collect()
         };
         let columns: Vec<Vec<usize>> = numbers.iter().map(column).collect();
-        Some(Part { free: free.to_vec(), pattern: Self::new(&columns)?, numbers, places })
+        Some(Part { free: free.to_vec(), pattern: Self::with(&columns, self.fill.spare.clone())?, numbers, places })
     }
 
     /// Cholesky factors of a matrix with these entries; where rounding spoils that it is positive definite, of one with some more

@@ -12,6 +12,8 @@ use crate::simd::{Isa, Kernel, Simd, dispatch};
 pub(crate) const ALIGN: usize = 8;
 /// Rows that are eliminated one by one, before all that is below them is.
 const BLOCK: usize = 32;
+/// Rows that are eliminated before the rest of the matrix is updated.
+const PANEL: usize = 4 * BLOCK;
 /// Rows of a task: their number and shape depend on the matrix alone, so that the number of threads changes no bit.
 const HEIGHT: usize = 96;
 /// Products of numbers for which waking a second thread pays.
@@ -44,29 +46,18 @@ impl Strip {
     /// From rows of a matrix to those of its factor; false where it is not positive definite in this precision.
     pub(crate) fn eliminate(self, isa: Isa, rows: &mut [f64]) -> bool {
         let Self { width, stride } = self;
-        let mut solved = Vec::new();
-        let mut inverse = [0.0; BLOCK * BLOCK];
-        for first in (0..width).step_by(BLOCK) {
-            let count = BLOCK.min(width - first);
+        (0..width).step_by(PANEL).all(|first| {
+            let count = PANEL.min(width - first);
             let (own, below) = rows[first * stride..].split_at_mut(count * stride);
-            if !dispatch(isa, Diagonal { rows: &mut own[first..], stride, count, inverse: &mut inverse }) {
-                return false;
+            let done = eliminate(isa, own, (first, count, stride));
+            let start = first + count;
+            done && {
+                if !below.is_empty() {
+                    subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
+                }
+                true
             }
-            let start = (first + count).next_multiple_of(ALIGN);
-            let columns = stride - start;
-            if columns == 0 {
-                continue;
-            }
-            // Right of the diagonal: U^-T times what stands there.
-            solved.resize(count * columns, 0.0);
-            let (shape, left) = (Shape { rows: count, columns, inner: count }, Left::transposed(&inverse, BLOCK));
-            gemm(isa, shape, left, Right::Rows { elements: &own[start..], stride }, &mut solved, columns, Write::Set);
-            for (row, solved) in own.chunks_exact_mut(stride).zip(solved.chunks_exact(columns)) {
-                row[start..].copy_from_slice(solved);
-            }
-            subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
-        }
-        true
+        })
     }
 
     /// Subtracts from the matrix of the others, of rows as long as the next multiple of [`ALIGN`], what the eliminated rows say of it.
@@ -108,6 +99,33 @@ impl Strip {
             dispatch(isa, Substitution { rows, stride, count, x, sides, transposed: false });
         }
     }
+}
+
+/// Eliminates so many rows, as far apart as given, of which the first one's diagonal stands in the given column.
+fn eliminate(isa: Isa, rows: &mut [f64], (at, height, stride): (usize, usize, usize)) -> bool {
+    let mut solved = Vec::new();
+    let mut inverse = [0.0; BLOCK * BLOCK];
+    for first in (0..height).step_by(BLOCK) {
+        let count = BLOCK.min(height - first);
+        let (own, below) = rows[first * stride..].split_at_mut(count * stride);
+        if !dispatch(isa, Diagonal { rows: &mut own[at + first..], stride, count, inverse: &mut inverse }) {
+            return false;
+        }
+        let start = (at + first + count).next_multiple_of(ALIGN);
+        let columns = stride - start;
+        if columns == 0 {
+            continue;
+        }
+        // Right of the diagonal: U^-T times what stands there.
+        solved.resize(count * columns, 0.0);
+        let (shape, left) = (Shape { rows: count, columns, inner: count }, Left::transposed(&inverse, BLOCK));
+        gemm(isa, shape, left, Right::Rows { elements: &own[start..], stride }, &mut solved, columns, Write::Set);
+        for (row, solved) in own.chunks_exact_mut(stride).zip(solved.chunks_exact(columns)) {
+            row[start..].copy_from_slice(solved);
+        }
+        subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
+    }
+    true
 }
 
 /// Subtracts `u^T u` from rows, on and right of the diagonal: `u` has so many rows, as far apart as given; the rows are as far
