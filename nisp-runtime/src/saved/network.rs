@@ -53,7 +53,7 @@ impl Kept for KeptNetwork {
             .with_counter("factorised", u64::from(factorised))
             .with_counter("sine", u64::from(activation == Activation::Sine));
         match &self.root {
-            Some(root) => state.with("root", root.numbers()),
+            Some(root) => state.with("root_rows", root.numbers()),
             None => state,
         }
     }
@@ -93,10 +93,10 @@ impl KeptNetwork {
         if layout.len != theta.len() {
             return Err(Fault::state("theta"));
         }
-        let root = match state.has("root") {
+        let root = match state.has("root_rows") {
             false => None,
             true => {
-                let numbers = state.vector("root")?.to_vec();
+                let numbers = state.vector("root_rows")?.to_vec();
                 Some(Root::restored(theta.len(), numbers).ok_or_else(|| Fault::state("root"))?)
             }
         };
