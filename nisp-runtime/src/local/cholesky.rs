@@ -172,7 +172,7 @@ fn apart(node: &Node) -> usize {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::local::fill::Entries;
+    use crate::local::entries::Entries;
 
     /// Unknowns on a lattice of nodes with some fields each, which meet those of neighbouring nodes.
     fn lattice(side: usize, fields: usize) -> (Entries, Vec<f64>) {

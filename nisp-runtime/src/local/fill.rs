@@ -7,17 +7,10 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use super::entries::Entries;
 use super::ordering::Ordering;
 use super::spare::Spare;
 use crate::solve::dense::rows::Strip;
-
-/// Entries of the lower triangle of a square matrix, column by column: on and below the diagonal, in order.
-pub(super) struct Entries {
-    /// Where every column begins, and the end of the last.
-    pub(super) starts: Vec<usize>,
-    /// Rows of all entries.
-    pub(super) rows: Vec<usize>,
-}
 
 /// Where factors have entries.
 pub(super) struct Fill {
@@ -65,17 +58,6 @@ struct Growing {
 const PART: usize = 8;
 /// Products that are too few for two threads.
 const FEW: usize = 1 << 20;
-
-impl Entries {
-    pub(super) fn len(&self) -> usize {
-        self.starts.len() - 1
-    }
-
-    /// Rows of a column's entries.
-    pub(super) fn column(&self, column: usize) -> &[usize] {
-        &self.rows[self.starts[column]..self.starts[column + 1]]
-    }
-}
 
 impl Fill {
     /// Of matrices whose lower triangle has these entries; nothing where they are no such triangle.

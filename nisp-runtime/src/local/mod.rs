@@ -16,6 +16,7 @@ mod counting;
 mod course;
 mod doubts;
 mod draws;
+mod entries;
 mod evaluated;
 mod fill;
 mod group;

@@ -5,7 +5,7 @@
 
 use std::collections::HashMap;
 
-use super::fill::Entries;
+use super::entries::Entries;
 
 /// Unknowns by kind, in the order in which the kinds are eliminated, and which kinds meet.
 pub(super) struct Ordering {

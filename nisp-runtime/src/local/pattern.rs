@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use super::cholesky::Cholesky;
-use super::fill::{Entries, Fill};
+use super::entries::Entries;
+use super::fill::Fill;
 use super::spare::Spare;
 
 /// Entries of the lower triangle, and how factors fill it.
