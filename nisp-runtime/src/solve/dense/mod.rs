@@ -4,6 +4,7 @@
 //! that the number of threads does not change a bit. Matrices of rows (Jacobians) are row-major; square matrices are
 //! column-major with only their lower triangle in use: row-major, with only their upper triangle.
 
+mod blocks;
 mod cholesky;
 pub(crate) mod rows;
 

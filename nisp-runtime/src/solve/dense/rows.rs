@@ -5,13 +5,12 @@
 
 use rayon::prelude::*;
 
+use super::blocks::{BLOCK, Diagonal, Substitution};
 use crate::gemm::{Left, Right, Shape, Write, gemm};
-use crate::simd::{Isa, Kernel, Simd, dispatch};
+use crate::simd::{Isa, dispatch};
 
 /// Rows are as long as a multiple of this: whole vectors of any instruction set.
 pub(crate) const ALIGN: usize = 8;
-/// Rows that are eliminated one by one, before all that is below them is.
-const BLOCK: usize = 32;
 /// Rows that are eliminated before the rest of the matrix is updated.
 const PANEL: usize = 4 * BLOCK;
 /// Rows of a task: their number and shape depend on the matrix alone, so that the number of threads changes no bit.
@@ -80,7 +79,7 @@ impl Strip {
                 gemm(isa, shape, Left::transposed(&rows[first..], stride), right, x, sides, Write::Subtract);
             }
             let rows = &rows[first * (stride + 1)..];
-            dispatch(isa, Substitution { rows, stride, count, x, sides, transposed: true });
+            dispatch(isa, Substitution { rows, stride, count, x, apart: sides, sides, transposed: true });
         }
     }
 
@@ -96,36 +95,52 @@ impl Strip {
                 let right = Right::Rows { elements: after, stride: sides };
                 gemm(isa, shape, Left::rows(&rows[count..], stride), right, x, sides, Write::Subtract);
             }
-            dispatch(isa, Substitution { rows, stride, count, x, sides, transposed: false });
+            dispatch(isa, Substitution { rows, stride, count, x, apart: sides, sides, transposed: false });
         }
     }
 }
 
 /// Eliminates so many rows, as far apart as given, of which the first one's diagonal stands in the given column.
 fn eliminate(isa: Isa, rows: &mut [f64], (at, height, stride): (usize, usize, usize)) -> bool {
-    let mut solved = Vec::new();
-    let mut inverse = [0.0; BLOCK * BLOCK];
+    let mut block = [0.0; BLOCK * BLOCK];
     for first in (0..height).step_by(BLOCK) {
         let count = BLOCK.min(height - first);
         let (own, below) = rows[first * stride..].split_at_mut(count * stride);
-        if !dispatch(isa, Diagonal { rows: &mut own[at + first..], stride, count, inverse: &mut inverse }) {
+        if !dispatch(isa, Diagonal { rows: &mut own[at + first..], stride, count, block: &mut block }) {
             return false;
         }
         let start = (at + first + count).next_multiple_of(ALIGN);
-        let columns = stride - start;
-        if columns == 0 {
-            continue;
+        if start < stride {
+            divide(isa, &block, own, (count, stride, start));
+            subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
         }
-        // Right of the diagonal: U^-T times what stands there.
-        solved.resize(count * columns, 0.0);
-        let (shape, left) = (Shape { rows: count, columns, inner: count }, Left::transposed(&inverse, BLOCK));
-        gemm(isa, shape, left, Right::Rows { elements: &own[start..], stride }, &mut solved, columns, Write::Set);
-        for (row, solved) in own.chunks_exact_mut(stride).zip(solved.chunks_exact(columns)) {
-            row[start..].copy_from_slice(solved);
-        }
-        subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
     }
     true
+}
+
+/// Makes `U^-T` times themselves of so many rows, as far apart as given, from a column on; `U` is the block left of them. Not by its inverse,
+/// which loses the digits of small pivots.
+fn divide(isa: Isa, block: &[f64], rows: &mut [f64], (count, stride, start): (usize, usize, usize)) {
+    let sides = stride - start;
+    for first in (0..count).step_by(ALIGN) {
+        let height = ALIGN.min(count - first);
+        let (before, own) = rows.split_at_mut(first * stride);
+        if first > 0 {
+            let shape = Shape { rows: height, columns: sides, inner: first };
+            let right = Right::Rows { elements: &before[start..], stride };
+            gemm(
+                isa,
+                shape,
+                Left::transposed(&block[first..], BLOCK),
+                right,
+                &mut own[start..],
+                stride,
+                Write::Subtract,
+            );
+        }
+        let (rows, x) = (&block[first * (BLOCK + 1)..], &mut own[start..]);
+        dispatch(isa, Substitution { rows, stride: BLOCK, count: height, x, apart: stride, sides, transposed: true });
+    }
 }
 
 /// Subtracts `u^T u` from rows, on and right of the diagonal: `u` has so many rows, as far apart as given; the rows are as far
@@ -143,84 +158,6 @@ fn subtract_square(isa: Isa, (u, apart, inner): (&[f64], usize, usize), rows: &m
     } else {
         rows.par_chunks_mut(HEIGHT * stride).enumerate().for_each(task);
     }
-}
-
-/// The factor of a block on the diagonal, in place, and its inverse.
-struct Diagonal<'a> {
-    rows: &'a mut [f64],
-    stride: usize,
-    count: usize,
-    inverse: &'a mut [f64; BLOCK * BLOCK],
-}
-
-impl Kernel<f64> for Diagonal<'_> {
-    type Output = bool;
-    #[inline(always)]
-    fn run<V: Simd<Elem = f64>>(self) -> bool {
-        let Self { rows, stride, count, inverse } = self;
-        for k in 0..count {
-            let end = rows.len().min((k + 1) * stride);
-            let (upper, below) = rows.split_at_mut(end);
-            let row = &mut upper[k * stride..][..count];
-            let pivot = row[k];
-            if pivot.is_nan() || pivot <= 0.0 {
-                return false;
-            }
-            let root = pivot.sqrt();
-            row[k..].iter_mut().for_each(|x| *x /= root);
-            for (i, other) in below.chunks_mut(stride).take(count - k - 1).enumerate() {
-                subtract(&mut other[k + 1 + i..count], row[k + 1 + i], &row[k + 1 + i..]);
-            }
-        }
-        for i in (0..count).rev() {
-            let (row, below) = inverse[i * BLOCK..].split_at_mut(BLOCK);
-            row.fill(0.0);
-            row[i] = 1.0;
-            for (k, other) in below.chunks_exact(BLOCK).take(count - i - 1).enumerate() {
-                subtract(row, rows[i * stride + i + 1 + k], other);
-            }
-            let diagonal = rows[i * stride + i];
-            row.iter_mut().for_each(|x| *x /= diagonal);
-        }
-        true
-    }
-}
-
-/// Solves with a block on the diagonal, or with its transpose.
-struct Substitution<'a> {
-    rows: &'a [f64],
-    stride: usize,
-    count: usize,
-    x: &'a mut [f64],
-    sides: usize,
-    transposed: bool,
-}
-
-impl Kernel<f64> for Substitution<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: Simd<Elem = f64>>(self) {
-        let Self { rows, stride, count, x, sides, transposed } = self;
-        for step in 0..count {
-            let k = if transposed { step } else { count - 1 - step };
-            let (own, after) = x[k * sides..].split_at_mut(sides);
-            let row = &rows[k * (stride + 1)..][..count - k];
-            let others = after.chunks_exact_mut(sides).zip(&row[1..]);
-            if transposed {
-                own.iter_mut().for_each(|x| *x /= row[0]);
-                others.for_each(|(other, factor)| subtract(other, *factor, own));
-            } else {
-                others.for_each(|(other, factor)| subtract(own, *factor, other));
-                own.iter_mut().for_each(|x| *x /= row[0]);
-            }
-        }
-    }
-}
-
-/// Subtracts a multiple.
-#[inline(always)]
-fn subtract(from: &mut [f64], factor: f64, what: &[f64]) {
-    from.iter_mut().zip(what).for_each(|(from, what)| *from -= factor * what);
 }
 
 #[cfg(test)]
