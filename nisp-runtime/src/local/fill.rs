@@ -149,13 +149,14 @@ impl Fill {
         let all: usize = (0..work.len()).filter(|&at| parent[at] == usize::MAX).map(|at| work[at]).sum();
         let small = |at: usize| work[at] <= (all / PART).max(FEW);
         let mut first = 0;
-        for at in 0..self.nodes.len() {
-            if !small(at) {
-                first = at + 1;
-            } else if parent[at] == usize::MAX || !small(parent[at]) {
-                self.subtrees.push(first..at + 1);
-                first = at + 1;
+        for (at, &parent) in parent.iter().enumerate() {
+            if small(at) && parent != usize::MAX && small(parent) {
+                continue;
             }
+            if small(at) {
+                self.subtrees.push(first..at + 1);
+            }
+            first = at + 1;
         }
     }
 }

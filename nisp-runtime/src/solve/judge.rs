@@ -131,7 +131,14 @@ impl Judge {
         } else {
             self.since_best += 1;
         }
-        if self.since_best > self.patience(step) { Judgement::GiveUp } else { Judgement::GoOn }
+        if self.since_best <= self.patience(step) {
+            Judgement::GoOn
+        } else if close && step.decrement.is_some() {
+            // There is no way on, and by the model's word nothing at its end.
+            Judgement::Converged
+        } else {
+            Judgement::GiveUp
+        }
     }
 
     /// Steps without progress after which there will be none. Steps of a constant rate end on a plateau whose height is the
