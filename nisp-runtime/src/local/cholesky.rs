@@ -8,7 +8,6 @@ use std::sync::Arc;
 use rayon::prelude::*;
 
 use super::fill::{Fill, Node};
-use super::spare::Spare;
 use crate::gemm::{Left, Right, Shape, Write, gemm};
 use crate::simd::Isa;
 use crate::solve::dense::rows::{ALIGN, Strip};
@@ -38,7 +37,6 @@ impl Cholesky {
         let isa = Isa::detect();
         let mut rows = fill.spare.zeros(fill.nodes.iter().map(|node| node.strip.len()).sum())?;
         fill.targets.iter().zip(values).for_each(|(&target, value)| rows[target] += value);
-        let between = Spare::default();
         let mut rest = rows.as_mut_slice();
         let front = |node: &Node| {
             let (rows, after) = std::mem::take(&mut rest).split_at_mut(node.strip.len());
@@ -56,11 +54,11 @@ impl Cholesky {
         let subtrees: Vec<(usize, &mut [Front])> = fill.subtrees.iter().map(subtree).collect();
         let whole = |(first, own): (usize, &mut [Front])| {
             let mut nodes = first..first + own.len();
-            nodes.try_for_each(|node| eliminate(fill, isa, &between, (first, own), node))
+            nodes.try_for_each(|node| eliminate(fill, isa, (first, own), node))
         };
         subtrees.into_par_iter().map(whole).collect::<Option<()>>()?;
         let mut above = (0..fill.nodes.len()).filter(|&node| !fill.subtrees.iter().any(|own| own.contains(&node)));
-        above.try_for_each(|node| eliminate(fill, isa, &between, (0, &mut fronts), node))?;
+        above.try_for_each(|node| eliminate(fill, isa, (0, &mut fronts), node))?;
         rows.iter().all(|x| x.is_finite()).then(|| Self { fill: fill.clone(), isa, rows, lift: 0.0 })
     }
 
@@ -129,17 +127,17 @@ impl Drop for Cholesky {
     }
 }
 
-/// Eliminates a node, whose children were eliminated, among fronts of which the number of the first is given; memory goes from one
-/// node to the next. Nothing where the matrix is not positive definite, or memory too small.
-fn eliminate(fill: &Fill, isa: Isa, between: &Spare, (first, fronts): (usize, &mut [Front]), at: usize) -> Option<()> {
+/// Eliminates a node, whose children were eliminated, among fronts of which the number of the first is given. Nothing where the
+/// matrix is not positive definite, or memory too small.
+fn eliminate(fill: &Fill, isa: Isa, (first, fronts): (usize, &mut [Front]), at: usize) -> Option<()> {
     let node = &fill.nodes[at];
     let (below, own) = fronts.split_at_mut(at - first);
     let front = &mut own[0];
-    front.left = between.zeros(node.others.len() * apart(node))?;
+    front.left = fill.spare.zeros(node.others.len() * apart(node))?;
     for &child in &node.children {
         let left = std::mem::take(&mut below[child - first].left);
         front.take_up(node, &fill.nodes[child], &left);
-        between.give_back(left);
+        fill.spare.give_back(left);
     }
     if !node.strip.eliminate(isa, front.rows) {
         return None;

@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Default)]
 pub(super) struct Spare(Mutex<Vec<Vec<f64>>>);
 
-/// Times as much memory as is asked for, which a vector that is taken may have.
+/// Times as much memory as is asked for, or as little, that a vector which is taken may have.
 const ROOM: usize = 4;
 
 impl Spare {
@@ -19,11 +19,12 @@ impl Spare {
         Some(zeros)
     }
 
-    /// The smallest of the vectors that have the room.
+    /// The smallest of the vectors that have the room, or else the largest of the others, which grows.
     fn taken(&self, len: usize) -> Option<Vec<f64>> {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let fits = |at: &usize| (len..=ROOM * len).contains(&all[*at].capacity());
-        let at = (0..all.len()).filter(fits).min_by_key(|&at| all[at].capacity())?;
+        let near = (0..all.len()).filter(|&at| (len / ROOM..=ROOM * len).contains(&all[at].capacity()));
+        let lacks = |at: usize| len.saturating_sub(all[at].capacity());
+        let at = near.min_by_key(|&at| (lacks(at), all[at].capacity()))?;
         Some(all.swap_remove(at))
     }
 
@@ -49,7 +50,11 @@ mod tests {
         let other = spare.zeros(10).unwrap();
         assert_ne!(other.as_ptr(), place);
         let again = spare.zeros(50).unwrap();
-        assert_eq!((again.as_ptr(), again), (place, vec![0.0; 50]));
+        assert_eq!((again.as_ptr(), &again), (place, &vec![0.0; 50]));
+        assert!(spare.0.lock().unwrap().is_empty());
+        // What is too small grows, and is no longer kept beside what it has grown to.
+        spare.give_back(again);
+        assert_eq!(spare.zeros(150).unwrap(), vec![0.0; 150]);
         assert!(spare.0.lock().unwrap().is_empty());
     }
 }

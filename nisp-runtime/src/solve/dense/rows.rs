@@ -45,18 +45,18 @@ impl Strip {
     /// From rows of a matrix to those of its factor; false where it is not positive definite in this precision.
     pub(crate) fn eliminate(self, isa: Isa, rows: &mut [f64]) -> bool {
         let Self { width, stride } = self;
-        (0..width).step_by(PANEL).all(|first| {
+        for first in (0..width).step_by(PANEL) {
             let count = PANEL.min(width - first);
             let (own, below) = rows[first * stride..].split_at_mut(count * stride);
-            let done = eliminate(isa, own, (first, count, stride));
-            let start = first + count;
-            done && {
-                if !below.is_empty() {
-                    subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
-                }
-                true
+            if !eliminate(isa, own, (first, count, stride)) {
+                return false;
             }
-        })
+            if !below.is_empty() {
+                let start = first + count;
+                subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
+            }
+        }
+        true
     }
 
     /// Subtracts from the matrix of the others, of rows as long as the next multiple of [`ALIGN`], what the eliminated rows say of it.
