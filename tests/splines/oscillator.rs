@@ -124,7 +124,7 @@ fn a_drive_that_changes_from_row_to_row_is_no_filtered_noise() {
         (hertz, 0.01 / stiffness, 3.0 * normal())
     };
     let waves: Vec<(f64, f64, f64)> = (1..=200).map(f64::from).map(wave).collect();
-    let mut solution = solve(&record_of(&waves, 800, 2e-5), Carrier::Auto);
+    let solution = solve(&record_of(&waves, 800, 2e-5), Carrier::Auto);
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
     let drive = of(&solution.evaluate(&times(800)), "u").values.clone();
     let exact: Vec<f64> = times(800).into_iter().map(|t| driven_by(&waves, t).1).collect();
