@@ -54,9 +54,9 @@ struct Growing {
     zeros: usize,
 }
 
-/// Of products of all, the part of a subtree that one thread may do by itself.
+/// One thread does a subtree by itself whose products are no more than all of them divided by this.
 const PART: usize = 8;
-/// Products that are too few for two threads.
+/// Products so few that one thread does them all.
 const FEW: usize = 1 << 20;
 
 impl Fill {

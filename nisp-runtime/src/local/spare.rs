@@ -6,7 +6,7 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Default)]
 pub(super) struct Spare(Mutex<Vec<Vec<f64>>>);
 
-/// Times as much memory as is asked for, or as little, that a vector which is taken may have.
+/// A vector is taken if it has at most this many times the memory that is asked for, and at least that part of it.
 const ROOM: usize = 4;
 
 impl Spare {

@@ -118,8 +118,8 @@ fn eliminate(isa: Isa, rows: &mut [f64], (at, height, stride): (usize, usize, us
     true
 }
 
-/// Makes `U^-T` times themselves of so many rows, as far apart as given, from a column on; `U` is the block left of them. Not by its inverse,
-/// which loses the digits of small pivots.
+/// Replaces rows, as far apart as given, by `U^-T` times them from a column on; `U` is the block on the diagonal left of there. By
+/// substitution: the inverse of a block loses the digits of small pivots.
 fn divide(isa: Isa, block: &[f64], rows: &mut [f64], (count, stride, start): (usize, usize, usize)) {
     let sides = stride - start;
     for first in (0..count).step_by(ALIGN) {
