@@ -23,14 +23,17 @@ unsafe impl<E: Sync> Sync for AlignedVec<E> {}
 impl<E: Real> AlignedVec<E> {
     /// A buffer of `len` zeros.
     pub fn zeros(len: usize) -> Self {
+        Self::try_zeros(len).unwrap_or_else(|| handle_alloc_error(layout::<E>(len)))
+    }
+
+    /// The same; nothing where memory is too small.
+    pub fn try_zeros(len: usize) -> Option<Self> {
         if len == 0 {
-            return Self { start: NonNull::dangling(), len };
+            return Some(Self { start: NonNull::dangling(), len });
         }
-        let layout = layout::<E>(len);
         // SAFETY: the layout has a size. All bits zero is the number zero in both element types.
-        let start = unsafe { alloc_zeroed(layout) };
-        let start = NonNull::new(start.cast::<E>()).unwrap_or_else(|| handle_alloc_error(layout));
-        Self { start, len }
+        let start = unsafe { alloc_zeroed(layout::<E>(len)) };
+        Some(Self { start: NonNull::new(start.cast::<E>())?, len })
     }
 }
 

@@ -1,16 +1,18 @@
 //! Cholesky factors of a sparse symmetric matrix, and what they say of it.
 //!
-//! Node by node (multifrontal; Duff and Reid 1983): the rows of a node are eliminated as a dense strip, and what they leave to others
-//! waits beside it until their parent takes it up.
+//! Node by node (multifrontal; Duff and Reid 1983): the rows of a node are eliminated as a dense strip, and what they take from the
+//! others that they meet waits beside it until their parent subtracts it.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use rayon::prelude::*;
 
 use super::fill::{Fill, Node};
+use crate::aligned::AlignedVec;
 use crate::gemm::{Left, Right, Shape, Write, gemm};
 use crate::simd::Isa;
-use crate::solve::dense::rows::{ALIGN, Strip};
+use crate::solve::dense::rows::ALIGN;
 
 /// Right-hand sides that are solved for side by side.
 const SIDES: usize = 32;
@@ -20,32 +22,33 @@ pub(super) struct Cholesky {
     fill: Arc<Fill>,
     isa: Isa,
     /// The strips of all nodes.
-    rows: Vec<f64>,
+    rows: AlignedVec<f64>,
     /// What the diagonal of `H` was raised by, as a share of itself.
     pub(super) lift: f64,
 }
 
-/// A node's rows of the factor, and what they leave to the others that they meet.
+/// A node's rows of the factor, and what is to be subtracted for them from the rows of the others that they meet.
 struct Front<'a> {
     rows: &'a mut [f64],
-    left: Vec<f64>,
+    taken: AlignedVec<f64>,
 }
 
 impl Cholesky {
     /// Factors of a matrix, of which the lower triangle is given; nothing where it is not positive definite, or memory too small.
     pub(super) fn of(fill: &Arc<Fill>, values: &[f64]) -> Option<Self> {
         let isa = Isa::detect();
-        let mut rows = fill.spare.zeros(fill.nodes.iter().map(|node| node.strip.len()).sum())?;
+        let len = fill.nodes.iter().map(|node| node.strip.len()).sum();
+        let mut rows = fill.spare.zeros(len)?;
         fill.targets.iter().zip(values).for_each(|(&target, value)| rows[target] += value);
-        let mut rest = rows.as_mut_slice();
+        let mut rest = &mut *rows;
         let front = |node: &Node| {
             let (rows, after) = std::mem::take(&mut rest).split_at_mut(node.strip.len());
             rest = after;
-            Front { rows, left: Vec::new() }
+            Front { rows, taken: AlignedVec::default() }
         };
         let mut fronts: Vec<Front> = fill.nodes.iter().map(front).collect();
         let (mut rest, mut done) = (fronts.as_mut_slice(), 0);
-        let subtree = |subtree: &std::ops::Range<usize>| {
+        let subtree = |subtree: &Range<usize>| {
             let after = std::mem::take(&mut rest).split_at_mut(subtree.start - done).1;
             let (own, after) = after.split_at_mut(subtree.len());
             (rest, done) = (after, subtree.end);
@@ -59,7 +62,7 @@ impl Cholesky {
         subtrees.into_par_iter().map(whole).collect::<Option<()>>()?;
         let mut above = (0..fill.nodes.len()).filter(|&node| !fill.subtrees.iter().any(|own| own.contains(&node)));
         above.try_for_each(|node| eliminate(fill, isa, (0, &mut fronts), node))?;
-        rows.iter().all(|x| x.is_finite()).then(|| Self { fill: fill.clone(), isa, rows, lift: 0.0 })
+        rows[..len].iter().all(|x| x.is_finite()).then(|| Self { fill: fill.clone(), isa, rows, lift: 0.0 })
     }
 
     /// `H^-1` times vectors; nothing where memory is too small.
@@ -77,7 +80,7 @@ impl Cholesky {
             fill.places.iter().zip(*right).for_each(|(place, b)| x[place * sides + side] = *b);
         }
         let most = fill.nodes.iter().map(|node| node.others.len()).max().unwrap_or(0);
-        let mut of_others = fill.spare.zeros(most * sides)?;
+        let mut of_others = fill.spare.any(most * sides)?;
         let own = |node: &Node| node.first * sides..(node.first + node.strip.width) * sides;
         for node in &fill.nodes {
             let (rows, strip, count) = (self.rows_of(node), node.strip, node.others.len());
@@ -132,39 +135,45 @@ impl Drop for Cholesky {
 fn eliminate(fill: &Fill, isa: Isa, (first, fronts): (usize, &mut [Front]), at: usize) -> Option<()> {
     let node = &fill.nodes[at];
     let (below, own) = fronts.split_at_mut(at - first);
-    let front = &mut own[0];
-    front.left = fill.spare.zeros(node.others.len() * apart(node))?;
+    let (Front { rows, taken }, strip) = (&mut own[0], node.strip);
     for &child in &node.children {
-        let left = std::mem::take(&mut below[child - first].left);
-        front.take_up(node, &fill.nodes[child], &left);
-        fill.spare.give_back(left);
+        let (child, from) = (&fill.nodes[child], &below[child - first].taken);
+        child.pass_on(from, 0..strip.width, rows, strip.stride, |own, taken| *own -= taken);
     }
-    if !node.strip.eliminate(isa, front.rows) {
+    if !strip.eliminate(isa, rows) {
         return None;
     }
-    node.strip.update(isa, front.rows, &mut front.left);
+    let count = node.others.len();
+    *taken = fill.spare.any(count * strip.apart())?;
+    strip.taken(isa, rows, &mut taken[..count * strip.apart()]);
+    for &child in &node.children {
+        let from = std::mem::take(&mut below[child - first].taken);
+        let columns = strip.others()..strip.stride;
+        fill.nodes[child].pass_on(&from, columns, taken, strip.apart(), |own, taken| *own += taken);
+        fill.spare.give_back(from);
+    }
     Some(())
 }
 
-impl Front<'_> {
-    /// Adds what a child has left to this node.
-    fn take_up(&mut self, node: &Node, child: &Node, left: &[f64]) {
-        let Strip { width, stride } = node.strip;
-        let others = node.strip.others();
-        for ((at, &row), left) in child.columns.iter().enumerate().zip(left.chunks_exact(apart(child).max(1))) {
-            let (own, shift) = if row < width {
-                (&mut self.rows[row * stride..][..stride], 0)
-            } else {
-                (&mut self.left[(row - others) * apart(node)..], others)
-            };
-            child.columns[at..].iter().zip(&left[at..]).for_each(|(column, x)| own[column - shift] += x);
+impl Node {
+    /// Joins what this node has taken from others, those that are such columns of its parent, to the parent's rows for them, which
+    /// begin with the first of these columns.
+    fn pass_on(&self, taken: &[f64], own: Range<usize>, rows: &mut [f64], stride: usize, join: impl Fn(&mut f64, f64)) {
+        for (number, run) in self.runs.iter().enumerate() {
+            let columns = run.column.max(own.start)..(run.column + run.len).min(own.end);
+            for column in columns {
+                let at = column - run.column;
+                let row = &mut rows[(column - own.start) * stride..];
+                let from = &taken[(run.first + at) * self.strip.apart()..];
+                let mut add = |first: usize, column: usize, len: usize| {
+                    let to = &mut row[column - own.start..][..len];
+                    to.iter_mut().zip(&from[first..]).for_each(|(own, taken)| join(own, *taken));
+                };
+                add(run.first + at, column, run.len - at);
+                self.runs[number + 1..].iter().for_each(|run| add(run.first, run.column, run.len));
+            }
         }
     }
-}
-
-/// Length of the rows of what a node leaves to others.
-fn apart(node: &Node) -> usize {
-    node.strip.stride - node.strip.others()
 }
 
 #[cfg(test)]
@@ -180,12 +189,10 @@ mod tests {
             a.0.abs_diff(b.0) < 2 && a.1.abs_diff(b.1) < 2
         };
         let count = side * side * fields;
-        let columns: Vec<Vec<usize>> = (0..count).map(|a| (a..count).filter(|&b| near(a, b)).collect()).collect();
-        let starts: Vec<usize> = (0..=count).map(|end| columns[..end].iter().map(Vec::len).sum()).collect();
+        let entries = Entries::of((0..count).map(|a| (a..count).filter(|&b| near(a, b)).collect()));
         let entry = |(a, b): (usize, usize)| if a == b { 12.0 * fields as f64 } else { ((a * 7 + b * 3) as f64).sin() };
-        let values =
-            columns.iter().enumerate().flat_map(|(a, rows)| rows.iter().map(move |&b| entry((a, b)))).collect();
-        (Entries { starts, rows: columns.concat() }, values)
+        let values = (0..count).flat_map(|a| entries.column(a).iter().map(move |&b| entry((a, b)))).collect();
+        (entries, values)
     }
 
     /// Against dense factors, on lattices small enough for one subtree and large enough for several.

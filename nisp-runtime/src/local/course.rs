@@ -203,11 +203,10 @@ impl Solver {
             fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
             damping = wanted;
             let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
-            let used = match self.knows_noise() {
-                true => 0.0,
-                false => mean(&factor.inner(&probes).ok_or(LocalError::Memory)?),
-            };
-            let (step, shared) = self.normal.step_with(&factor, &held).ok_or(LocalError::Factorisation)?;
+            let asked_too = if self.knows_noise() { &[][..] } else { &probes[..] };
+            let found = self.normal.step_with(&factor, &held, asked_too).ok_or(LocalError::Factorisation)?;
+            let (step, shared, inner) = found;
+            let used = if inner.is_empty() { 0.0 } else { mean(&inner) };
             // The model holds no farther than a few natural sizes of the state; the first, of data alone, is exact.
             let largest = fields.iter().map(|&at| step[at].abs()).fold(0.0, f64::max);
             let boldest = shared[..state.learned.len()].iter().fold(0.0f64, |most, x| most.max(x.abs()));

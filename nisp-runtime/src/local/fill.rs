@@ -7,6 +7,8 @@
 use std::ops::Range;
 use std::sync::Arc;
 
+use rayon::prelude::*;
+
 use super::entries::Entries;
 use super::ordering::Ordering;
 use super::spare::Spare;
@@ -37,8 +39,16 @@ pub(super) struct Node {
     /// When the others are eliminated that they meet.
     pub(super) others: Vec<usize>,
     pub(super) children: Vec<usize>,
-    /// Columns of the others among those of the parent.
-    pub(super) columns: Vec<usize>,
+    /// The others among the columns of the parent.
+    pub(super) runs: Vec<Run>,
+}
+
+/// Unknowns that follow each other among those that a node meets, and among its parent's columns.
+pub(super) struct Run {
+    pub(super) first: usize,
+    pub(super) len: usize,
+    /// Column of the first of them in the parent.
+    pub(super) column: usize,
 }
 
 /// A node while it grows, in kinds of unknowns.
@@ -92,45 +102,38 @@ impl Fill {
                 start: start - strip.len(),
                 others,
                 children: from.children.iter().map(|&child| number[child]).collect(),
-                columns: Vec::new(),
+                runs: Vec::new(),
             }
         };
         let nodes = order.iter().map(node).collect();
-        let mut fill = Self { places, nodes, targets: vec![0; entries.rows.len()], spare, subtrees: Vec::new() };
+        let mut fill = Self { places, nodes, targets: Vec::new(), spare, subtrees: Vec::new() };
         fill.find(entries);
         fill.share();
         Some(fill)
     }
 
-    /// Finds where entries of the matrix belong, and where those that children leave.
+    /// Finds where entries of the matrix belong, and what nodes have taken from others.
     fn find(&mut self, entries: &Entries) {
-        // By place, the entries of its row of the factor: the last one, and by entry the one before.
-        let (mut last, mut before) = (vec![usize::MAX; entries.len()], vec![usize::MAX; entries.rows.len()]);
-        let mut column_of = vec![0; entries.rows.len()];
-        for column in 0..entries.len() {
-            for at in entries.starts[column]..entries.starts[column + 1] {
-                let (a, b) = (self.places[column], self.places[entries.rows[at]]);
-                column_of[at] = a.max(b);
-                before[at] = std::mem::replace(&mut last[a.min(b)], at);
-            }
+        let mut node_of = vec![0; entries.len()];
+        for (at, node) in self.nodes.iter().enumerate() {
+            node_of[node.first..][..node.strip.width].fill(at);
         }
-        // By place, the column of the node that is looked at.
-        let mut columns = vec![0; entries.len()];
+        let (nodes, places) = (&self.nodes, &self.places);
+        let target = |column: usize, row: usize| {
+            let (a, b) = (places[column].min(places[row]), places[column].max(places[row]));
+            let node = &nodes[node_of[a]];
+            node.start + (a - node.first) * node.strip.stride + node.column(b)
+        };
+        let of_column = |column| entries.column(column).iter().map(move |&row| (column, row));
+        self.targets = (0..entries.len())
+            .into_par_iter()
+            .flat_map_iter(of_column)
+            .map(|(column, row)| target(column, row))
+            .collect();
         for at in 0..self.nodes.len() {
-            let node = &self.nodes[at];
-            let own = node.first..node.first + node.strip.width;
-            own.clone().for_each(|place| columns[place] = place - node.first);
-            node.others.iter().enumerate().for_each(|(at, &place)| columns[place] = node.strip.others() + at);
-            for row in 0..node.strip.width {
-                let mut entry = last[node.first + row];
-                while entry != usize::MAX {
-                    self.targets[entry] = node.start + row * node.strip.stride + columns[column_of[entry]];
-                    entry = before[entry];
-                }
-            }
-            for child in node.children.clone() {
-                let child = &mut self.nodes[child];
-                child.columns = child.others.iter().map(|&place| columns[place]).collect();
+            for child in self.nodes[at].children.clone() {
+                let runs = runs(self.nodes[child].others.iter().map(|&place| self.nodes[at].column(place)));
+                self.nodes[child].runs = runs;
             }
         }
     }
@@ -159,6 +162,28 @@ impl Fill {
             first = at + 1;
         }
     }
+}
+
+impl Node {
+    /// Where its rows have the unknown that is eliminated then.
+    fn column(&self, place: usize) -> usize {
+        match place.checked_sub(self.first + self.strip.width) {
+            None => place - self.first,
+            Some(_) => self.strip.others() + self.others.partition_point(|&other| other < place),
+        }
+    }
+}
+
+/// Columns that rise, as runs of such that follow each other.
+fn runs(columns: impl Iterator<Item = usize>) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    for (at, column) in columns.enumerate() {
+        match runs.last_mut() {
+            Some(run) if run.column + run.len == column => run.len += 1,
+            _ => runs.push(Run { first: at, len: 1, column }),
+        }
+    }
+    runs
 }
 
 /// The nodes, in the order in which they were found.

@@ -87,9 +87,7 @@ mod tests {
             let near = (column..8).filter(move |&row| place(row).abs_diff(place(column)) < 2);
             near.collect::<Vec<usize>>()
         };
-        let columns: Vec<Vec<usize>> = (0..8).map(column).collect();
-        let starts = (0..=8).map(|end| columns[..end].iter().map(Vec::len).sum()).collect();
-        let entries = Entries { starts, rows: columns.concat() };
+        let entries = Entries::of((0..8).map(column));
         assert_eq!(alike(&entries), [[0, 4], [1, 5], [2, 6], [3, 7]]);
         let ordering = Ordering::of(&entries).unwrap();
         for members in &ordering.members {

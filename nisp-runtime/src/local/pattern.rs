@@ -25,20 +25,13 @@ pub(super) struct Part {
 }
 
 impl Pattern {
-    /// The pattern of a matrix whose columns have entries in these rows, each on and below the diagonal and in order; nothing where memory is too
-    /// small.
-    pub(super) fn new(columns: &[Vec<usize>]) -> Option<Self> {
-        Self::with(columns, Arc::default())
+    /// The pattern of a matrix with these entries; nothing where no order of elimination is found.
+    pub(super) fn new(entries: Entries) -> Option<Self> {
+        Self::with(entries, Arc::default())
     }
 
     /// The same, with memory that others have left.
-    fn with(columns: &[Vec<usize>], spare: Arc<Spare>) -> Option<Self> {
-        let mut starts = vec![0];
-        starts.extend(columns.iter().scan(0, |end, column| {
-            *end += column.len();
-            Some(*end)
-        }));
-        let entries = Entries { starts, rows: columns.concat() };
+    fn with(entries: Entries, spare: Arc<Spare>) -> Option<Self> {
         let fill = Arc::new(Fill::of(&entries, spare)?);
         Some(Self { entries, fill })
     }
@@ -53,20 +46,19 @@ impl Pattern {
         &self.entries.rows
     }
 
-    /// The part of the free unknowns; nothing where memory is too small.
+    /// The part of the free unknowns; nothing where no order of elimination is found.
     pub(super) fn part(&self, free: &[bool]) -> Option<Part> {
         let numbers: Vec<usize> = (0..free.len()).filter(|&at| free[at]).collect();
         let mut own = vec![usize::MAX; free.len()];
         numbers.iter().enumerate().for_each(|(at, &number)| own[number] = at);
-        let mut places = Vec::new();
-        let column = |&number: &usize| {
-            let range = self.starts()[number]..self.starts()[number + 1];
-            let kept: Vec<usize> = range.filter(|&place| free[self.rows()[place]]).collect();
-            places.extend_from_slice(&kept);
-            kept.iter().map(|&place| own[self.rows()[place]]).collect()
-        };
-        let columns: Vec<Vec<usize>> = numbers.iter().map(column).collect();
-        Some(Part { free: free.to_vec(), pattern: Self::with(&columns, self.fill.spare.clone())?, numbers, places })
+        let (mut places, mut entries) = (Vec::new(), Entries::default());
+        for &number in &numbers {
+            let column = self.starts()[number]..self.starts()[number + 1];
+            places.extend(column.filter(|&place| free[self.rows()[place]]));
+            let begun = entries.rows.len();
+            entries.push(places[begun..].iter().map(|&place| own[self.rows()[place]]));
+        }
+        Some(Part { free: free.to_vec(), pattern: Self::with(entries, self.fill.spare.clone())?, numbers, places })
     }
 
     /// Cholesky factors of a matrix with these entries; where rounding spoils that it is positive definite, of one with some more
@@ -132,7 +124,7 @@ mod tests {
     /// [[4, 1, 0], [1, 3, 1], [0, 1, 2]] without its second unknown is diag(4, 2).
     #[test]
     fn a_part_leaves_the_others_at_zero() {
-        let pattern = Pattern::new(&[vec![0, 1], vec![1, 2], vec![2]]).unwrap();
+        let pattern = Pattern::new(Entries::of([vec![0, 1], vec![1, 2], vec![2]])).unwrap();
         let values = [4.0, 1.0, 3.0, 1.0, 2.0];
         assert_eq!(pattern.times(&values, &[1.0, 2.0, 3.0]), [6.0, 10.0, 8.0]);
         let part = pattern.part(&[true, false, true]).unwrap();
@@ -148,15 +140,15 @@ mod tests {
         let n = 60;
         let chain: Vec<Vec<usize>> = (0..n).map(|at| (at..n.min(at + 2)).collect()).collect();
         let values: Vec<f64> = (0..n).flat_map(|at| [2.0, -1.0].into_iter().take(n.min(at + 2) - at)).collect();
-        let found = Pattern::new(&chain).unwrap().factor(&values).unwrap().log_determinant().unwrap();
+        let found = Pattern::new(Entries::of(chain)).unwrap().factor(&values).unwrap().log_determinant().unwrap();
         assert!((found - (n as f64 + 1.0).ln()).abs() < 1e-12, "{found}");
         let full: Vec<Vec<usize>> = (0..n).map(|at| (at..n).collect()).collect();
         let entry = |(at, row): (usize, usize)| if row == at { 1.0 + n as f64 } else { 1.0 };
         let values: Vec<f64> = (0..n).flat_map(|at| (at..n).map(move |row| entry((at, row)))).collect();
-        let found = Pattern::new(&full).unwrap().factor(&values).unwrap().log_determinant().unwrap();
+        let found = Pattern::new(Entries::of(full)).unwrap().factor(&values).unwrap().log_determinant().unwrap();
         assert!((found - (2.0f64.ln() + n as f64 * (n as f64).ln())).abs() < 1e-10, "{found}");
         // Two equal rows: rounding, or a diagonal that was raised, hide that there is none.
-        let same = Pattern::new(&[vec![0, 1], vec![1]]).unwrap().factor(&[1.0, 1.0, 1.0]).unwrap();
+        let same = Pattern::new(Entries::of([vec![0, 1], vec![1]])).unwrap().factor(&[1.0, 1.0, 1.0]).unwrap();
         assert!(same.lift > 0.0 && same.log_determinant().is_none());
     }
 }

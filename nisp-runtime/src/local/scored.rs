@@ -39,11 +39,15 @@ impl Scored {
         add(block, by, &mut self.right, &mut self.below);
     }
 
-    /// The score beside what rows say of the unknowns, `J^T r`, to which a prior may belong; nothing of what rows do not tell from these.
-    pub(super) fn score(&self, factor: &Factor, (gradient, below): (&[f64], &[f64]), by_prior: bool) -> Option<Score> {
-        let (step, shared) = factor.solve(&self.right, &self.below)?;
-        let slope = self.slope - vector::dot(gradient, &step) - vector::dot(below, &shared);
-        let square = self.square - vector::dot(&self.right, &step) - vector::dot(&self.below, &shared);
+    /// The score with the solution for its right-hand side, as [`scores`] has it.
+    fn score(
+        &self,
+        (step, shared): (&[f64], &[f64]),
+        (gradient, below): (&[f64], &[f64]),
+        by_prior: bool,
+    ) -> Option<Score> {
+        let slope = self.slope - vector::dot(gradient, step) - vector::dot(below, shared);
+        let square = self.square - vector::dot(&self.right, step) - vector::dot(&self.below, shared);
         // Nothing is said of a number that integrals alone read: the squares of their rows are in the border.
         if self.square > 0.0 && square > OPEN * self.square {
             Score::by((self.known, by_prior), slope, square)
@@ -51,6 +55,22 @@ impl Scored {
             None
         }
     }
+}
+
+/// Scores beside what rows say of the unknowns, `J^T r`, to which a prior may belong; nothing of what rows do not tell from these.
+pub(super) fn scores(
+    scored: &[Scored],
+    factor: &Factor,
+    (gradient, below): (&[f64], &[f64]),
+    by_prior: bool,
+) -> Vec<Option<Score>> {
+    let right: Vec<&[f64]> = scored.iter().map(|own| own.right.as_slice()).collect();
+    let on_border: Vec<&[f64]> = scored.iter().map(|own| own.below.as_slice()).collect();
+    let Some(solutions) = factor.solve_all(&right, &on_border) else { return vec![None; scored.len()] };
+    let score = |(own, (step, shared)): (&Scored, &(Vec<f64>, Vec<f64>))| {
+        own.score((step, shared), (gradient, below), by_prior)
+    };
+    scored.iter().zip(&solutions).map(score).collect()
 }
 
 /// Adds to sums over the coefficients and over the learned scalars the slopes of a block's rows, each times a number.

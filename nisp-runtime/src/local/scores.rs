@@ -7,7 +7,7 @@ use super::course::End;
 use super::normal::factor::Factor;
 use super::phase::Phase;
 use super::place::State;
-use super::scored::Scored;
+use super::scored::{Scored, scores};
 use super::solver::Solver;
 use super::surface::Surface;
 use crate::facts::{Known, Score};
@@ -46,7 +46,7 @@ impl Solver {
         for surface in &self.surfaces {
             self.add_surface(surface, state, &learned, &mut all);
         }
-        all.iter().map(|sums| sums.score(factor, (&self.normal.gradient, &self.normal.border_gradient), true)).collect()
+        scores(&all, factor, (&self.normal.gradient, &self.normal.border_gradient), true)
     }
 
     /// What the problem takes for known: given numbers, and the place, the direction and the size of every cloud that has a

@@ -2,36 +2,48 @@
 
 use std::sync::{Mutex, PoisonError};
 
-/// Vectors that nobody uses at present.
-#[derive(Default)]
-pub(super) struct Spare(Mutex<Vec<Vec<f64>>>);
+use crate::aligned::AlignedVec;
 
-/// A vector is taken if it has at most this many times the memory that is asked for, and at least that part of it.
+/// Buffers that nobody uses at present.
+#[derive(Default)]
+pub(super) struct Spare(Mutex<Vec<AlignedVec<f64>>>);
+
+/// A buffer is taken if it has at most this many times the memory that is asked for.
 const ROOM: usize = 4;
 
 impl Spare {
-    /// So many zeros; nothing where memory is too small.
-    pub(super) fn zeros(&self, len: usize) -> Option<Vec<f64>> {
-        let mut zeros = self.taken(len).unwrap_or_default();
-        zeros.clear();
-        zeros.try_reserve_exact(len).ok()?;
-        zeros.resize(len, 0.0);
-        Some(zeros)
+    /// A buffer of at least so many numbers, whichever they are; nothing where memory is too small.
+    pub(super) fn any(&self, len: usize) -> Option<AlignedVec<f64>> {
+        self.taken(len).or_else(|| AlignedVec::try_zeros(len))
     }
 
-    /// The smallest of the vectors that have the room, or else the largest of the others, which grows.
-    fn taken(&self, len: usize) -> Option<Vec<f64>> {
+    /// A buffer that begins with so many zeros; nothing where memory is too small.
+    pub(super) fn zeros(&self, len: usize) -> Option<AlignedVec<f64>> {
+        let cleared = |mut buffer: AlignedVec<f64>| {
+            buffer[..len].fill(0.0);
+            buffer
+        };
+        self.taken(len).map(cleared).or_else(|| AlignedVec::try_zeros(len))
+    }
+
+    /// The smallest of the buffers that have the room. Of those that are too small the largest goes back to the system, where there is none.
+    fn taken(&self, len: usize) -> Option<AlignedVec<f64>> {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let near = (0..all.len()).filter(|&at| (len / ROOM..=ROOM * len).contains(&all[at].capacity()));
-        let lacks = |at: usize| len.saturating_sub(all[at].capacity());
-        let at = near.min_by_key(|&at| (lacks(at), all[at].capacity()))?;
-        Some(all.swap_remove(at))
+        let fits = |at: &usize| (len..=ROOM * len).contains(&all[*at].len());
+        if let Some(at) = (0..all.len()).filter(fits).min_by_key(|&at| all[at].len()) {
+            return Some(all.swap_remove(at));
+        }
+        let near = |at: &usize| (len / ROOM..len).contains(&all[*at].len());
+        if let Some(at) = (0..all.len()).filter(near).max_by_key(|&at| all[at].len()) {
+            all.swap_remove(at);
+        }
+        None
     }
 
-    /// Leaves a vector to others.
-    pub(super) fn give_back(&self, vector: Vec<f64>) {
-        if vector.capacity() > 0 {
-            self.0.lock().unwrap_or_else(PoisonError::into_inner).push(vector);
+    /// Leaves a buffer to others.
+    pub(super) fn give_back(&self, buffer: AlignedVec<f64>) {
+        if !buffer.is_empty() {
+            self.0.lock().unwrap_or_else(PoisonError::into_inner).push(buffer);
         }
     }
 }
@@ -41,7 +53,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_vector_that_fits_is_taken_again_and_holds_zeros() {
+    fn a_buffer_that_fits_is_taken_again() {
         let spare = Spare::default();
         let mut first = spare.zeros(100).unwrap();
         first.fill(1.0);
@@ -49,12 +61,15 @@ mod tests {
         spare.give_back(first);
         let other = spare.zeros(10).unwrap();
         assert_ne!(other.as_ptr(), place);
-        let again = spare.zeros(50).unwrap();
-        assert_eq!((again.as_ptr(), &again), (place, &vec![0.0; 50]));
-        assert!(spare.0.lock().unwrap().is_empty());
-        // What is too small grows, and is no longer kept beside what it has grown to.
+        let again = spare.any(50).unwrap();
+        assert_eq!((again.as_ptr(), again[..50].to_vec()), (place, vec![1.0; 50]));
         spare.give_back(again);
-        assert_eq!(spare.zeros(150).unwrap(), vec![0.0; 150]);
+        let again = spare.zeros(50).unwrap();
+        assert_eq!((again.as_ptr(), again[..50].to_vec()), (place, vec![0.0; 50]));
+        assert!(spare.0.lock().unwrap().is_empty());
+        // What is too small is no longer kept beside what takes its place.
+        spare.give_back(again);
+        assert_eq!(spare.zeros(150).unwrap().to_vec(), vec![0.0; 150]);
         assert!(spare.0.lock().unwrap().is_empty());
     }
 }

@@ -23,14 +23,25 @@ pub(in super::super) struct Factor {
 impl Factor {
     /// Solves the bordered system: the coefficients, then the learned scalars and the multipliers of integrals.
     pub(in super::super) fn solve(&self, right: &[f64], below: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
-        let mut step = self.solve_free(&[right])?.pop()?;
-        let shared = self.share(&mut step, below)?;
-        Some((step, shared))
+        self.solve_all(&[right], &[below])?.pop()
+    }
+
+    /// The same for several right-hand sides.
+    pub(in super::super) fn solve_all(
+        &self,
+        right: &[impl AsRef<[f64]>],
+        below: &[impl AsRef<[f64]>],
+    ) -> Option<Vec<(Vec<f64>, Vec<f64>)>> {
+        let with_border = |(mut step, below): (Vec<f64>, &[f64])| {
+            let shared = self.share(&mut step, below)?;
+            Some((step, shared))
+        };
+        self.solve_free(right)?.into_iter().zip(below.iter().map(AsRef::as_ref)).map(with_border).collect()
     }
 
     /// From a solution without the border to one with it; returns the unknowns of the border. On the right of the last ones is zero, where
     /// `below` says nothing of them.
-    fn share(&self, step: &mut [f64], below: &[f64]) -> Option<Vec<f64>> {
+    pub(super) fn share(&self, step: &mut [f64], below: &[f64]) -> Option<Vec<f64>> {
         let zeros = std::iter::repeat(&0.0);
         let rest = DVector::from_iterator(
             self.border.len(),
@@ -55,20 +66,13 @@ impl Factor {
         Some(deviations)
     }
 
-    /// `vector . H^-1 vector` of several vectors, of the coefficients alone.
-    pub(in super::super) fn inner(&self, vectors: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let solutions = self.solve_free(vectors)?;
-        Some(vectors.iter().zip(&solutions).map(|(vector, solution)| vector::dot(vector, solution)).collect())
-    }
-
     /// The products of right-hand sides with their solutions: of the coefficients, and what is on the right of the border.
     pub(in super::super) fn products(&self, right: &[impl AsRef<[f64]>], below: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let solutions = self.solve_free(right)?;
-        let product = |((mut own, right), below): ((Vec<f64>, &[f64]), &Vec<f64>)| {
-            let shared = self.share(&mut own, below)?;
-            Some(vector::dot(&own, right) + vector::dot(&shared[..below.len()], below))
+        let product = |(((own, shared), right), below): (((Vec<f64>, Vec<f64>), &[f64]), &Vec<f64>)| {
+            vector::dot(&own, right) + vector::dot(&shared[..below.len()], below)
         };
-        solutions.into_iter().zip(right.iter().map(AsRef::as_ref)).zip(below).map(product).collect()
+        let solutions = self.solve_all(right, below)?.into_iter();
+        Some(solutions.zip(right.iter().map(AsRef::as_ref)).zip(below).map(product).collect())
     }
 
     /// Logarithm of the determinant of the matrix with its border; nothing where rounding spoils it.

@@ -12,6 +12,7 @@ use rayon::prelude::*;
 
 use super::block::Block;
 use super::draws::Draws;
+use super::entries::Entries;
 use super::integrals::Integral;
 use super::pattern::{Part, Pattern};
 use super::sorted::Sorted;
@@ -50,8 +51,9 @@ impl Normal {
         }
         // By row, the last column that it was seen in.
         let mut last = vec![usize::MAX; len];
-        let mut column = |(column, of): (usize, &Vec<u32>)| {
-            let mut rows = vec![column];
+        let (mut rows, mut entries) = (Vec::new(), Entries::default());
+        for (column, of) in of.iter().enumerate() {
+            rows.push(column);
             last[column] = column;
             for group in of.iter().map(|&number| &groups[number as usize]) {
                 for row in group.iter().map(|&row| row as usize).filter(|&row| row > column) {
@@ -62,10 +64,9 @@ impl Normal {
                 }
             }
             rows.sort_unstable();
-            rows
-        };
-        let columns: Vec<Vec<usize>> = of.iter().enumerate().map(&mut column).collect();
-        let pattern = Pattern::new(&columns)?;
+            entries.push(rows.drain(..));
+        }
+        let pattern = Pattern::new(entries)?;
         Some(Self {
             values: vec![0.0; pattern.rows().len()],
             pattern,
@@ -124,7 +125,8 @@ impl Normal {
 
     /// Adds the rows of blocks.
     pub(super) fn add_all(&mut self, blocks: &[Block]) {
-        let sorted: Vec<Sorted> = blocks.par_iter().map(Sorted::of).collect();
+        let alike: Vec<&[Block]> = blocks.chunk_by(|one, other| one.dofs == other.dofs).collect();
+        let sorted: Vec<Sorted> = alike.into_par_iter().map(Sorted::of).collect();
         for block in blocks {
             self.add_corner(block);
             if let Some(draws) = &mut self.draws {

@@ -4,7 +4,7 @@ use rayon::prelude::*;
 
 use super::Normal;
 use crate::local::block::Block;
-use crate::local::sorted::Sorted;
+use crate::local::sorted::{Products, Sorted};
 use crate::simd::Isa;
 
 /// Pieces that the matrix is summed up in, at the same time: a fixed number, many enough for all threads.
@@ -31,19 +31,21 @@ impl Normal {
         let isa = Isa::detect();
         pieces.into_par_iter().for_each(|(columns, values, mut sums)| {
             let origin = starts[columns.start];
-            let mut line = Vec::new();
+            let mut products = Products::default();
             for block in blocks {
-                let from = block.dofs.partition_point(|&dof| (dof as usize) < columns.start);
-                for at in from..block.dofs.len() {
+                let first_from = |column: usize| block.dofs.partition_point(|&dof| (dof as usize) < column);
+                let own = first_from(columns.start)..first_from(columns.end);
+                if own.is_empty() {
+                    continue;
+                }
+                block.products(isa, own.clone(), &mut products);
+                for at in own {
                     let column = block.dofs[at] as usize;
-                    if column >= columns.end {
-                        break;
-                    }
-                    block.beside(at, sums.iter_mut().map(|sum| &mut sum[column - columns.start]));
-                    block.products(isa, at, &mut line);
+                    let sums = sums.iter_mut().map(|sum| &mut sum[column - columns.start]);
+                    block.add_beside(at, &products, sums);
                     let range = starts[column]..starts[column + 1];
                     let values = &mut values[range.start - origin..range.end - origin];
-                    block.scatter(at, &line, &indices[range], values);
+                    block.scatter(at, &mut products, &indices[range], values);
                 }
             }
         });

@@ -31,18 +31,29 @@ impl Normal {
 
     /// The step to the minimum of the quadratic model: of the coefficients, and of the learned scalars.
     pub(in crate::local) fn step(&self, factor: &Factor) -> Option<(Vec<f64>, Vec<f64>)> {
-        self.step_with(factor, &vec![0.0; self.gradient.len()])
+        let (step, shared, _) = self.step_with(factor, &vec![0.0; self.gradient.len()], &[])?;
+        Some((step, shared))
     }
 
-    /// The step where unknowns that are not free take the steps `held`, which is zero for those that are free.
-    pub(in crate::local) fn step_with(&self, factor: &Factor, held: &[f64]) -> Option<(Vec<f64>, Vec<f64>)> {
+    /// The step where unknowns that are not free take the steps `held`, which is zero for those that are free; and
+    /// `probe . H^-1 probe` of some vectors, of the coefficients alone.
+    pub(in crate::local) fn step_with(
+        &self,
+        factor: &Factor,
+        held: &[f64],
+        probes: &[Vec<f64>],
+    ) -> Option<(Vec<f64>, Vec<f64>, Vec<f64>)> {
         let slopes = self.slopes_after(held, &[]);
         let right: Vec<f64> = slopes.iter().map(|g| -g).collect();
         let along = self.border.iter().map(|column| vector::dot(column, held));
         let below: Vec<f64> = self.border_gradient.iter().zip(along).map(|(g, along)| -g - along).collect();
-        let (mut step, shared) = factor.solve(&right, &below)?;
+        let sides: Vec<&[f64]> = probes.iter().map(Vec::as_slice).chain([right.as_slice()]).collect();
+        let mut solutions = factor.solve_free(&sides)?;
+        let mut step = solutions.pop()?;
+        let shared = factor.share(&mut step, &below)?;
         step.iter_mut().zip(held).for_each(|(step, held)| *step += held);
-        Some((step, shared))
+        let inner = probes.iter().zip(&solutions).map(|(probe, solution)| vector::dot(probe, solution)).collect();
+        Some((step, shared, inner))
     }
 
     /// The model's gradient after a step of the coefficients and of the border's unknowns.

@@ -56,15 +56,18 @@ impl Sampled {
         self.added += rows.len();
     }
 
-    /// How many unknowns the rows settle; nothing where the factor gives no products.
-    pub(super) fn used(&self, factor: &Factor) -> Option<f64> {
-        let probes: Vec<&[f64]> = self.probes.iter().map(|probe| probe.by.as_slice()).collect();
-        let below: Vec<Vec<f64>> = self.probes.iter().map(|probe| probe.below.clone()).collect();
-        Some(factor.products(&probes, &below)?.iter().sum::<f64>() / probes.len() as f64)
+    /// What the rows say, of which so many count and settle so many unknowns.
+    pub(super) fn tally(&self, count: usize, used: f64) -> Tally {
+        Tally { squares: self.squares, count: count as f64, used }
     }
+}
 
-    /// What the rows say, of which so many count.
-    pub(super) fn tally(self, factor: &Factor, count: usize) -> Option<Tally> {
-        Some(Tally { squares: self.squares, count: count as f64, used: self.used(factor)? })
-    }
+/// How many unknowns rows settle, sum by sum; nothing where the factor gives no products.
+pub(super) fn used(sums: &[Sampled], factor: &Factor) -> Option<Vec<f64>> {
+    let probes = || sums.iter().flat_map(|sum| &sum.probes);
+    let by: Vec<&[f64]> = probes().map(|probe| probe.by.as_slice()).collect();
+    let below: Vec<Vec<f64>> = probes().map(|probe| probe.below.clone()).collect();
+    let mut products = factor.products(&by, &below)?.into_iter();
+    let mean = |count: usize| products.by_ref().take(count).sum::<f64>() / count as f64;
+    Some(sums.iter().map(|sum| sum.probes.len()).map(mean).collect())
 }

@@ -14,7 +14,7 @@ use crate::facts::{Known, LARGER, Score};
 use crate::given::{SMALL, given, slope};
 use crate::local::block::Block;
 use crate::local::rows::Evaluated;
-use crate::local::scored::{Scored, add};
+use crate::local::scored::{Scored, add, scores};
 use crate::local::surface::Surface;
 
 /// Steps that all scores take, about, and that each number adds.
@@ -75,7 +75,7 @@ impl Solver<'_> {
         }
         // The border holds the misfits of integrals.
         below[slopes.len()..].copy_from_slice(&self.normal.border_gradient[slopes.len()..]);
-        Some(scored.par_iter().filter_map(|scored| scored.score(&factor, (&gradient, &below), false)).collect())
+        Some(scores(&scored, &factor, (&gradient, &below), false).into_iter().flatten().collect())
     }
 
     /// The scalars with a little more and a little less of one of them.

@@ -5,7 +5,7 @@ use rand::rngs::StdRng;
 
 use super::freedom::Unmeasured;
 use super::rows::Rows;
-use super::sampled::Sampled;
+use super::sampled::{Sampled, used};
 use super::solver::Solver;
 use super::state::{Phase, State};
 use crate::local::block::Block;
@@ -26,41 +26,47 @@ impl Solver<'_> {
         let mut tallies = vec![Tally::default(); state.classes.len()];
         let mut random = StdRng::seed_from_u64(0);
         let lens = (step.len(), shared.len());
+        // Sums over rows, with their class and how many of them count.
+        let (mut of, mut sums) = (Vec::new(), Vec::new());
         for asked in &rows.asked {
             let group = &self.groups[asked.at];
             let terms = group.schema.terms.iter().enumerate();
-            let observed = terms.filter(|(_, term)| term.kind == TermKind::Observation);
-            let mut observed: Vec<(usize, &schema::Term, Sampled)> = observed
-                .map(|(number, term)| {
-                    let sampled = Sampled::new(group.sites.count * term.rows, lens, &mut random);
-                    (number, term, sampled)
-                })
-                .collect();
+            let observed: Vec<(usize, &schema::Term)> =
+                terms.filter(|(_, term)| term.kind == TermKind::Observation).collect();
             if observed.is_empty() {
                 continue;
             }
+            let sampled =
+                |(_, term): &(usize, &schema::Term)| Sampled::new(group.sites.count * term.rows, lens, &mut random);
+            let mut own: Vec<Sampled> = observed.iter().map(sampled).collect();
             for blocks in self.batches(rows, asked) {
-                for (_, term, sampled) in &mut observed {
+                for ((_, term), sampled) in observed.iter().zip(&mut own) {
                     let first = group.first_own(term);
                     let own = blocks.iter().flat_map(|block| (first..first + term.rows).map(move |row| (block, row)));
                     sampled.add(&own.collect::<Vec<_>>(), (step, shared));
                 }
             }
-            for (number, term, sampled) in observed {
+            of.extend(observed.into_iter().map(|(number, term)| {
                 let counts = asked.counts[term.first..term.first + term.rows].iter().flatten();
-                let count = counts.filter(|counts| **counts).count();
-                tallies[self.classes[asked.at][number]] = sampled.tally(factor, count)?;
-            }
+                (self.classes[asked.at][number], counts.filter(|counts| **counts).count())
+            }));
+            sums.append(&mut own);
         }
         for (surface, blocks) in self.surfaces.iter().zip(&rows.clouds) {
             let own: Vec<(&Block, usize)> = blocks.iter().map(|block| (block, 0)).collect();
             let mut sampled = Sampled::new(own.len(), lens, &mut random);
             sampled.add(&own, (step, shared));
-            let tally = sampled.tally(factor, own.len())?;
+            of.push((self.class(surface), own.len()));
+            sums.push(sampled);
+        }
+        for (((class, count), sum), used) in of.into_iter().zip(&sums).zip(used(&sums, factor)?) {
+            tallies[class] = sum.tally(count, used);
+        }
+        for surface in &self.surfaces {
+            let tally = &mut tallies[self.class(surface)];
             // Clouds have outliers, which are no noise.
             let clean = deviation_of_clean(surface.misfits().collect(), tally.used) / self.sigma(state, surface);
-            let squares = clean.powi(2) * (tally.count - tally.used);
-            tallies[self.class(surface)] = Tally { squares, ..tally };
+            tally.squares = clean.powi(2) * (tally.count - tally.used);
         }
         for head in self.judged(state.phase) {
             let blocks = self.prior_rows(state, head);
@@ -73,7 +79,7 @@ impl Solver<'_> {
                 Phase::Regress => {
                     let mut sampled = Sampled::new(own.len(), lens, &mut random);
                     sampled.add(&own, (step, shared));
-                    sampled.used(factor)?
+                    used(&[sampled], factor)?[0]
                 }
                 Phase::Explain | Phase::Solve => {
                     let roughness = state.classes[self.roughness[head]].size;

@@ -4,6 +4,7 @@ use rayon::prelude::*;
 
 use super::WIDTH;
 use super::rows::{ALIGN, Strip};
+use crate::aligned::AlignedVec;
 use crate::simd::Isa;
 use crate::solve::vector;
 
@@ -12,12 +13,12 @@ pub(crate) struct Cholesky {
     n: usize,
     isa: Isa,
     /// `A = L L^T`: the rows of `L^T`.
-    factor: Vec<f64>,
+    factor: AlignedVec<f64>,
 }
 
 impl Cholesky {
     pub(crate) fn new(n: usize) -> Self {
-        Self { n, isa: Isa::detect(), factor: vec![0.0; Strip::new(n, 0).len()] }
+        Self { n, isa: Isa::detect(), factor: AlignedVec::zeros(Strip::new(n, 0).len()) }
     }
 
     /// Factorises the matrix that `fill` writes into the lower triangle of its argument, column by column; false where the

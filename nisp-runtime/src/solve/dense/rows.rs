@@ -3,6 +3,8 @@
 //! Rows lie one after the other, `stride` apart, and only what stands on and right of the diagonal counts. So the products of
 //! the engine's layers do nearly all of the work, with `U` as both of their factors as it lies.
 
+use std::ops::Range;
+
 use rayon::prelude::*;
 
 use super::blocks::{BLOCK, Diagonal, Substitution};
@@ -15,6 +17,8 @@ pub(crate) const ALIGN: usize = 8;
 const PANEL: usize = 4 * BLOCK;
 /// Rows of a task: their number and shape depend on the matrix alone, so that the number of threads changes no bit.
 const HEIGHT: usize = 96;
+/// Rows on the diagonal whose products with each other are all taken, though nobody needs those below the diagonal.
+const STEP: usize = 24;
 /// Products of numbers for which waking a second thread pays.
 const SHARED: usize = 1 << 17;
 
@@ -29,7 +33,9 @@ pub(crate) struct Strip {
 impl Strip {
     /// Of so many rows, which so many others meet.
     pub(crate) fn new(width: usize, others: usize) -> Self {
-        Self { width, stride: width.next_multiple_of(ALIGN) + others.next_multiple_of(ALIGN) }
+        let lines = width.div_ceil(ALIGN) + others.div_ceil(ALIGN);
+        // An odd number of cache lines: rows a power of two apart would fight for the same places of the cache.
+        Self { width, stride: (lines | 1) * ALIGN }
     }
 
     /// Where the columns of others begin.
@@ -53,17 +59,22 @@ impl Strip {
             }
             if !below.is_empty() {
                 let start = first + count;
-                subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
+                square(isa, (&own[start..], stride, count), below, (stride, start), Write::Subtract);
             }
         }
         true
     }
 
-    /// Subtracts from the matrix of the others, of rows as long as the next multiple of [`ALIGN`], what the eliminated rows say of it.
-    pub(crate) fn update(self, isa: Isa, rows: &[f64], others: &mut [f64]) {
-        if !others.is_empty() {
+    /// Length of the rows of what is left to others.
+    pub(crate) fn apart(self) -> usize {
+        self.stride - self.others()
+    }
+
+    /// What the eliminated rows take from the matrix of the others, [`Strip::apart`] from row to row, on and right of its diagonal.
+    pub(crate) fn taken(self, isa: Isa, rows: &[f64], from_others: &mut [f64]) {
+        if !from_others.is_empty() {
             let own = (&rows[self.others()..], self.stride, self.width);
-            subtract_square(isa, own, others, (self.stride - self.others(), 0));
+            square(isa, own, from_others, (self.apart(), 0), Write::Set);
         }
     }
 
@@ -112,7 +123,7 @@ fn eliminate(isa: Isa, rows: &mut [f64], (at, height, stride): (usize, usize, us
         let start = (at + first + count).next_multiple_of(ALIGN);
         if start < stride {
             divide(isa, &block, own, (count, stride, start));
-            subtract_square(isa, (&own[start..], stride, count), below, (stride, start));
+            square(isa, (&own[start..], stride, count), below, (stride, start), Write::Subtract);
         }
     }
     true
@@ -143,15 +154,38 @@ fn divide(isa: Isa, block: &[f64], rows: &mut [f64], (count, stride, start): (us
     }
 }
 
-/// Subtracts `u^T u` from rows, on and right of the diagonal: `u` has so many rows, as far apart as given; the rows are as far
-/// apart as given, and the first one's diagonal stands in the given column.
-fn subtract_square(isa: Isa, (u, apart, inner): (&[f64], usize, usize), rows: &mut [f64], own: (usize, usize)) {
-    let (stride, start) = own;
+/// Writes `u^T u` to rows, on and right of the diagonal: `u` has so many rows, as far apart as given; the rows are as far apart as
+/// given, and the first one's diagonal stands in the given column.
+fn square(
+    isa: Isa,
+    (u, apart, inner): (&[f64], usize, usize),
+    rows: &mut [f64],
+    (stride, start): (usize, usize),
+    write: Write,
+) {
+    let product = |rows: &mut [f64], first: usize, columns: Range<usize>| {
+        let shape = Shape { rows: rows.len() / stride, columns: columns.len(), inner };
+        let right = Right::Rows { elements: &u[columns.start..], stride: apart };
+        gemm(
+            isa,
+            shape,
+            Left::transposed(&u[first..], apart),
+            right,
+            &mut rows[start + columns.start..],
+            stride,
+            write,
+        );
+    };
     let task = |(task, rows): (usize, &mut [f64])| {
-        let at = task * HEIGHT;
-        let shape = Shape { rows: rows.len() / stride, columns: stride - start - at, inner };
-        let (left, right) = (Left::transposed(&u[at..], apart), Right::Rows { elements: &u[at..], stride: apart });
-        gemm(isa, shape, left, right, &mut rows[start + at..], stride, Write::Subtract);
+        let (at, end) = (task * HEIGHT, stride - start);
+        let beside = (at + rows.len() / stride).next_multiple_of(ALIGN);
+        for (step, rows) in rows.chunks_mut(STEP * stride).enumerate() {
+            let first = at + step * STEP;
+            product(rows, first, first..beside);
+        }
+        if beside < end {
+            product(rows, at, beside..end);
+        }
     };
     if rows.len() * inner < SHARED {
         rows.chunks_mut(HEIGHT * stride).enumerate().for_each(task);
@@ -192,11 +226,10 @@ mod tests {
             let place = |j: usize| if j < width { j } else { strip.others() + j - width };
             let mut rows = vec![0.0; strip.len()];
             (0..width).for_each(|i| (i..size).for_each(|j| rows[i * strip.stride + place(j)] = entry(i, j)));
-            let apart = strip.stride - strip.others();
-            let mut rest = vec![0.0; others * apart];
-            (0..others).for_each(|i| (i..others).for_each(|j| rest[i * apart + j] = entry(width + i, width + j)));
+            let apart = strip.apart();
+            let mut taken = vec![f64::NAN; others * apart];
             assert!(strip.eliminate(isa, &mut rows));
-            strip.update(isa, &rows, &mut rest);
+            strip.taken(isa, &rows, &mut taken);
             for i in 0..width {
                 for j in i..size {
                     let found = rows[i * strip.stride + place(j)];
@@ -206,7 +239,8 @@ mod tests {
             for i in 0..others {
                 for j in i..others {
                     let left: f64 = (0..=i).map(|k| u(width + k, width + i) * u(width + k, width + j)).sum();
-                    assert!((rest[i * apart + j] - left).abs() < 1e-13 * size as f64, "{width} {others}: {i} {j}");
+                    let rest = entry(width + i, width + j) - taken[i * apart + j];
+                    assert!((rest - left).abs() < 1e-13 * size as f64, "{width} {others}: {i} {j}");
                 }
             }
         }
