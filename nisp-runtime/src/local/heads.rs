@@ -73,6 +73,11 @@ impl Heads {
         Self { lattices, first, offset, scale, limits }
     }
 
+    /// A head by itself, without its offset and bounds.
+    pub(super) fn alone(&self, head: usize) -> Self {
+        Self::over(vec![self.lattices[head].clone()], vec![0.0], vec![self.scale[head]], vec![None])
+    }
+
     /// Number of coefficients.
     pub(super) fn len(&self) -> usize {
         self.first[self.first.len() - 1]
@@ -91,7 +96,7 @@ impl Heads {
     }
 
     /// Sum of coefficients times splines at a point, times the scale; without the offset.
-    fn sum(&self, head: usize, point: &[f64], theta: &[f64]) -> f64 {
+    pub(super) fn sum(&self, head: usize, point: &[f64], theta: &[f64]) -> f64 {
         self.parts(head, point).into_iter().map(|(at, value)| theta[at] * value).sum()
     }
 
@@ -108,18 +113,6 @@ impl Heads {
         lattice.values(&place, exponents, &mut splines);
         let dofs = self.dofs(head, lattice.cell_span(&place)).zip(splines);
         dofs.filter(|(dof, _)| *dof != NONE).map(|(dof, value)| (dof as usize, scale * value)).collect()
-    }
-
-    /// A head's row at a point whose misfit is what `theta` would have to be changed by for this head to equal another's.
-    pub(super) fn difference(&self, head: usize, point: &[f64], other: &Heads, theta: &[f64], learned: usize) -> Block {
-        let (dofs, slopes) = self.parts(head, point).into_iter().map(|(at, value)| (at as u32, value)).unzip();
-        Block {
-            misfits: vec![-other.sum(head, point, theta)],
-            by_learned: vec![0.0; learned],
-            dofs,
-            slopes,
-            excess: 0.0,
-        }
     }
 
     /// A head at a point over its scale, without its offset.
