@@ -19,11 +19,10 @@ impl Spare {
 
     /// A buffer that begins with so many zeros; nothing where memory is too small.
     pub(super) fn zeros(&self, len: usize) -> Option<AlignedVec<f64>> {
-        let cleared = |mut buffer: AlignedVec<f64>| {
-            buffer[..len].fill(0.0);
-            buffer
-        };
-        self.taken(len).map(cleared).or_else(|| AlignedVec::try_zeros(len))
+        let mut buffer = self.any(len)?;
+        // Fresh memory, too: pages that are read before they are written are mapped twice.
+        buffer[..len].fill(0.0);
+        Some(buffer)
     }
 
     /// The smallest of the buffers that have the room. Of those that are too small the largest goes back to the system, where there is none.
