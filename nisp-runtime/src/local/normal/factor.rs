@@ -68,11 +68,12 @@ impl Factor {
 
     /// The products of right-hand sides with their solutions: of the coefficients, and what is on the right of the border.
     pub(in super::super) fn products(&self, right: &[impl AsRef<[f64]>], below: &[Vec<f64>]) -> Option<Vec<f64>> {
-        let product = |(((own, shared), right), below): (((Vec<f64>, Vec<f64>), &[f64]), &Vec<f64>)| {
-            vector::dot(&own, right) + vector::dot(&shared[..below.len()], below)
+        let solutions = self.solve_all(right, below)?;
+        let product = |at: usize| {
+            let ((own, shared), below) = (&solutions[at], &below[at]);
+            vector::dot(own, right[at].as_ref()) + vector::dot(&shared[..below.len()], below)
         };
-        let solutions = self.solve_all(right, below)?.into_iter();
-        Some(solutions.zip(right.iter().map(AsRef::as_ref)).zip(below).map(product).collect())
+        Some((0..solutions.len()).map(product).collect())
     }
 
     /// Logarithm of the determinant of the matrix with its border; nothing where rounding spoils it.
