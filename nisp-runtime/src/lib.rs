@@ -19,6 +19,7 @@ pub mod gemm;
 mod given;
 pub mod kernel;
 pub mod layer;
+mod levels;
 pub mod local;
 pub mod loss;
 pub mod memory;

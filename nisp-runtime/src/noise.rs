@@ -15,6 +15,7 @@ use self::fits::{FEW_CLEAN, HALF, by_fits, quantile};
 use crate::problem::Bound;
 use crate::roughness::{directions, roughness};
 use crate::schema::{self, TermKind};
+pub use crate::solve::vector::deviation;
 use crate::solve::vector::{root_mean_square, spread};
 
 /// Noise of what is observed.
@@ -199,13 +200,6 @@ pub(crate) fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|&a, &b| coordinates[a].total_cmp(&coordinates[b]));
     order.into_iter().map(|at| values[at]).collect()
-}
-
-/// Standard deviation of values about their mean.
-pub fn deviation(values: &[f64]) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count).sqrt()
 }
 
 /// The median magnitude of a standard normal number.

@@ -17,6 +17,7 @@ mod few;
 mod free;
 mod gaps;
 mod given;
+mod large;
 mod leaning;
 mod levels;
 mod measured;

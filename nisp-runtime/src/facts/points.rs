@@ -1,9 +1,10 @@
 //! What an answer says at the points of a group, and what its programs make of it.
 
+use crate::levels::without_levels;
 use crate::residual::{Points, Programs};
 use crate::schema;
 use crate::simd::Isa;
-use crate::solve::vector::root_mean_square;
+use crate::solve::vector::{deviation, root_mean_square};
 
 /// What is left of an equation, beside the sum of the magnitudes of its terms, where these balance each other.
 const BALANCED: f64 = 0.5;
@@ -85,12 +86,15 @@ impl Facts {
         scalars: &[f64],
         natural: &[f64],
     ) -> Vec<f64> {
-        let [sizes, misfits] = [self.magnitudes(programs, group, scalars), self.plain_rows(programs, group, scalars)]
+        let magnitudes = self.magnitudes(programs, group, scalars);
+        let varying: Vec<f64> = magnitudes.iter().map(|row| deviation(row)).collect();
+        let [sizes, misfits] = [magnitudes, self.plain_rows(programs, group, scalars)]
             .map(|rows| rows.iter().map(|row| root_mean_square(row.iter().copied())).collect::<Vec<f64>>());
         let mut found = vec![0.0; group.rows];
         for (term, &natural) in group.terms.iter().zip(natural) {
             for row in term.first..term.first + term.rows {
-                let (size, is_balanced) = (sizes[row], misfits[row] < BALANCED * sizes[row]);
+                let size = without_levels(sizes[row], varying[row]).max(natural.min(sizes[row]));
+                let is_balanced = misfits[row] < BALANCED * size;
                 found[row] = match term.within {
                     None if is_balanced => size,
                     None if size.is_finite() => size.max(natural),

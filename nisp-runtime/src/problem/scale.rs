@@ -8,6 +8,7 @@ use super::probe::{Data, Probe};
 use crate::ends::ranges;
 use crate::engine::Scaling;
 use crate::kernel::SceneRef;
+use crate::levels::without_levels;
 use crate::network::Inputs;
 use crate::schema::{self, Origin, TermKind};
 
@@ -160,12 +161,32 @@ impl Probe {
                 if unknown.is_empty() || unknown.len() > 1 && !(together && unknown.iter().all(is_source)) {
                     continue;
                 }
-                let rest = self.rms(&self.rows(&jets(0.0), &scales(0.0), true)[row * self.stride..]);
+                let known = |head: usize| match heads[head] {
+                    Some(_) if scene.heads[head].transformed => (0.0, 1.0),
+                    found => found.unwrap_or((0.0, 0.0)),
+                };
+                let rest = self.size(row, &scales(0.0), half, known);
                 if rest > 0.0 && rest.is_finite() {
                     unknown.into_iter().for_each(|(head, pull)| heads[head] = Some((0.0, rest / pull)));
                 }
             }
         }
+    }
+
+    /// Size of a row where heads have these offsets and scales: of all that it adds up, without levels that cancel.
+    fn size(&self, row: usize, scalars: &[f64], half: &[f64], found: impl Fn(usize) -> (f64, f64)) -> f64 {
+        let own = |rows: &[f64]| self.rms(&rows[row * self.stride..]);
+        let jets = self.jets(|jet| typical(jet, half, found(jet.head)));
+        let at_levels = self.jets(|jet| if jet.is_value() { found(jet.head).0 } else { 0.0 });
+        let slopes = self.sensitivities(row, &jets, scalars);
+        let varied = self
+            .schema
+            .jets
+            .iter()
+            .enumerate()
+            .map(|(j, jet)| self.rms(&slopes[j * self.stride..]) * typical(jet, half, (0.0, found(jet.head).1)));
+        let varying = own(&self.rows(&at_levels, scalars, false)) + varied.sum::<f64>();
+        without_levels(own(&self.rows(&jets, scalars, true)), varying)
     }
 
     /// Natural size of one side of a complementarity: with the other side out of the way, the magnitude of
@@ -198,7 +219,6 @@ impl Probe {
     /// Natural sizes of the group's terms.
     fn sizes(&self, scene: &schema::Scene, scalars: &[f64], half: &[f64], heads: &[(f64, f64)]) -> Vec<f64> {
         let jets = self.jets(|jet| typical(jet, half, network(scene, heads, jet.head)));
-        let rows = self.rows(&jets, scalars, true);
         let size = |term: &schema::Term| -> f64 {
             let square: f64 = (term.first..term.first + term.rows)
                 .map(|row| match term.kind {
@@ -211,7 +231,7 @@ impl Probe {
                         });
                         parts.sum::<f64>()
                     }
-                    _ => self.rms(&rows[row * self.stride..]),
+                    _ => self.size(row, scalars, half, |head| network(scene, heads, head)),
                 })
                 .map(|size| size * size)
                 .sum();

@@ -30,6 +30,13 @@ fn distance_loop<E: Real>(a: &[E], b: &[E]) -> f64 {
     sum_pairs(a, b, |x, y| (x - y) * (x - y)).sqrt()
 }
 
+/// Standard deviation of values about their mean.
+pub fn deviation(values: &[f64]) -> f64 {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (values.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>() / count).sqrt()
+}
+
 /// Where the largest magnitude is; the first of equals, and 0 where there is none.
 pub(crate) fn largest(x: &[f64]) -> usize {
     x.iter().enumerate().fold((0, 0.0), |best, (at, x)| if x.abs() > best.1 { (at, x.abs()) } else { best }).0
