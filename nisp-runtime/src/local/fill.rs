@@ -112,7 +112,7 @@ impl Fill {
         Some(fill)
     }
 
-    /// Finds where entries of the matrix belong, and what nodes have taken from others.
+    /// Finds where entries of the matrix belong, and where in its parent what a node takes from others does.
     fn find(&mut self, entries: &Entries) {
         let mut node_of = vec![0; entries.len()];
         for (at, node) in self.nodes.iter().enumerate() {

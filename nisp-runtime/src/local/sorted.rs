@@ -24,8 +24,9 @@ pub(super) struct Sorted {
 /// Products of some coefficients' slopes.
 #[derive(Default)]
 pub(super) struct Products {
-    /// The first of the coefficients, and the one from which on there are products.
+    /// The first of the coefficients.
     own: usize,
+    /// The coefficient from which on their slopes are multiplied: the last before `own` that a vector begins with.
     first: usize,
     /// By coefficient, with all slopes from there on.
     with_slopes: Vec<f64>,

@@ -25,7 +25,8 @@ impl Spare {
         Some(buffer)
     }
 
-    /// The smallest of the buffers that have the room. Of those that are too small the largest goes back to the system, where there is none.
+    /// The smallest of the buffers that have the room. Where none has, the largest of those that nearly have goes back to the system: a
+    /// larger one takes its place.
     fn taken(&self, len: usize) -> Option<AlignedVec<f64>> {
         let mut all = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = |at: &usize| (len..=ROOM * len).contains(&all[*at].len());
