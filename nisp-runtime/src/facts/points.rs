@@ -93,7 +93,11 @@ impl Facts {
         let mut found = vec![0.0; group.rows];
         for (term, &natural) in group.terms.iter().zip(natural) {
             for row in term.first..term.first + term.rows {
-                let size = without_levels(sizes[row], varying[row]).max(natural.min(sizes[row]));
+                // A condition on values says which level it is.
+                let size = match group.is_of_values(term) {
+                    true => sizes[row],
+                    false => without_levels(sizes[row], varying[row]).max(natural.min(sizes[row])),
+                };
                 let is_balanced = misfits[row] < BALANCED * size;
                 found[row] = match term.within {
                     None if is_balanced => size,

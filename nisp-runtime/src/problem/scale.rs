@@ -231,6 +231,9 @@ impl Probe {
                         });
                         parts.sum::<f64>()
                     }
+                    _ if self.schema.is_of_values(term) => {
+                        self.rms(&self.rows(&jets, scalars, true)[row * self.stride..])
+                    }
                     _ => self.size(row, scalars, half, |head| network(scene, heads, head)),
                 })
                 .map(|size| size * size)
