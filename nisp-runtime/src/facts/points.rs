@@ -93,7 +93,7 @@ impl Facts {
         let mut found = vec![0.0; group.rows];
         for (term, &natural) in group.terms.iter().zip(natural) {
             for row in term.first..term.first + term.rows {
-                // A condition on values says which level it is.
+                // A condition on values states the level itself, and lattices leave it out by themselves (`local/smooth/levels.rs`).
                 let size = match group.is_of_values(term) {
                     true => sizes[row],
                     false => without_levels(sizes[row], varying[row]).max(natural.min(sizes[row])),

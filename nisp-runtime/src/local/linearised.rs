@@ -38,7 +38,7 @@ impl Group {
         let layout = self.layout(heads, rows.len(), learned.len());
         let mut records = vec![0.0; self.weights.len() * layout.len()];
         let record = |across: &mut Vec<f64>, (number, record): (usize, &mut [f64])| {
-            // Zero as it is: pages that are read before they are written are mapped twice.
+            // It is zero already, but fresh pages that are read before they are written are mapped twice.
             record.fill(0.0);
             self.record(heads, evaluated, learned, (number, &rows), (layout, record), across);
         };

@@ -231,6 +231,7 @@ impl Probe {
                         });
                         parts.sum::<f64>()
                     }
+                    // Conditions on values state the level themselves.
                     _ if self.schema.is_of_values(term) => {
                         self.rms(&self.rows(&jets, scalars, true)[row * self.stride..])
                     }
