@@ -24,6 +24,7 @@
 mod affine;
 mod answer;
 mod block;
+mod declared;
 mod hidden;
 mod layers;
 mod programs;
@@ -37,10 +38,12 @@ mod text;
 use nisp_compiler::model::{self, Model};
 use nisp_compiler::plan::{GroupPlan, Plan, ScenePlan};
 use nisp_compiler::{Failure, analyse};
-use nisp_runtime::kernel::{GroupKernel, Kernels, Precision, SceneRef};
+use nisp_runtime::kernel::{GroupKernel, Kernels, Precision};
 use thiserror::Error;
 
 pub use answer::{OpenError, ask, open};
+pub use declared::scene;
+pub use nisp_runtime::kernel::SceneRef;
 use programs::InterpretedPrograms;
 use rules::InterpretedLayers;
 pub use text::{Mistake, is_same_equation};

@@ -2,8 +2,9 @@
 
 use super::*;
 use nisp::Points;
+use nisp_interpreter::interpret;
 
-nisp::pde! {
+interpret! {
     /// A string between two posts that something presses, whose weight is known as a whole.
     pub mod laden {
         units: off;
@@ -24,7 +25,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A ring that something warms always in the same way.
     pub mod ring {
         units: off;
@@ -60,7 +61,7 @@ fn string(scene: SceneRef, (known, value): (&str, f64)) -> Problem {
 /// The shape alone says nothing of the tension.
 #[test]
 fn a_weight_that_is_known_as_a_whole_tells_the_tension() {
-    let mut solution = solve(&string(scene::<laden::stiffness::Scene>(), ("weight", 2.0 * PI * TENSION)));
+    let mut solution = solve(&string(laden::scene("stiffness"), ("weight", 2.0 * PI * TENSION)));
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.failed().collect::<Vec<_>>());
     let learned = solution.learned();
     let (tension, deviation) = (learned[0].value, learned[0].deviation.unwrap());
@@ -69,7 +70,7 @@ fn a_weight_that_is_known_as_a_whole_tells_the_tension() {
 
 #[test]
 fn a_whole_that_the_data_contradict_is_inconsistent() {
-    let of = |area: f64| solve(&string(scene::<laden::volume::Scene>(), ("area", area)));
+    let of = |area: f64| solve(&string(laden::scene("volume"), ("area", area)));
     assert_eq!(of(2.0 / PI).status, Status::Converged);
     assert_eq!(of(2.4 / PI).status, Status::Inconsistent);
 }
@@ -87,7 +88,7 @@ fn a_field_on_a_ring_goes_on_across_the_seam() {
     let times: Vec<f64> = (0..40).map(|i| f64::from(i) / 39.0).collect();
     let seam = |x: f64| times.iter().flat_map(|&t| [x, t]).collect::<Vec<f64>>();
     let begin: Vec<f64> = times.iter().flat_map(|&x| [x, 0.0]).collect();
-    let mut problem = Problem::new(scene::<ring::recover::Scene>());
+    let mut problem = Problem::new(ring::scene("recover"));
     problem.set_group("inside", grid([32, 32], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     let joined = Points { coordinates: seam(0.0), partners: seam(1.0), ..Points::default() };
     problem.set_group("seam", joined, Vec::new()).unwrap();

@@ -1,9 +1,11 @@
 //! Fields with bounds, of which equations take derivatives.
 
+use nisp_interpreter::interpret;
+
 use super::sources::judged;
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// Dye in a layer, which is never less than none; more of it comes in from somewhere.
     pub mod dye {
         units: off;
@@ -19,7 +21,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Dye that decays at an unknown rate, in two directions.
     pub mod decaying {
         units: off;
@@ -44,7 +46,7 @@ fn a_field_that_touches_its_bound_has_the_source_of_its_derivatives() {
     let seen: Vec<f64> = pairs(&probes).map(|place| dye(place) + 0.005 * normal()).collect();
     let line = |i: i32| f64::from(i) / 24.0;
     let walls: Vec<f64> = (0..25).flat_map(|i| [0.0, 3.0 * line(i), 1.0, 3.0 * line(i)]).collect();
-    let mut problem = Problem::new(scene::<dye::recover::Scene>());
+    let mut problem = Problem::new(dye::scene("recover"));
     problem.set_group("layer", grid([30, 30], [1.0, 3.0], false).into(), vec![]).unwrap();
     problem.set_group("walls", walls.into(), vec![]).unwrap();
     problem.set_group("start", (0..25).flat_map(|i| [line(i), 0.0]).collect::<Vec<f64>>().into(), vec![]).unwrap();
@@ -63,7 +65,7 @@ fn a_rate_is_found_from_a_field_that_is_positive() {
     let mut normal = normals(9);
     let probes = grid([20, 20], [1.0, 1.0], true);
     let seen: Vec<f64> = pairs(&probes).map(|[x, y]| (x + y / 2.0).exp() * (1.0 + 0.002 * normal())).collect();
-    let mut problem = Problem::new(scene::<decaying::rate::Scene>());
+    let mut problem = Problem::new(decaying::scene("rate"));
     problem.set_group("pond", grid([20, 20], [1.0, 1.0], false).into(), vec![]).unwrap();
     problem.set_group("probes", probes.into(), vec![seen]).unwrap();
     let settings = Settings { carrier: Carrier::Splines, ..settings() };

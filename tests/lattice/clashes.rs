@@ -1,9 +1,11 @@
 //! Conditions that contradict each other where they meet: a wall that is suddenly hot, sides of a square at different values, a flux that is
 //! switched on.
 
+use nisp_interpreter::interpret;
+
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A slab whose faces are suddenly at another temperature.
     pub mod slab {
         units: off;
@@ -18,7 +20,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A square with one side at another temperature than the others.
     pub mod square {
         units: off;
@@ -33,7 +35,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A thick wall that is heated from the start on.
     pub mod heated {
         units: off;
@@ -63,7 +65,7 @@ fn slab(rate: f64, wall: f64) -> Solution {
     let probes: Vec<f64> = [0.1, 0.25, 0.5].iter().flat_map(|&x| along(41).skip(1).flat_map(move |t| [x, t])).collect();
     let measured = pairs(&probes).map(|place| exact(place) + NOISE * normal()).collect();
     let faces = [0.0, 1.0].iter().flat_map(|&x| along(80).flat_map(move |t| [x, t])).collect::<Vec<f64>>();
-    let mut problem = Problem::new(scene::<slab::diffusivity::Scene>());
+    let mut problem = Problem::new(slab::scene("diffusivity"));
     problem.set_parameter("wall", wall).unwrap();
     problem.set_group("inside", grid([30, 30], [1.0, 1.0], true).into(), Vec::new()).unwrap();
     problem.set_group("faces", faces.into(), Vec::new()).unwrap();
@@ -102,7 +104,7 @@ fn corners_of_a_square_may_have_two_values() {
     let measured = pairs(&probes).map(|place| exact(place) + NOISE * normal()).collect();
     let left: Vec<f64> = along(80).flat_map(|y| [0.0, y]).collect();
     let others: Vec<f64> = along(80).flat_map(|x| [x, 0.0, x, 1.0, 1.0, x]).collect();
-    let mut problem = Problem::new(scene::<square::temperature::Scene>());
+    let mut problem = Problem::new(square::scene("temperature"));
     problem.set_group("inside", grid([30, 30], [1.0, 1.0], true).into(), Vec::new()).unwrap();
     problem.set_group("left", left.into(), Vec::new()).unwrap();
     problem.set_group("others", others.into(), Vec::new()).unwrap();
@@ -131,7 +133,7 @@ fn a_flux_that_is_switched_on_is_found_from_the_start() {
     let measured = pairs(&probes).map(|place| exact(place) + 0.001 * normal()).collect();
     let wide = |points: Vec<f64>| pairs(&points).flat_map(|[x, t]| [2.0 * x, t]).collect::<Vec<f64>>();
     let side = |x: f64| along(80).flat_map(move |t| [x, t]).collect::<Vec<f64>>();
-    let mut problem = Problem::new(scene::<heated::recover::Scene>());
+    let mut problem = Problem::new(heated::scene("recover"));
     problem.set_group("inside", wide(grid([30, 30], [1.0, 1.0], true)).into(), Vec::new()).unwrap();
     problem.set_group("face", side(0.0).into(), Vec::new()).unwrap();
     problem.set_group("far", side(2.0).into(), Vec::new()).unwrap();

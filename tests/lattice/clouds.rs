@@ -1,11 +1,12 @@
 //! Sources and parameters from clouds of a surface that nobody told the place of.
 
 use nisp::solve::driver::WarningKind;
+use nisp_interpreter::interpret;
 
 use super::sources::{edge, judged, scattered};
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A square skin that a load lifts, and never lowers.
     pub mod lifted {
         units: off;
@@ -19,7 +20,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A square skin of unknown tension that a known load lifts.
     pub mod tense {
         units: off;
@@ -33,7 +34,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A wire that a load pulls down, seen from the side.
     pub mod wire {
         units: off;
@@ -80,7 +81,7 @@ fn off_and_within(solution: &mut Solution) -> (f64, f64) {
 
 #[test]
 fn a_load_is_found_from_a_cloud_with_bars_that_hold() {
-    let mut solution = solve(&problem(scene::<lifted::recover::Scene>(), &cloud(height, 2000, 0.01)));
+    let mut solution = solve(&problem(lifted::scene("recover"), &cloud(height, 2000, 0.01)));
     let (off, within) = off_and_within(&mut solution);
     assert!(off < 0.2 && within > 0.85, "{off} {within}");
 }
@@ -90,7 +91,7 @@ fn a_load_is_found_from_a_cloud_with_bars_that_hold() {
 fn strays_are_no_noise() {
     let mut points = cloud(height, 2000, 0.01);
     points.iter_mut().step_by(20).enumerate().for_each(|(at, point)| point[2] += if at % 2 == 0 { 0.5 } else { -0.5 });
-    let mut solution = solve(&problem(scene::<lifted::recover::Scene>(), &points));
+    let mut solution = solve(&problem(lifted::scene("recover"), &points));
     let (off, within) = off_and_within(&mut solution);
     assert!(off < 0.2 && within > 0.85, "{off} {within}");
 }
@@ -99,7 +100,7 @@ fn strays_are_no_noise() {
 #[test]
 fn where_no_cloud_is_bars_are_wide() {
     let seen: Vec<[f64; 3]> = cloud(height, 2000, 0.01).into_iter().filter(|point| point[0] < 0.5).collect();
-    let mut solution = solve(&problem(scene::<lifted::recover::Scene>(), &seen));
+    let mut solution = solve(&problem(lifted::scene("recover"), &seen));
     assert!(solution.warnings.iter().any(|warning| warning.kind == WarningKind::Settled), "{:?}", solution.warnings);
     let (_, within) = off_and_within(&mut solution);
     assert!(within > 0.8, "{within}");
@@ -114,7 +115,7 @@ fn a_cloud_in_another_place_is_noticed() {
     let mut points = cloud(height, 2000, 0.01);
     points.iter_mut().for_each(|point| point[2] -= 0.05);
     let settings = Settings { budget: Some(Duration::from_secs(5)), ..settings() };
-    let problem = problem(scene::<lifted::recover::Scene>(), &points);
+    let problem = problem(lifted::scene("recover"), &points);
     let solution = recover(&problem, &settings, &mut |_| Flow::Continue).unwrap();
     let missed = solution.verdict.checks.iter().find(|check| check.check == "distance").unwrap();
     assert!(!missed.passed && solution.status != Status::Converged, "{missed:?}");
@@ -128,7 +129,7 @@ fn a_tension_is_learned_from_a_cloud() {
         let term = |m: f64, n: f64| (m * PI * x).sin() * (n * PI * y).sin() / (m * n * (m * m + n * n));
         16.0 / PI.powi(4) * odd().flat_map(|m| odd().map(move |n| term(m, n))).sum::<f64>()
     };
-    let mut solution = solve(&problem(scene::<tense::tension::Scene>(), &cloud(|at| 0.2 * phi(at), 3000, 1e-3)));
+    let mut solution = solve(&problem(tense::scene("tension"), &cloud(|at| 0.2 * phi(at), 3000, 1e-3)));
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
     let found = &solution.learned()[0];
     let off = (found.value - 2.0).abs();
@@ -141,7 +142,7 @@ fn hanging() -> Problem {
     let places: Vec<f64> = (0..400).map(|at| f64::from(at) / 399.0).collect();
     let point = |x: &f64| [*x, -0.1 * (PI * x).sin()].map(|x| x + 1e-3 * normal());
     let cloud: Vec<f64> = places.iter().flat_map(point).collect();
-    let mut problem = Problem::new(scene::<wire::recover::Scene>());
+    let mut problem = Problem::new(wire::scene("recover"));
     problem.set_group("inside", places.into(), Vec::new()).unwrap();
     problem.set_group("ends", vec![0.0, 1.0].into(), Vec::new()).unwrap();
     problem.set_cloud("inside", "seen", cloud).unwrap();

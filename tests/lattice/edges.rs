@@ -12,7 +12,7 @@ fn bars_hold_at_the_edges(noise: f64) {
     let lifted =
         |n: f64, [x, t]: [f64; 2]| wave(n) * (n * PI * x).sin() * (1.0 - (n * PI * t).cos()) / (n * PI).powi(2);
     let exact = |place| (1..200).map(|n| lifted(f64::from(n), place)).sum::<f64>();
-    let mut solution = solve(&rod(scene::<pressed::recover::Scene>(), noise, exact));
+    let mut solution = solve(&rod(pressed::scene("recover"), noise, exact));
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
     let places: Vec<f64> = (1..200).flat_map(|i| [0.005 * f64::from(i), 1.0]).collect();
     let (found, deviations) = values(&mut solution, "q", &places);

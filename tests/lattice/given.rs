@@ -1,10 +1,12 @@
 //! Given numbers that the data contradict, where a source takes over most of what is wrong with them.
 
+use nisp_interpreter::interpret;
+
 use super::some::measured_rod;
 use super::sources::scattered;
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A rod that is warmed evenly all the time.
     pub mod warmed {
         units: off;
@@ -29,7 +31,7 @@ fn a_diffusivity_that_is_wrong_is_named_with_what_it_should_be() {
         let probes = scattered(300, [1.0, 2.0], 3);
         let warm = |[x, t]: [f64; 2]| (1.0 - (-rate * t).exp()) * (PI * x).sin();
         let measured = pairs(&probes).map(|place| warm(place) + 0.02 * normal()).collect();
-        let mut problem = measured_rod(scene::<warmed::recover::Scene>(), probes, measured);
+        let mut problem = measured_rod(warmed::scene("recover"), probes, measured);
         problem.set_parameter("a", diffusivity).unwrap();
         solve(&problem)
     };

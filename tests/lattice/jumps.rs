@@ -1,9 +1,11 @@
 //! Sources that act on a part of the domain: second derivatives jump at its sides, which splines do not follow.
 
+use nisp_interpreter::interpret;
+
 use super::sources::scattered;
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A square that is heated on a disc about its middle.
     pub mod warmed_unknown {
         units: off;
@@ -18,7 +20,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A rod that is heated on a part of it.
     pub mod warmed_rod {
         units: off;
@@ -54,7 +56,7 @@ fn square(scene: SceneRef) -> Problem {
 
 fn probed(noise: f64, square_of_radius: f64) -> Problem {
     let mut normal = normals(7);
-    let mut problem = square(scene::<warmed_unknown::strength::Scene>());
+    let mut problem = square(warmed_unknown::scene("strength"));
     let probes: Vec<f64> = scattered(150, [2.0, 2.0], 3).into_iter().map(|x| x - 1.0).collect();
     let values = pairs(&probes).map(|place| disc(place) + noise * normal()).collect();
     problem.set_group("probes", probes.into(), vec![values]).unwrap();
@@ -95,7 +97,7 @@ fn a_source_on_a_part_of_a_rod_is_found_over_time() {
         };
         (1..400).map(wave).sum::<f64>()
     };
-    let mut solution = solve(&some::rod(scene::<warmed_rod::recover::Scene>(), 0.01, exact));
+    let mut solution = solve(&some::rod(warmed_rod::scene("recover"), 0.01, exact));
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
     let places: Vec<f64> = (0..40).flat_map(|i| [0.5, 0.05 * (f64::from(i) + 0.5)]).collect();
     let (found, deviations) = values(&mut solution, "q", &places);

@@ -1,10 +1,12 @@
 //! A scalar that is learned beside a free source: told by a source that does not change, or by nothing but that the source is smooth.
 
+use nisp_interpreter::interpret;
+
 use super::some::measured_rod;
 use super::sources::scattered;
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A rod that something heats, somehow, of which nobody knows how well it conducts.
     pub mod rod {
         units: off;
@@ -20,7 +22,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// The same rod, heated always in the same way.
     pub mod even {
         units: off;
@@ -48,7 +50,7 @@ fn solved(scene: SceneRef) -> Solution {
 
 #[test]
 fn a_conductivity_is_told_beside_a_source_that_does_not_change() {
-    let mut solution = solved(scene::<even::recover::Scene>());
+    let mut solution = solved(even::scene("recover"));
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.failed().collect::<Vec<_>>());
     let learned = &solution.learned()[0];
     let off = (learned.value - 0.1).abs();
@@ -58,7 +60,7 @@ fn a_conductivity_is_told_beside_a_source_that_does_not_change() {
 /// Any conductivity has a source that makes this warmth. The smoothest belongs to another one than the true.
 #[test]
 fn a_conductivity_is_not_told_beside_a_source_that_may_be_any() {
-    let solution = solved(scene::<rod::recover::Scene>());
+    let solution = solved(rod::scene("recover"));
     let mut failed = solution.verdict.failed();
     let is_of_scalar = |check: &nisp::Check| ["leaning", "determined"].contains(&check.check) && check.term == "k";
     assert!(failed.any(is_of_scalar), "{:?}", solution.verdict.checks);

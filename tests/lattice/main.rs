@@ -21,6 +21,7 @@ use std::time::Duration;
 
 use nisp::solve::driver::{Flow, Status};
 use nisp::{Carrier, Problem, SavedAnswer, SceneRef, Settings, Solution, recover, resume, scene};
+use nisp_interpreter::interpret;
 
 nisp::pde! {
     /// A conductivity that varies over a square.
@@ -56,7 +57,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Basins that are the wider the farther away, filled from time to time and never emptied.
     pub mod basins {
         units: off;
@@ -69,7 +70,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// The same basins behind gates that let through no more than a half.
     pub mod gates {
         units: off;
@@ -82,7 +83,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Sound of one frequency in a room whose walls give way.
     pub mod sound {
         units: off;
@@ -97,7 +98,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A cloud of dye that a stream of unknown speed carries.
     pub mod stream {
         units: off;
@@ -110,7 +111,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A square skin under a load that is sought.
     pub mod skin {
         units: off;
@@ -124,7 +125,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A square plate, free to turn at its edge.
     pub mod plate {
         units: off;
@@ -138,7 +139,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Heat that a rod takes up and passes on.
     pub mod lit {
         units: off;
@@ -271,7 +272,7 @@ fn a_wrong_condition_at_a_wall_is_noticed() {
         let samples = grid([20, 20], [1.0, 1.0], true);
         let measured = pairs(&samples).map(|place| sum(place, &|_| 1.0) + 2e-3 * normal()).collect();
         let walls = (0..40).map(|i| f64::from(i) / 39.0).flat_map(|s| [s, 0.0, s, 1.0, 0.0, s, 1.0, s]);
-        let mut problem = Problem::new(scene::<sound::recover::Scene>());
+        let mut problem = Problem::new(sound::scene("recover"));
         problem.set_group("inside", grid([20, 20], [1.0, 1.0], false).into(), Vec::new()).unwrap();
         problem.set_group("walls", walls.collect::<Vec<f64>>().into(), Vec::new()).unwrap();
         problem.set_group("samples", samples.into(), vec![measured]).unwrap();
@@ -304,7 +305,7 @@ fn an_equation_is_asked_between_points_that_are_few() {
     // Rows of points that are close along `x` and far apart along `t`.
     let (points, places) = (grid([25, 12], [2.0, 1.0], true), grid([20, 8], [2.0, 1.0], true));
     let exact = pairs(&places).map(|[x, t]| (-((x - 0.4 * t - 0.7) / 0.3).powi(2)).exp()).collect();
-    let mut problem = Problem::new(scene::<stream::identify::Scene>());
+    let mut problem = Problem::new(stream::scene("identify"));
     problem.set_group("inside", points.into(), vec![]).unwrap();
     problem.set_group("samples", places.into(), vec![exact]).unwrap();
     let mut solution = solve(&problem);
@@ -438,7 +439,7 @@ fn a_source_between_two_bounds_stays_at_both() {
     let filled =
         |t: f64| rising(t) + 0.5 * (t.clamp(open, closed) - open) + rising(open) - rising(PI - t.clamp(closed, PI));
     let level = |[x, t]: [f64; 2]| (filled(PI) * (t / (2.0 * PI)).floor() + filled(t % (2.0 * PI))) / (1.0 + x);
-    let (inside, found) = inflows(scene::<gates::recover::Scene>(), level, 12);
+    let (inside, found) = inflows(gates::scene("recover"), level, 12);
     assert!(found.iter().all(|q| (0.0..=0.5).contains(q)));
     let exact: Vec<f64> = pairs(&inside).map(inflow).collect();
     let off = root_mean_square(found.iter().zip(&exact).map(|(q, exact)| q - exact));
@@ -452,7 +453,7 @@ fn a_source_with_a_bound_stays_at_it() {
     let inflow = |[_, t]: [f64; 2]| t.sin().max(0.0).powi(2);
     let filled = |t: f64| 0.5 * t - 0.25 * (2.0 * t).sin();
     let level = |[x, t]: [f64; 2]| (0.5 * PI * (t / (2.0 * PI)).floor() + filled((t % (2.0 * PI)).min(PI))) / (1.0 + x);
-    let (inside, found) = inflows(scene::<basins::recover::Scene>(), level, 11);
+    let (inside, found) = inflows(basins::scene("recover"), level, 11);
     assert!(found.iter().all(|&q| q >= 0.0));
     let exact: Vec<f64> = pairs(&inside).map(inflow).collect();
     let off = root_mean_square(found.iter().zip(&exact).map(|(q, exact)| q - exact));

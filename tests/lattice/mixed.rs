@@ -1,11 +1,12 @@
 //! Groups in which measurements are made and equations or clouds stand too.
 
 use nisp::beyond_splines;
+use nisp_interpreter::interpret;
 
 use super::sources::{edge, judged, scattered};
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A rod whose equation is asked where it was measured.
     pub mod probed {
         units: off;
@@ -18,7 +19,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A skin that is measured and seen at once.
     pub mod seen_twice {
         units: off;
@@ -32,7 +33,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A skin that is seen from a place which its points alone know.
     pub mod shifted {
         units: off;
@@ -51,7 +52,7 @@ nisp::pde! {
 fn equations_where_many_exact_values_are_do_not_keep_them_all() {
     let places = scattered(150_000, [1.0, 1.0], 3);
     let warm = pairs(&places).map(|[x, t]| (PI * x).sin() * (-0.3 * PI * PI * t).exp()).collect();
-    let mut problem = Problem::new(scene::<probed::identify::Scene>());
+    let mut problem = Problem::new(probed::scene("identify"));
     problem
         .set_group(
             "ends",
@@ -77,7 +78,7 @@ fn a_surface_may_be_measured_where_it_is_seen() {
         .collect();
     let places = grid([22, 22], [1.0, 1.0], false);
     let measured = pairs(&places).map(|place| height(place) + 0.01 * normal()).collect();
-    let mut problem = Problem::new(scene::<seen_twice::recover::Scene>());
+    let mut problem = Problem::new(seen_twice::scene("recover"));
     problem.set_group("inside", grid([26, 26], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     problem.set_group("surface", places.into(), vec![measured]).unwrap();
     problem.set_group("edge", edge(41).into(), Vec::new()).unwrap();
@@ -91,5 +92,5 @@ fn a_surface_may_be_measured_where_it_is_seen() {
 /// Between its points nothing says where such a surface is.
 #[test]
 fn a_surface_that_reads_a_column_is_left_to_a_network() {
-    assert_eq!(beyond_splines(scene::<shifted::recover::Scene>().schema), Some("clouds in groups with columns"));
+    assert_eq!(beyond_splines(shifted::scene("recover").schema), Some("clouds in groups with columns"));
 }

@@ -1,10 +1,12 @@
 //! Sources that depend on some of the coordinates only: bars are no longer than what the cells cannot hold asks for, and a source that
 //! varies along another coordinate too is noticed.
 
+use nisp_interpreter::interpret;
+
 use super::sources::scattered;
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A string at rest that something begins to press.
     pub mod pressed {
         units: off;
@@ -19,7 +21,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A rod that is warmed evenly all the time.
     pub mod steady {
         units: off;
@@ -64,7 +66,7 @@ fn a_smooth_source_has_no_bars_of_one_with_edges() {
     let mode = |n: f64, [x, t]: [f64; 2]| (n * PI * x).sin() * (1.0 - (n * PI * t).cos()) / (n * n);
     let exact = |place| mode(1.0, place) - mode(3.0, place) / 3.0;
     let source = |x: f64| PI * PI * ((PI * x).sin() - (3.0 * PI * x).sin() / 3.0);
-    let mut solution = solve(&rod(scene::<pressed::recover::Scene>(), 1e-3, exact));
+    let mut solution = solve(&rod(pressed::scene("recover"), 1e-3, exact));
     assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.checks);
     let places: Vec<f64> = (1..100).flat_map(|i| [0.01 * f64::from(i), 1.0]).collect();
     let (found, deviations) = values(&mut solution, "q", &places);
@@ -88,9 +90,9 @@ fn a_source_that_varies_along_another_coordinate_too_is_noticed() {
             (PI * x).sin() * ((1.0 - decay) / rate + share * (swing(t) - swing(0.0) * decay))
         }
     };
-    let even = solve(&rod(scene::<steady::recover::Scene>(), 0.01, exact(0.0)));
+    let even = solve(&rod(steady::scene("recover"), 0.01, exact(0.0)));
     assert_eq!(even.status, Status::Converged, "{:?}", even.verdict.checks);
-    let swings = solve(&rod(scene::<steady::recover::Scene>(), 0.01, exact(0.12)));
+    let swings = solve(&rod(steady::scene("recover"), 0.01, exact(0.12)));
     let check = swings.verdict.checks.iter().find(|check| check.check == "pattern").unwrap();
     assert!(!check.passed && check.message.contains("neighbours"), "{check:?}");
     assert_eq!(swings.status, Status::Inconsistent);

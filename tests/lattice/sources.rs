@@ -20,7 +20,7 @@ pub(super) fn bulged(count: usize, noise: f64, [of_noise, of_places]: [u64; 2]) 
     let mut normal = normals(of_noise);
     let samples = scattered(count, [1.0, 1.0], of_places);
     let measured = pairs(&samples).map(|place| bulge(place) + noise * normal()).collect();
-    let mut problem = Problem::new(scene::<skin::recover::Scene>());
+    let mut problem = Problem::new(skin::scene("recover"));
     problem.set_group("inside", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     problem.set_group("edge", edge(40).into(), Vec::new()).unwrap();
     problem.set_group("samples", samples.into(), vec![measured]).unwrap();
@@ -67,7 +67,7 @@ fn many_measurements_say_how_noisy_they_are() {
     let samples = scattered(9000, [1.0, 1.0], 11);
     let mut value = |at: usize, place| if at % 4 == 1 { f64::NAN } else { bulge(place) + 0.05 * normal() };
     let measured = pairs(&samples).enumerate().map(|(at, place)| value(at, place)).collect();
-    let mut problem = Problem::new(scene::<skin::recover::Scene>());
+    let mut problem = Problem::new(skin::scene("recover"));
     problem.set_group("inside", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     problem.set_group("edge", edge(40).into(), Vec::new()).unwrap();
     problem.set_group("samples", samples.into(), vec![measured]).unwrap();
@@ -99,7 +99,7 @@ fn what_equations_rule_out_does_not_flatten_a_load() {
     let size = root_mean_square(exact.iter().copied());
     let mut normal = normals(6);
     let measured = exact.iter().map(|w| w + 0.03 * size * normal()).collect();
-    let mut problem = Problem::new(scene::<plate::recover::Scene>());
+    let mut problem = Problem::new(plate::scene("recover"));
     problem.set_group("inside", grid([35, 35], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     problem.set_group("edge", edge(40).into(), Vec::new()).unwrap();
     problem.set_group("samples", samples.into(), vec![measured]).unwrap();
@@ -120,7 +120,7 @@ fn lattices_become_as_fine_as_the_equations_ask() {
     let samples = grid([60, 60], [1.0, 1.0], true);
     let mut normal = normals(7);
     let measured = pairs(&samples).map(|[x, t]| spot(x, t) + 3e-3 * normal()).collect();
-    let mut problem = Problem::new(scene::<lit::recover::Scene>());
+    let mut problem = Problem::new(lit::scene("recover"));
     problem.set_group("rod", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     problem.set_group("samples", samples.into(), vec![measured]).unwrap();
     let mut solution = solve(&problem);
@@ -139,7 +139,7 @@ fn a_switched_source_is_within_its_bars() {
     let samples = scattered(800, [1.0, 1.0], 9);
     let mut normal = normals(12);
     let measured = pairs(&samples).map(|place| warm(place) + 3e-3 * normal()).collect();
-    let mut problem = Problem::new(scene::<lit::recover::Scene>());
+    let mut problem = Problem::new(lit::scene("recover"));
     problem.set_group("rod", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     problem.set_group("samples", samples.into(), vec![measured]).unwrap();
     let mut solution = solve(&problem);

@@ -1,8 +1,10 @@
 //! Fields that swing between sensors: where it is not said how a field begins, a wrong equation may meet few stations.
 
+use nisp_interpreter::interpret;
+
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// Clay that settles: its pores are under pressure and drain at the top. Some of it may leak.
     pub mod clay {
         units: off;
@@ -30,7 +32,7 @@ fn settled(leak: f64) -> Solution {
     let measured = pairs(&cells).map(|place| 80.0 * wave(1.0, place) + 15.0 * wave(3.0, place) + 0.2 * normal());
     let measured: Vec<f64> = measured.collect();
     let side = |z: f64| (0..40).flat_map(|row| [z, f64::from(row) / 39.0]).collect::<Vec<f64>>();
-    let mut problem = Problem::new(scene::<clay::find::Scene>());
+    let mut problem = Problem::new(clay::scene("find"));
     problem.set_parameter("leak", leak).unwrap();
     problem.set_group("inside", grid([28, 28], [1.0, 1.0], false).into(), Vec::new()).unwrap();
     problem.set_group("top", side(0.0).into(), Vec::new()).unwrap();

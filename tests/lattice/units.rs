@@ -1,9 +1,11 @@
 //! What a lattice finds does not depend on the sizes that parameters have beside lengths and times, or on where a temperature is counted from.
 
+use nisp_interpreter::interpret;
+
 use super::sources::{judged, scattered};
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A steel rod that something heats always in the same way, between ends of one temperature.
     pub mod steel {
         coordinates: x [m], t [s];
@@ -29,7 +31,7 @@ fn found(level: f64, warm: f64, noise: f64) -> (Solution, f64, f64) {
         .map(|[x, t]| level + warm * (1.0 - (-rate * t).exp()) * (PI * x / length).sin() + noise * normal())
         .collect();
     let along = |count: usize, i: usize| i as f64 / (count - 1) as f64;
-    let mut problem = Problem::new(scene::<steel::recover::Scene>());
+    let mut problem = Problem::new(steel::scene("recover"));
     problem.set_parameter("T0", level).unwrap();
     problem.set_group("inside", grid([28, 28], [length, time], true).into(), Vec::new()).unwrap();
     let ends: Vec<f64> = (0..60).flat_map(|i| [0.0, time * along(60, i), length, time * along(60, i)]).collect();

@@ -1,8 +1,10 @@
 //! Records over which waves cross their domain several times: lattices have more cells along time than along lengths.
 
+use nisp_interpreter::interpret;
+
 use super::*;
 
-nisp::pde! {
+interpret! {
     /// A string at rest that something begins to press.
     pub mod pressed {
         coordinates: x [m], t [s];
@@ -41,7 +43,7 @@ fn a_press_is_found_from_waves_that_run_to_and_fro() {
         let modes = (1..).map(|mode| f64::from(mode) * PI).zip(&amplitudes);
         modes.map(|(k, size)| size * (1.0 - (k * t).cos()) * (k * x).sin() / (k * k)).sum()
     };
-    let mut problem = Problem::new(scene::<pressed::recover::Scene>());
+    let mut problem = Problem::new(pressed::scene("recover"));
     let along = |count: usize| (0..count).map(move |i| i as f64 / (count - 1) as f64);
     problem.set_group("inside", grid([28, 28], [1.0, CROSSINGS], false).into(), Vec::new()).unwrap();
     problem.set_group("begin", along(201).flat_map(|s| [s, 0.0]).collect::<Vec<f64>>().into(), Vec::new()).unwrap();

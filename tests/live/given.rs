@@ -1,10 +1,11 @@
 //! Numbers that are given wrongly, and bounds.
 
-use nisp::{FixedLagSmoother, LagSettings, Problem, Smoothed, scene};
+use nisp::{FixedLagSmoother, LagSettings, Problem, Smoothed};
+use nisp_interpreter::interpret;
 
 use crate::{noise, smoothed, smoother};
 
-nisp::pde! {
+interpret! {
     /// Two tanks, the second of which nothing flows into but from the first.
     mod tanks {
         units: off;
@@ -19,7 +20,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A level that is fed, and never drawn from.
     mod fed {
         units: off;
@@ -41,7 +42,7 @@ fn levels(t: f64) -> [f64; 2] {
 
 /// The answers to 1500 rows with noise of a hundredth, with a `k` that is given.
 fn answers(k: f64, seed: u64) -> Vec<Smoothed> {
-    let mut problem = Problem::new(scene::<tanks::recover::Scene>());
+    let mut problem = Problem::new(tanks::scene("recover"));
     problem.set_parameter("k", k).unwrap();
     let (mut smoother, mut noise) = (FixedLagSmoother::new(problem, LagSettings::default()).unwrap(), noise(seed));
     let mut found = Vec::new();
@@ -82,7 +83,7 @@ fn fed_by(level: f64) -> Vec<(f64, f64)> {
 /// A source that touches its bound again and again is never beyond it.
 #[test]
 fn sources_keep_their_bounds() {
-    let found = smoothed(&mut smoother(scene::<fed::recover::Scene>(), LagSettings::default()), &fed_by(1.0));
+    let found = smoothed(&mut smoother(fed::scene("recover"), LagSettings::default()), &fed_by(1.0));
     assert!(found.iter().all(|found| found.heads[1].0 >= 0.0));
     let is_off = |found: &&Smoothed| (found.heads[1].0 - 1.0 - found.at.cos()).abs() > 5.0 * found.heads[1].1;
     let (off, sound) = (found.iter().filter(is_off).count(), found.iter().filter(|found| found.is_sound()).count());
@@ -92,7 +93,7 @@ fn sources_keep_their_bounds() {
 /// Rows that speak of a source far beyond its bound contradict it.
 #[test]
 fn rows_that_contradict_a_bound_are_not_called_sound() {
-    let found = smoothed(&mut smoother(scene::<fed::recover::Scene>(), LagSettings::default()), &fed_by(0.0));
+    let found = smoothed(&mut smoother(fed::scene("recover"), LagSettings::default()), &fed_by(0.0));
     let beyond = found.iter().filter(|found| found.at.cos() < -0.5 && found.is_sound()).count();
     assert_eq!(beyond, 0);
 }

@@ -1,10 +1,11 @@
 //! Scalars that are learned: what is not known of them is in the deviations.
 
-use nisp::{LagSettings, Smoothed, scene};
+use nisp::{LagSettings, Smoothed};
+use nisp_interpreter::interpret;
 
 use crate::{noise, smoothed, smoother};
 
-nisp::pde! {
+interpret! {
     /// What decays at a rate that nobody knows, and is fed.
     mod decay {
         units: off;
@@ -31,7 +32,7 @@ fn a_source_is_known_no_better_than_the_rate_beside_it() {
         let mut noise = noise(seed);
         let times = (0..700).map(|i| 0.1 * f64::from(i));
         let rows: Vec<(f64, f64)> = times.map(|t| (t, level(t) + 0.02 * noise())).collect();
-        let found = smoothed(&mut smoother(scene::<decay::recover::Scene>(), LagSettings::default()), &rows);
+        let found = smoothed(&mut smoother(decay::scene("recover"), LagSettings::default()), &rows);
         for Smoothed { at, heads, .. } in found.iter().filter(|found| found.at > begins + 1.0 && found.is_sound()) {
             let off = (heads[1].0 - fed(*at)).abs() / heads[1].1;
             asked += 1;

@@ -1,13 +1,14 @@
 //! A record smoothed as it comes: beside the same record solved as a whole, beside closed forms, and where rows are spoiled.
 
 use nisp::solve::driver::Flow;
-use nisp::{Carrier, FixedLagSmoother, LagSettings, Problem, SceneRef, Settings, Smoothed, recover, scene};
+use nisp::{Carrier, FixedLagSmoother, LagSettings, Problem, SceneRef, Settings, Smoothed, recover};
+use nisp_interpreter::interpret;
 
 mod given;
 mod learned;
 mod rows;
 
-nisp::pde! {
+interpret! {
     /// A damped oscillator under an unknown drive.
     mod driven {
         units: off;
@@ -20,7 +21,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A spring that hardens, under an unknown drive.
     mod hard {
         units: off;
@@ -33,7 +34,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A level that flows out as its root, under an unknown inflow.
     mod outflow {
         units: off;
@@ -46,7 +47,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// The first one over time: its drive may set in with the record.
     mod timed {
         coordinates: t [s];
@@ -59,7 +60,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// The first one, with a drive that is known beside the unknown one.
     mod fed {
         units: off;
@@ -72,7 +73,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A spring that nobody knows, under an unknown force.
     mod spring {
         units: off;
@@ -86,7 +87,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// An oscillator that is left to itself.
     mod free {
         units: off;
@@ -99,7 +100,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A stirred tank that heats itself, and an unknown heater.
     mod tank {
         coordinates: t [min];
@@ -156,10 +157,10 @@ fn smoothed(smoother: &mut FixedLagSmoother, rows: &[(f64, f64)]) -> Vec<Smoothe
 #[test]
 fn a_linear_record_is_smoothed_as_it_is_solved() {
     let rows = record(400, 0.1, 0.02);
-    let mut smoother = smoother(scene::<driven::recover::Scene>(), LagSettings { lag: Some(4.0), first_rows: 200 });
+    let mut smoother = smoother(driven::scene("recover"), LagSettings { lag: Some(4.0), first_rows: 200 });
     let found = smoothed(&mut smoother, &rows);
     assert_eq!(found.len(), rows.len());
-    let mut problem = Problem::new(scene::<driven::recover::Scene>());
+    let mut problem = Problem::new(driven::scene("recover"));
     let times: Vec<f64> = rows.iter().map(|row| row.0).collect();
     problem.set_group("motion", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.clone().into(), vec![rows.iter().map(|row| row.1).collect()]).unwrap();
@@ -180,7 +181,7 @@ fn a_linear_record_is_smoothed_as_it_is_solved() {
 
 #[test]
 fn a_long_record_is_right_by_its_closed_form() {
-    for (scene, cubic) in [(scene::<driven::recover::Scene>(), 0.0), (scene::<hard::recover::Scene>(), 3.0)] {
+    for (scene, cubic) in [(driven::scene("recover"), 0.0), (hard::scene("recover"), 3.0)] {
         let rows = record(3000, 0.05, 0.01);
         let mut smoother = smoother(scene, LagSettings::default());
         let found = smoothed(&mut smoother, &rows);
@@ -212,7 +213,7 @@ fn a_drive_that_sets_in_with_the_record_is_within_its_bars() {
     let mut noise = noise(5);
     let times = (0..300).map(|i| 0.05 * f64::from(i));
     let rows: Vec<(f64, f64)> = times.map(|t| (t, sum(t, &|_| 1.0) + 0.01 * noise())).collect();
-    let found = smoothed(&mut smoother(scene::<timed::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(timed::scene("recover"), LagSettings::default()), &rows);
     for found in &found[..20] {
         let exact = sum(found.at, &|r| r * r - 0.4 * r + 4.0);
         let (value, deviation) = found.heads[1];
@@ -237,7 +238,7 @@ fn a_spring_is_learned_from_the_steps_of_its_force() {
     let motion = |t: f64| 0.4 * (1.0 - stiffness * rings(t)) + sum(t, &rings);
     let times = (0..600).map(|i| f64::from(i) / 30.0);
     let rows: Vec<(f64, f64)> = times.map(|t| (t, motion(t) + 0.003 * noise())).collect();
-    let found = smoothed(&mut smoother(scene::<spring::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(spring::scene("recover"), LagSettings::default()), &rows);
     let is_quiet = |found: &&Smoothed| steps.iter().all(|(from, _)| (found.at - from).abs() > 0.6);
     let quiet: Vec<&Smoothed> = found[200..590].iter().filter(is_quiet).collect();
     let is_off = |found: &&&Smoothed| (found.heads[1].0 - sum(found.at, &|_| 1.0)).abs() > 4.0 * found.heads[1].1;
@@ -257,7 +258,7 @@ fn a_drive_that_sets_in_late_is_found() {
     let mut noise = noise(4);
     let times = (0..1000).map(|i| 0.02 * f64::from(i));
     let rows: Vec<(f64, f64)> = times.map(|t| (t, 1.0 - (3.0 * since(t)).cos() + sigma * noise())).collect();
-    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
     assert_eq!(found.len(), rows.len());
     assert!(found.iter().zip(&rows).all(|(found, row)| (found.at - row.0).abs() < 1e-9), "every row once, in order");
     let driven = &found[430..990];
@@ -294,7 +295,7 @@ fn a_tank_that_heats_itself_is_followed() {
         }
         state = next(t, state);
     }
-    let found = smoothed(&mut smoother(scene::<tank::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(tank::scene("recover"), LagSettings::default()), &rows);
     let driven = &found[430..990];
     let sound: Vec<&Smoothed> = driven.iter().filter(|found| found.is_sound()).collect();
     assert!(10 * sound.len() > 7 * driven.len(), "{} of {} rows are sound", sound.len(), driven.len());
@@ -307,7 +308,7 @@ fn a_tank_that_heats_itself_is_followed() {
 fn a_known_column_is_taken_with_its_rows() {
     let rows: Vec<(f64, [f64; 2])> =
         record(1000, 0.05, 0.01).into_iter().map(|(t, y)| (t, [(0.9 * t).sin(), y])).collect();
-    let mut smoother = smoother(scene::<fed::recover::Scene>(), LagSettings::default());
+    let mut smoother = smoother(fed::scene("recover"), LagSettings::default());
     let mut found = Vec::new();
     rows.iter().for_each(|(t, values)| found.extend(smoother.push(*t, values).unwrap()));
     found.extend(smoother.finish().unwrap());
@@ -326,7 +327,7 @@ fn a_stiffness_that_rests_on_a_small_force_is_not_called_sound() {
     let mut noise = noise(6);
     let times = (0..600).map(|i| 0.05 * f64::from(i));
     let rows: Vec<(f64, f64)> = times.map(|t| (t, 0.5 * (0.3 * t).sin() + 0.003 * noise())).collect();
-    let found = smoothed(&mut smoother(scene::<spring::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(spring::scene("recover"), LagSettings::default()), &rows);
     // Later rows are asked anew.
     let sound = found[..400].iter().filter(|found| found.is_sound()).count();
     assert!(sound == 0, "{sound} of 400 rows are sound");
@@ -339,7 +340,7 @@ fn a_wrong_equation_is_told_from_a_right_one() {
     let mut noise = noise(3);
     let rows: Vec<(f64, f64)> = (0..600).map(|i| 0.05 * f64::from(i)).map(|t| (t, free(t) + 0.01 * noise())).collect();
     for (stiffness, is_right) in [(4.0025, true), (5.0, false)] {
-        let mut problem = Problem::new(scene::<free::ring::Scene>());
+        let mut problem = Problem::new(free::scene("ring"));
         problem.set_parameter("k", stiffness).unwrap();
         let found = smoothed(&mut FixedLagSmoother::new(problem, LagSettings::default()).unwrap(), &rows);
         let sound = found[200..].iter().filter(|found| found.is_sound()).count();

@@ -1,6 +1,6 @@
 //! Rows that stand alone, come at odd places, tell nothing, or are few.
 
-use nisp::{LagSettings, LiveError, Smoothed, scene};
+use nisp::{LagSettings, LiveError, Smoothed};
 
 use crate::{drive, driven, fed, motion, noise, outflow, record, smoothed, smoother};
 
@@ -17,7 +17,7 @@ fn strays_are_left_out_and_told() {
     strays.insert(31, beside);
     for lag in [None, Some(0.1), Some(1.0), Some(5.0)] {
         let settings = LagSettings { lag, ..LagSettings::default() };
-        let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), settings), &rows);
+        let found = smoothed(&mut smoother(driven::scene("recover"), settings), &rows);
         let is_right = |found: &Smoothed| (found.heads[1].0 - drive(found.at, 0.0)).abs() < 5.0 * found.heads[1].1;
         let off = found.iter().filter(|found| !is_right(found)).count();
         assert!(off == 0, "{lag:?}: {off} rows are off");
@@ -42,7 +42,7 @@ fn many_strays_are_left_out_and_told() {
                 strays.push(at);
             }
         }
-        let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+        let found = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
         let told = |row: &usize| found[*row].is_stray;
         let missed = strays.iter().filter(|row| !told(row)).count();
         let wrong = (0..rows.len()).filter(|row| told(row) && !strays.contains(row)).count();
@@ -69,8 +69,8 @@ fn a_stray_at_the_end_of_a_stretch_makes_no_bars_longer() {
     let plain = record(800, 0.05, 0.01);
     let mut spoiled = plain.clone();
     spoiled[399].1 += 0.8;
-    let [plain, spoiled] = [plain, spoiled]
-        .map(|rows| smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows));
+    let [plain, spoiled] =
+        [plain, spoiled].map(|rows| smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows));
     assert!(spoiled[399].is_stray);
     for (row, (spoiled, plain)) in spoiled.iter().zip(&plain).enumerate().take(700).skip(500) {
         let share = spoiled.heads[1].1 / plain.heads[1].1;
@@ -87,7 +87,7 @@ fn a_row_that_cannot_be_evaluated_does_not_end_a_record() {
     let mut rows: Vec<(f64, f64)> =
         (0..1500).map(|i| 0.05 * f64::from(i)).map(|t| (t, level(t) + 0.003 * noise())).collect();
     rows[700].1 = -3.0;
-    let found = smoothed(&mut smoother(scene::<outflow::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(outflow::scene("recover"), LagSettings::default()), &rows);
     let places: Vec<f64> = found.iter().map(|found| found.at).collect();
     assert!(places.len() == rows.len() && places.is_sorted(), "every row has an answer");
     assert!(found[700].is_stray || !found[700].is_sound());
@@ -115,7 +115,7 @@ fn a_smeared_step_is_not_called_sound() {
     let times = (0..900).map(|i| 0.025 * f64::from(i));
     let rows: Vec<(f64, f64)> =
         times.map(|t| (t, 0.1 * motion(t) + 3.0 * answer(t - begins) + sigma * noise())).collect();
-    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
     let is_far = |found: &&Smoothed| {
         let exact = 0.1 * drive(found.at, 0.0) + if found.at > begins { 3.0 } else { 0.0 };
         (found.heads[1].0 - exact).abs() > 8.0 * found.heads[1].1
@@ -132,7 +132,7 @@ fn a_sensor_that_fails_is_not_called_sound() {
     let mut rows = record(900, 0.05, 0.01);
     let last = rows[600].1;
     rows[600..].iter_mut().for_each(|(_, y)| *y = last);
-    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
     assert_eq!(found.iter().position(|found| found.is_held), Some(600));
     assert!(found[600..].iter().all(|found| found.is_held && !found.is_sound()));
     assert!(found[..590].iter().filter(|found| !found.is_sound()).count() < 6);
@@ -145,10 +145,10 @@ fn what_moves_several_rows_is_no_stray() {
     for (t, y) in &mut rows {
         *y += 30.0 * (answer(*t - 20.0) - answer(*t - 20.3)) + 10.0 * answer(*t - 30.0);
     }
-    let plain = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let plain = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
     assert!(plain.iter().all(|found| !found.is_stray));
     (700..704).for_each(|row| rows[row].1 += 0.5);
-    let glitch = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let glitch = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
     assert!(glitch.iter().all(|found| !found.is_stray));
     assert!(glitch[700..704].iter().all(|found| !found.is_sound()));
 }
@@ -157,8 +157,8 @@ fn what_moves_several_rows_is_no_stray() {
 fn rows_that_cannot_be_taken_are_left_out() {
     let rows = record(600, 0.1, 0.02);
     let settings = LagSettings { lag: Some(1.0), ..LagSettings::default() };
-    let plain = smoothed(&mut smoother(scene::<driven::recover::Scene>(), settings), &rows);
-    let mut spoiled = smoother(scene::<driven::recover::Scene>(), settings);
+    let plain = smoothed(&mut smoother(driven::scene("recover"), settings), &rows);
+    let mut spoiled = smoother(driven::scene("recover"), settings);
     let mut found = Vec::new();
     for (at, (t, y)) in rows.iter().enumerate() {
         found.extend(spoiled.push(*t, &[*y]).unwrap());
@@ -181,8 +181,8 @@ fn rows_that_cannot_be_taken_are_left_out() {
 #[test]
 fn a_place_far_ahead_is_left_out_if_the_next_row_is_not() {
     let rows = record(600, 0.1, 0.02);
-    let plain = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
-    let mut spoiled = smoother(scene::<driven::recover::Scene>(), LagSettings::default());
+    let plain = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
+    let mut spoiled = smoother(driven::scene("recover"), LagSettings::default());
     let (mut found, mut left_out) = (Vec::new(), Vec::new());
     for (at, (t, y)) in rows.iter().enumerate() {
         found.extend(spoiled.push(*t, &[*y]).unwrap());
@@ -209,7 +209,7 @@ fn first_rows_that_tell_nothing_wait_for_others() {
         rows.iter().map(|&(t, y)| (t, y + if t < 15.0 { 0.0 } else { 0.01 * noise() })).collect();
     let silent: Vec<(f64, f64)> = resting.iter().map(|&(t, y)| (t, if t < 15.0 { f64::NAN } else { y })).collect();
     for rows in [resting, silent] {
-        let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+        let found = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
         assert_eq!(found.len(), rows.len());
         let is_right = |found: &&Smoothed| {
             let s = since(found.at);
@@ -231,7 +231,7 @@ fn gaps_and_bursts_are_taken_as_they_are() {
         // A gap of a hundred.
         _ => 130.0 + 0.05 * f64::from(i - 600),
     };
-    let mut smoother = smoother(scene::<driven::recover::Scene>(), LagSettings::default());
+    let mut smoother = smoother(driven::scene("recover"), LagSettings::default());
     let mut found = Vec::new();
     for i in 0..1200 {
         let t = place(i);
@@ -254,7 +254,7 @@ fn answers_do_not_depend_on_where_a_record_begins() {
     let rows = record(1000, 0.02, 0.01);
     let answers = |begins: f64| {
         let settings = LagSettings { lag: Some(1.0), ..LagSettings::default() };
-        let mut smoother = smoother(scene::<fed::recover::Scene>(), settings);
+        let mut smoother = smoother(fed::scene("recover"), settings);
         let mut found = Vec::new();
         rows.iter().for_each(|(t, y)| found.extend(smoother.push(begins + t, &[(0.9 * t).sin(), *y]).unwrap()));
         found.extend(smoother.finish().unwrap());
@@ -277,7 +277,7 @@ fn no_row_is_lost_between_gaps() {
     let times = blocks.iter().flat_map(|&(from, rows)| (0..rows).map(move |i| from + 0.1 * f64::from(i)));
     let mut noise = noise(8);
     let rows: Vec<(f64, f64)> = times.map(|t| (t, motion(t) + 0.01 * noise())).collect();
-    let found = smoothed(&mut smoother(scene::<driven::recover::Scene>(), LagSettings::default()), &rows);
+    let found = smoothed(&mut smoother(driven::scene("recover"), LagSettings::default()), &rows);
     let places = |at: f64| rows.iter().filter(|row| (row.0 - at).abs() < 1e-9).count();
     assert_eq!(found.len(), rows.len());
     assert!(found.iter().all(|found| places(found.at) == 1));
@@ -285,7 +285,7 @@ fn no_row_is_lost_between_gaps() {
 
 #[test]
 fn few_rows_are_said_to_be_few() {
-    let mut smoother = smoother(scene::<driven::recover::Scene>(), LagSettings::default());
+    let mut smoother = smoother(driven::scene("recover"), LagSettings::default());
     record(5, 0.1, 0.02).iter().for_each(|(t, y)| assert!(smoother.push(*t, &[*y]).unwrap().is_empty()));
     assert!(matches!(smoother.finish(), Err(LiveError::FewRows { rows: 5, .. })));
 }

@@ -1,7 +1,7 @@
 //! Records that are not as they were measured: averaged along the rows, fitted by moving parabolas, or filled between measured rows.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, Solution, scene};
+use nisp::{Carrier, Problem, Solution};
 
 use crate::correlated::{ROWS, levels, vessel, with};
 use crate::{normals, solve};
@@ -15,7 +15,7 @@ fn noise(seed: u64) -> Vec<f64> {
 /// The answer to the record of a vessel that something was done to.
 fn answer(treated: impl Fn(&[f64]) -> Vec<f64>, seed: u64) -> Solution {
     let measured: Vec<f64> = levels().iter().zip(noise(seed)).map(|(level, noise)| level + noise).collect();
-    let problem = with(Problem::new(scene::<vessel::all::Scene>()), treated(&measured), &[0.0; ROWS]);
+    let problem = with(Problem::new(vessel::scene("all")), treated(&measured), &[0.0; ROWS]);
     solve(&problem, Carrier::Splines)
 }
 

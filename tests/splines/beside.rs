@@ -1,11 +1,12 @@
 //! Scalars that are learned beside a free source, where the source that is smallest is not the true one.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, Solution, scene};
+use nisp::{Carrier, Problem, Solution};
+use nisp_interpreter::interpret;
 
 use crate::{normals, simulated, solve};
 
-nisp::pde! {
+interpret! {
     /// A body on a spring that a force moves: what does it weigh?
     mod body {
         units: off;
@@ -19,7 +20,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A body that is heated, and loses heat.
     mod heated {
         units: off;
@@ -66,7 +67,7 @@ fn a_body_is_weighed_beside_a_force_that_steps() {
     let force = |t: f64| if t > 6.0 { 5.0 } else { 0.0 };
     let slope = |t, [x, v]: [f64; 2]| [v, (force(t) - 0.4 * v - 12.0 * x) / 1.3];
     let motion: Vec<f64> = simulated(&times, [0.3, 0.0], slope).iter().map(|[x, _]| *x).collect();
-    let problem = Problem::new(scene::<body::weighed::Scene>());
+    let problem = Problem::new(body::scene("weighed"));
     assert_near(&mut answered(problem, "motion", &times, &motion), 1.3);
 }
 
@@ -79,8 +80,8 @@ fn what_a_heated_body_takes_up_and_loses_is_told_by_an_even_heater() {
         times.iter().map(|t| power / loss * (1.0 - (-loss * t / capacity).exp())).collect()
     };
     let [capacity, loss] = [1.6, 0.8];
-    let of = begun(Problem::new(scene::<heated::capacity::Scene>()));
+    let of = begun(Problem::new(heated::scene("capacity")));
     assert_near(&mut answered(of, "body", &times, &motion(capacity, start[1])), capacity);
-    let of = begun(Problem::new(scene::<heated::loss::Scene>()));
+    let of = begun(Problem::new(heated::scene("loss")));
     assert_near(&mut answered(of, "body", &times, &motion(start[0], loss)), loss);
 }

@@ -1,11 +1,12 @@
 //! Equations that know a measured column: they hold no better than that is known.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, Solution, scene};
+use nisp::{Carrier, Problem, Solution};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, simulated, solve};
 
-nisp::pde! {
+interpret! {
     /// A room that is heated as a meter says, and loses heat to air of a temperature that a sensor says.
     mod room {
         units: off;
@@ -23,7 +24,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A joint that a motor turns against a load; the motor's current is measured.
     mod joint {
         units: off;
@@ -76,7 +77,7 @@ fn solved(mut problem: Problem, (seed, noise): (u64, f64), gain: impl Fn(f64) ->
 #[test]
 fn a_loss_is_found_beside_noisy_columns() {
     for seed in 1..4 {
-        let mut solution = solved(Problem::new(scene::<room::losing::Scene>()), (seed, 0.3), |_| 0.0);
+        let mut solution = solved(Problem::new(room::scene("losing")), (seed, 0.3), |_| 0.0);
         assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
         let [found] = &solution.learned()[..] else { panic!("one number is learned") };
         let deviation = found.deviation.expect("a sound answer has error bars");
@@ -88,7 +89,7 @@ fn a_loss_is_found_beside_noisy_columns() {
 #[test]
 fn a_source_beside_noisy_columns_is_covered() {
     for seed in 1..4 {
-        let mut problem = Problem::new(scene::<room::gaining::Scene>());
+        let mut problem = Problem::new(room::scene("gaining"));
         problem.set_parameter("loss", LOSS).unwrap();
         let mut solution = solved(problem, (seed, 0.3), gain);
         assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict);
@@ -105,7 +106,7 @@ fn a_source_beside_noisy_columns_is_covered() {
 /// What a wrong capacity leaves goes up and down with the heat, which noise of the meter does not.
 #[test]
 fn noise_of_columns_excuses_no_wrong_parameter() {
-    let mut problem = Problem::new(scene::<room::losing::Scene>());
+    let mut problem = Problem::new(room::scene("losing"));
     problem.set_parameter("capacity", 1.2 * CAPACITY).unwrap();
     let solution = solved(problem, (1, 0.3), |_| 0.0);
     assert_eq!(solution.status, Status::Inconsistent);
@@ -128,7 +129,7 @@ fn a_load_beside_a_noisy_current_is_covered() {
         };
         let columns = vec![noisy(&current, 0.01)];
         let measured = noisy(&|t| (2.0 * t).sin(), 4e-4);
-        let mut problem = Problem::new(scene::<joint::all::Scene>());
+        let mut problem = Problem::new(joint::scene("all"));
         problem.set_group("inside", times.clone().into(), columns).unwrap();
         problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
         let mut solution = solve(&problem, Carrier::Splines);

@@ -1,11 +1,12 @@
 //! Fields with bounds, of which equations take derivatives.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, Solution, scene};
+use nisp::{Carrier, Problem, Solution};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, solve};
 
-nisp::pde! {
+interpret! {
     /// A leaking tank that begins empty, with an unknown inflow.
     mod tank {
         units: off;
@@ -20,7 +21,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A mass between two walls, and the force on it.
     mod walled {
         units: off;
@@ -33,7 +34,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// One substance that becomes another and decays; both amounts are measured, and neither is negative.
     mod decay {
         units: off;
@@ -65,7 +66,7 @@ fn failed(solution: &Solution) -> Vec<String> {
 #[test]
 fn a_field_that_touches_its_bound_has_the_source_of_its_derivative() {
     let (h, slope) = (|t: f64| t * t * (-t).exp(), |t: f64| (2.0 * t - t * t) * (-t).exp());
-    let mut problem = Problem::new(scene::<tank::filled::Scene>());
+    let mut problem = Problem::new(tank::scene("filled"));
     let places = times(120, 6.0);
     problem.set_group("flow", times(200, 6.0).into(), vec![]).unwrap();
     problem.set_group("start", vec![0.0].into(), vec![]).unwrap();
@@ -94,7 +95,7 @@ fn a_field_that_touches_its_bound_has_the_source_of_its_derivative() {
 #[test]
 fn a_field_between_two_bounds_has_second_derivatives() {
     let x = |t: f64| 0.99 * t.sin();
-    let mut problem = Problem::new(scene::<walled::moved::Scene>());
+    let mut problem = Problem::new(walled::scene("moved"));
     let places = times(200, 9.0);
     problem.set_group("motion", times(300, 9.0).into(), vec![]).unwrap();
     problem.set_group("samples", places.clone().into(), vec![noisy(&places, x, 0.002, 5)]).unwrap();
@@ -112,7 +113,7 @@ fn a_field_between_two_bounds_has_second_derivatives() {
 fn bounds_of_fields_hide_no_wrong_data() {
     let (a, b) = (|t: f64| (-0.5 * t).exp(), |t: f64| ((-0.5 * t).exp() - (-1.5 * t).exp()) / 2.0);
     let solved = |share: f64| {
-        let mut problem = Problem::new(scene::<decay::rates::Scene>());
+        let mut problem = Problem::new(decay::scene("rates"));
         let places = times(40, 5.0);
         problem.set_group("flask", times(100, 5.0).into(), vec![]).unwrap();
         problem.set_group("start", vec![0.0].into(), vec![]).unwrap();

@@ -1,10 +1,11 @@
 //! What is said of a source at the start of a record.
 
-use nisp::{Carrier, Problem, scene};
+use nisp::{Carrier, Problem};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, solve};
 
-nisp::pde! {
+interpret! {
     /// A tank with a leak that two pipes fill, one of them metered, where the other is shut at the start.
     mod filled {
         units: off;
@@ -28,7 +29,7 @@ fn a_source_that_is_said_to_be_zero_at_the_start_is_known_there() {
     let source = |t: f64| (2.0 * t + 0.5 * t * t) * (-t / 2.0).exp() - metered(t);
     let mut normal = normals(9);
     let measured = rows.iter().map(|&t| level(t) + 0.02 * normal()).collect();
-    let mut problem = Problem::new(scene::<filled::recover::Scene>());
+    let mut problem = Problem::new(filled::scene("recover"));
     problem.set_group("tank", rows.clone().into(), vec![rows.iter().map(|&t| metered(t)).collect()]).unwrap();
     problem.set_group("start", vec![0.0].into(), Vec::new()).unwrap();
     problem.set_group("samples", rows.clone().into(), vec![measured]).unwrap();

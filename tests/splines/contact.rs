@@ -1,11 +1,12 @@
 //! Bounds that set in and let go along a record.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, Solution, scene};
+use nisp::{Carrier, Problem, Solution};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, solve};
 
-nisp::pde! {
+interpret! {
     /// A cart with friction on a spring, and the push of the stop that it meets.
     mod stop {
         units: off;
@@ -19,7 +20,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// The same in three terms.
     mod apart {
         units: off;
@@ -96,19 +97,19 @@ fn is_right(mut solution: Solution) {
 #[test]
 fn a_stop_that_is_met_and_left_pushes_as_it_does_between_the_rows_too() {
     for (rows, seed) in [(121, 3), (201, 4)] {
-        is_right(bound(Problem::new(scene::<stop::met::Scene>()), rows, seed));
+        is_right(bound(Problem::new(stop::scene("met")), rows, seed));
     }
 }
 
 #[test]
 fn the_same_in_three_terms_is_the_same() {
-    is_right(bound(Problem::new(scene::<apart::met::Scene>()), 121, 5));
+    is_right(bound(Problem::new(apart::scene("met")), 121, 5));
 }
 
 /// With another spring the record and the stop contradict each other.
 #[test]
 fn a_stop_that_cannot_have_pushed_so_is_doubted() {
-    let mut problem = Problem::new(scene::<stop::met::Scene>());
+    let mut problem = Problem::new(stop::scene("met"));
     problem.set_parameter("k", 1.3).unwrap();
     let solution = bound(problem, 121, 3);
     assert!(!solution.verdict.passed());

@@ -1,12 +1,13 @@
 //! Noise that neighbouring rows share: a sensor that drifts, or that is slow.
 
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Carrier, Problem, Solution, recover, resume, scene};
+use nisp::{Carrier, Problem, Solution, recover, resume};
+use nisp_interpreter::interpret;
 
 use crate::steps::swing;
 use crate::{normals, of, settings, simulated, solve};
 
-nisp::pde! {
+interpret! {
     /// A vessel that drains, and what flows into it.
     pub(crate) mod vessel {
         units: off;
@@ -75,10 +76,10 @@ fn noise_that_rows_share_is_not_followed() {
     for seed in 1..4 {
         for shared in [0.6, 0.9] {
             let noise = noise(seed, 0.02, shared);
-            let vessel = with(Problem::new(scene::<vessel::all::Scene>()), levels(), &noise);
+            let vessel = with(Problem::new(vessel::scene("all")), levels(), &noise);
             let (off, [two, four]) = missed(&mut solve(&vessel, Carrier::Splines));
             assert!(off < 0.06 && two < 0.15 && four < 0.01, "vessel {seed} {shared}: {off} {two} {four}");
-            let swing = with(Problem::new(scene::<swing::loaded::Scene>()), places(), &noise);
+            let swing = with(Problem::new(swing::scene("loaded")), places(), &noise);
             let (_, [two, four]) = missed(&mut solve(&swing, Carrier::Splines));
             assert!(two < 0.15 && four < 0.01, "swing {seed} {shared}: {two} {four}");
         }
@@ -110,8 +111,8 @@ fn filtered(seed: u64, deviation: f64) -> Vec<f64> {
 fn rows_that_were_filtered_are_doubted() {
     for seed in 1..4 {
         let noise = filtered(seed, 0.05);
-        let vessel = with(Problem::new(scene::<vessel::all::Scene>()), levels(), &noise);
-        let swing = with(Problem::new(scene::<swing::loaded::Scene>()), places(), &noise);
+        let vessel = with(Problem::new(vessel::scene("all")), levels(), &noise);
+        let swing = with(Problem::new(swing::scene("loaded")), places(), &noise);
         for problem in [vessel, swing] {
             let solution = solve(&problem, Carrier::Splines);
             let failed: Vec<&str> = solution.verdict.failed().map(|check| check.check).collect();
@@ -124,7 +125,7 @@ fn rows_that_were_filtered_are_doubted() {
 /// The steps are tried again with noise that rows share. Wherever they are stopped, they go on with the same bits.
 #[test]
 fn a_run_is_resumed_while_noise_may_be_shared() {
-    let problem = with(Problem::new(scene::<vessel::all::Scene>()), levels(), &noise(2, 0.02, 0.9));
+    let problem = with(Problem::new(vessel::scene("all")), levels(), &noise(2, 0.02, 0.9));
     let whole = solve(&problem, Carrier::Splines);
     let all = settings(Carrier::Splines);
     for part in 1..8 {

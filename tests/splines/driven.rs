@@ -1,11 +1,12 @@
 //! Equations that know a column along the record: a drive.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, scene};
+use nisp::{Carrier, Problem};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, solve};
 
-nisp::pde! {
+interpret! {
     /// A vessel that is filled as known, and loses more than by its own leak.
     mod vessel {
         units: off;
@@ -45,7 +46,7 @@ fn a_drive_is_followed_where_its_answer_is_lost_in_the_noise() {
         let times: Vec<f64> = (0..rows).map(|row| LENGTH * f64::from(row) / f64::from(rows - 1)).collect();
         let mut normal = normals(5);
         let levels = times.iter().map(|&t| level(t) + 0.3 * normal()).collect();
-        let mut problem = Problem::new(scene::<vessel::lost::Scene>());
+        let mut problem = Problem::new(vessel::scene("lost"));
         problem.set_group("inside", times.clone().into(), vec![times.iter().map(|&t| drive(t)).collect()]).unwrap();
         problem.set_group("samples", times.clone().into(), vec![levels]).unwrap();
         let mut solution = solve(&problem, Carrier::Splines);
@@ -60,7 +61,7 @@ fn a_drive_is_followed_where_its_answer_is_lost_in_the_noise() {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A coil and a wheel: the current answers to the voltage within an eighth of the time between two rows.
     mod motor {
         units: off;
@@ -102,7 +103,7 @@ fn a_switched_voltage_moves_a_current_between_two_rows() {
         state = [1.0 + roots[0] * grown[0] + roots[1] * grown[1], v - 1.0 + grown[0] + grown[1]];
     }
     let [i, w, v] = rows;
-    let mut problem = Problem::new(scene::<motor::all::Scene>());
+    let mut problem = Problem::new(motor::scene("all"));
     problem.set_group("inside", times.clone().into(), vec![v]).unwrap();
     problem.set_group("samples", times.clone().into(), vec![i, w]).unwrap();
     let mut solution = solve(&problem, Carrier::Splines);

@@ -1,11 +1,12 @@
 //! Other equations over one coordinate: coefficients, rates, beliefs, boundary values, bounds, and what is refused.
 
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Carrier, Problem, SceneRef, Settings, Solution, recover, scene};
+use nisp::{Carrier, Problem, SceneRef, Settings, Solution, recover};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, settings, solve};
 
-nisp::pde! {
+interpret! {
     /// A spring of which something is believed.
     mod spring {
         coordinates: s [cm];
@@ -17,7 +18,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A string under a known load, held at both ends.
     mod string {
         units: off;
@@ -30,7 +31,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A string without any load: its equation has one quantity, which vanishes.
     mod slack {
         units: off;
@@ -43,7 +44,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Lorenz's equations, all three coefficients unknown.
     mod lorenz {
         units: off;
@@ -61,7 +62,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A reaction whose rate along the line is unknown, with a thin diffusion.
     mod reaction {
         units: off;
@@ -76,7 +77,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// The same where the load is known at points, as a measured one is.
     mod loaded_reaction {
         units: off;
@@ -91,7 +92,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// An epidemic: a share `S` may still be infected, a share `exp(y)` is.
     mod epidemic {
         units: off;
@@ -109,7 +110,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A source whose sum is known.
     mod summed {
         units: off;
@@ -122,7 +123,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A tank that is filled from time to time, and never emptied.
     mod tank {
         units: off;
@@ -135,7 +136,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// The same tank behind a gate that lets through no more than a half.
     mod gate {
         units: off;
@@ -169,7 +170,7 @@ fn coefficients_of_lorenz_are_found_with_bars_that_cover() {
         let mut normal = normals(seed);
         let rows: Vec<usize> = (0..25).map(|i| 125 * i).collect();
         let columns = (0..3).map(|j| rows.iter().map(|&row| path[row][j] + 0.02 * normal()).collect()).collect();
-        let mut problem = Problem::new(scene::<lorenz::identify::Scene>());
+        let mut problem = Problem::new(lorenz::scene("identify"));
         problem
             .set_group("flow", (0..100).map(|i| f64::from(i) * 3.0 / 99.0).collect::<Vec<f64>>().into(), vec![])
             .unwrap();
@@ -209,7 +210,7 @@ fn a_rate_of_reaction_is_found_from_any_noise() {
     for seed in 1..=6 {
         let mut normal = normals(seed);
         let measured = (0..101).map(|i| u[40 * i] + 0.01 * size * normal()).collect();
-        let mut problem = Problem::new(scene::<reaction::rate::Scene>());
+        let mut problem = Problem::new(reaction::scene("rate"));
         problem.set_group("inside", places.clone().into(), vec![]).unwrap();
         problem.set_group("left", vec![0.0].into(), vec![]).unwrap();
         problem.set_group("right", vec![1.0].into(), vec![]).unwrap();
@@ -235,7 +236,7 @@ fn a_belief_and_data_weigh_as_much_as_they_are_precise() {
     let pulls = [(0.1, 3.0), (0.2, 14.0), (0.25, 13.0), (0.3, 20.0)];
     let precision = 0.5_f64.powi(-2) + pulls.iter().map(|(s, _)| (10.0 * s / 3.0_f64).powi(2)).sum::<f64>();
     let mean = (5.0 / 0.25 + pulls.iter().map(|(s, force)| 10.0 * s / 9.0 * force).sum::<f64>()) / precision;
-    let mut problem = Problem::new(scene::<spring::believed::Scene>());
+    let mut problem = Problem::new(spring::scene("believed"));
     let places: Vec<f64> = (0..20).map(|i| 0.02 * f64::from(i)).collect();
     problem.set_group("samples", places.clone().into(), vec![places.iter().map(|s| s.sin()).collect()]).unwrap();
     let (pulled, force): (Vec<f64>, Vec<f64>) = pulls.into_iter().unzip();
@@ -251,7 +252,7 @@ fn a_belief_and_data_weigh_as_much_as_they_are_precise() {
 
 #[test]
 fn a_boundary_value_problem_without_data_is_solved() {
-    let mut problem = Problem::new(scene::<string::loaded::Scene>());
+    let mut problem = Problem::new(string::scene("loaded"));
     problem.set_group("inside", (0..50).map(|i| f64::from(i) / 49.0).collect::<Vec<f64>>().into(), vec![]).unwrap();
     problem.set_group("left", vec![0.0].into(), vec![]).unwrap();
     problem.set_group("right", vec![1.0].into(), vec![]).unwrap();
@@ -274,7 +275,7 @@ fn what_splines_do_not_do_is_refused() {
         problem.set_group("gauges", vec![0.2, 0.8].into(), vec![vec![0.1, 0.1]]).unwrap();
         problem
     };
-    let error = recover(&bound(scene::<summed::loaded::Scene>()), &settings(Carrier::Splines), &mut |_| Flow::Continue);
+    let error = recover(&bound(summed::scene("loaded")), &settings(Carrier::Splines), &mut |_| Flow::Continue);
     let message = error.err().unwrap().to_string();
     assert_eq!(message, "splines do not do robust losses of integrals; choose a network");
 }
@@ -282,7 +283,7 @@ fn what_splines_do_not_do_is_refused() {
 /// A residual beside nothing but itself is compared with what the quantity would be elsewhere.
 #[test]
 fn an_equation_of_one_vanishing_quantity_holds() {
-    let mut problem = Problem::new(scene::<slack::straight::Scene>());
+    let mut problem = Problem::new(slack::scene("straight"));
     let inside: Vec<f64> = (0..41).map(|i| f64::from(i) / 40.0).collect();
     problem.set_group("inside", inside.clone().into(), Vec::new()).unwrap();
     problem.set_group("left", vec![0.0].into(), Vec::new()).unwrap();
@@ -321,7 +322,7 @@ fn tank_from(scene: SceneRef, level: impl Fn(f64) -> f64, seed: u64) -> (Vec<f64
 
 #[test]
 fn a_source_between_two_bounds_stays_at_both() {
-    let (times, mut solution) = tank_from(scene::<gate::filled::Scene>(), |t| gated(t).1, 5);
+    let (times, mut solution) = tank_from(gate::scene("filled"), |t| gated(t).1, 5);
     let inflow = of(&solution.evaluate_with_errors(&times), "inflow").clone();
     assert!(inflow.values.iter().all(|q| (0.0..=0.5).contains(q)));
     let off: Vec<f64> = times.iter().zip(&inflow.values).map(|(&t, q)| (q - gated(t).0).abs()).collect();
@@ -349,7 +350,7 @@ fn filling(t: f64) -> (f64, f64) {
 
 #[test]
 fn a_source_with_a_bound_stays_at_it() {
-    let (times, solution) = tank_from(scene::<tank::filled::Scene>(), |t| filling(t).1, 3);
+    let (times, solution) = tank_from(tank::scene("filled"), |t| filling(t).1, 3);
     let inflow = of(&solution.evaluate(&times), "inflow").values.clone();
     assert!(inflow.iter().all(|&q| q >= 0.0));
     let error = times.iter().zip(&inflow).map(|(&t, q)| (q - filling(t).0).abs()).sum::<f64>() / times.len() as f64;
@@ -372,7 +373,7 @@ fn reacting(gauges: u32, noise: f64) -> Problem {
     let load = |x: f64| (0.02 * pi * pi + rate(x)) * (pi * x).sin();
     let places = |count: u32| (0..count).map(|i| f64::from(i) / f64::from(count - 1)).collect::<Vec<f64>>();
     let (inside, gauges) = (places(120), places(gauges));
-    let mut problem = Problem::new(scene::<loaded_reaction::rate::Scene>());
+    let mut problem = Problem::new(loaded_reaction::scene("rate"));
     let loads = inside.iter().map(|&x| load(x)).collect();
     problem.set_group("inside", inside.into(), vec![loads]).unwrap();
     problem.set_group("left", vec![0.0].into(), vec![]).unwrap();
@@ -433,7 +434,7 @@ fn terms_of_one_side_do_not_cancel_in_the_size_of_an_equation() {
     let times: Vec<f64> = (0..120).map(|i| 16.0 * f64::from(i) / 119.0).collect();
     let mut normal = normals(17);
     let cases = times.iter().map(|&t| y(t) + 0.02 * normal()).collect();
-    let mut problem = Problem::new(scene::<epidemic::spread::Scene>());
+    let mut problem = Problem::new(epidemic::scene("spread"));
     problem.set_group("days", times.clone().into(), vec![]).unwrap();
     problem.set_group("start", vec![0.0].into(), vec![]).unwrap();
     problem.set_group("cases", times.clone().into(), vec![cases]).unwrap();

@@ -3,11 +3,12 @@
 use std::f64::consts::PI;
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, SceneRef, scene};
+use nisp::{Carrier, Problem, SceneRef};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, solve};
 
-nisp::pde! {
+interpret! {
     /// Flow through a porous channel.
     mod channel {
         units: off;
@@ -21,7 +22,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A load along a string.
     mod load {
         units: off;
@@ -35,7 +36,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A quantity that decays from an unknown beginning.
     mod decay {
         units: off;
@@ -71,7 +72,7 @@ fn exact_values_tell_scalars_to_eight_digits() {
     let exact: [f64; 2] = [2.5, 1e-3];
     let sharp = (exact[0] * exact[1]).sqrt().recip();
     let flow = |x: f64| 1.0 - (sharp * (x - 0.5)).cosh() / (0.5 * sharp).cosh();
-    let (mut problem, _) = measured(scene::<channel::porous::Scene>(), [0.0, 1.0], 7, flow);
+    let (mut problem, _) = measured(channel::scene("porous"), [0.0, 1.0], 7, flow);
     problem.set_group("walls", vec![0.0, 1.0].into(), vec![]).unwrap();
     let mut solution = solve(&problem, Carrier::Auto);
     assert_eq!(solution.status, Status::Converged);
@@ -83,7 +84,7 @@ fn exact_values_tell_scalars_to_eight_digits() {
 /// A hundred values of a sine: its second derivative, at the ends too.
 #[test]
 fn exact_values_tell_a_smooth_source_up_to_its_ends() {
-    let (mut problem, places) = measured(scene::<load::hung::Scene>(), [-1.0, 1.0], 100, |x| (PI * x).sin());
+    let (mut problem, places) = measured(load::scene("hung"), [-1.0, 1.0], 100, |x| (PI * x).sin());
     problem.set_group("ends", vec![-1.0, 1.0].into(), vec![]).unwrap();
     let solution = solve(&problem, Carrier::Auto);
     assert_eq!(solution.status, Status::Converged);
@@ -102,7 +103,7 @@ fn five_noisy_values_have_the_bars_of_five() {
     let mut normal = normals(3);
     let beyond = (0..120).filter(|_| {
         let noisy = |x: f64| 2.0 * (-1.7 * x).exp() + 0.02 * normal();
-        let (problem, _) = measured(scene::<decay::falls::Scene>(), [0.0, 2.0], 5, noisy);
+        let (problem, _) = measured(decay::scene("falls"), [0.0, 2.0], 5, noisy);
         let mut solution = solve(&problem, Carrier::Auto);
         let learned = &solution.learned()[0];
         learned.deviation.is_none_or(|deviation| (learned.value - 1.7).abs() > 2.0 * deviation)

@@ -1,11 +1,12 @@
 //! Fields that nothing pins: equations take derivatives of them alone, so that any constant may be added.
 
 use nisp::solve::driver::{Status, WarningKind};
-use nisp::{Carrier, Problem, scene};
+use nisp::{Carrier, Problem};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, solve};
 
-nisp::pde! {
+interpret! {
     /// A cart whose speed is measured. Its way is of no use to anything, and no condition says where it starts.
     mod cart {
         coordinates: t [s];
@@ -25,7 +26,7 @@ fn a_field_off_by_any_constant_takes_nothing_from_the_rest() {
     let force = |t: f64| 2.0 * (0.96 * (0.8 * t).cos() + 1.15 * (2.3 * t).cos()) + 0.6 * speed(t);
     let mut normal = normals(5);
     let measured = times.iter().map(|&t| speed(t) + 0.02 * normal()).collect();
-    let mut problem = Problem::new(scene::<cart::push::Scene>());
+    let mut problem = Problem::new(cart::scene("push"));
     problem.set_group("motion", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
     let solution = solve(&problem, Carrier::Splines);
@@ -39,7 +40,7 @@ fn a_field_off_by_any_constant_takes_nothing_from_the_rest() {
     assert!(free.message.contains("do not determine `s`: a constant"), "{}", free.message);
 }
 
-nisp::pde! {
+interpret! {
     /// A rotor whose speed is measured. Nothing says how far its shaft is twisted at first, and the torque balances that.
     mod rotor {
         units: off;
@@ -61,7 +62,7 @@ fn a_source_with_an_open_mean_is_not_called_right() {
     let speed = |t: f64| 1.2 * (0.8 * t).sin() + 0.5 * (2.3 * t).sin();
     let mut normal = normals(8);
     let measured: Vec<f64> = times.iter().map(|&t| speed(t) + 0.01 * normal()).collect();
-    for (scene, is_settled) in [(scene::<rotor::turned::Scene>(), true), (scene::<rotor::twisted::Scene>(), false)] {
+    for (scene, is_settled) in [(rotor::scene("turned"), true), (rotor::scene("twisted"), false)] {
         let mut problem = Problem::new(scene);
         problem.set_group("shaft", times.clone().into(), vec![]).unwrap();
         problem.set_group("samples", times.clone().into(), vec![measured.clone()]).unwrap();

@@ -1,11 +1,12 @@
 //! Sources that step where nothing is measured, and what is hidden remembers it.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, scene};
+use nisp::{Carrier, Problem};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, simulated, solve};
 
-nisp::pde! {
+interpret! {
     /// A heated room whose wall nobody measures.
     mod room {
         units: off;
@@ -38,7 +39,7 @@ fn a_step_in_a_gap_is_covered_behind_it() {
         let mut normal = normals(seed);
         let measured = all.iter().zip(&states).filter(|(t, _)| !(GAP.0..GAP.1).contains(*t));
         let (times, air): (Vec<f64>, Vec<f64>) = measured.map(|(t, state)| (*t, state[0] + 0.03 * normal())).unzip();
-        let mut problem = Problem::new(scene::<room::heating::Scene>());
+        let mut problem = Problem::new(room::scene("heating"));
         problem.set_group("inside", times.clone().into(), vec![]).unwrap();
         problem.set_group("start", vec![0.0].into(), vec![]).unwrap();
         problem.set_group("samples", times.clone().into(), vec![air]).unwrap();

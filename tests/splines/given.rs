@@ -1,11 +1,12 @@
 //! Given numbers that the data contradict, where a source takes over most of what is wrong with them.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, Solution, scene};
+use nisp::{Carrier, Problem, Solution};
+use nisp_interpreter::interpret;
 
 use crate::{normals, solve};
 
-nisp::pde! {
+interpret! {
     /// A heater in a room with a wall that stores heat, a thermometer in each.
     mod room {
         units: off;
@@ -28,7 +29,7 @@ fn found(k: f64, seed: u64) -> Solution {
     let mut normal = normals(seed);
     let mut measured = |of: &dyn Fn(f64) -> f64| rows.iter().map(|&t| of(t) + 0.01 * normal()).collect::<Vec<f64>>();
     let columns = vec![measured(&air), measured(&wall)];
-    let mut problem = Problem::new(scene::<room::recover::Scene>());
+    let mut problem = Problem::new(room::scene("recover"));
     problem.set_parameter("k", k).unwrap();
     let house: Vec<f64> = (0..200).map(|i| 9.6 * f64::from(i) / 199.0).collect();
     problem.set_group("house", house.into(), Vec::new()).unwrap();

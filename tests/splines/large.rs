@@ -1,11 +1,12 @@
 //! A field that varies by a millionth of its level: an equation reads its difference to another level, and that alone counts.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, scene};
+use nisp::{Carrier, Problem};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, solve};
 
-nisp::pde! {
+interpret! {
     /// A tank whose pressure leaks away to that of its surroundings.
     mod tank {
         units: off;
@@ -37,7 +38,7 @@ fn an_inflow_is_found_beside_a_large_level() {
         let times: Vec<f64> = (0..ROWS).map(|row| 0.2 * row as f64).collect();
         let mut normal = normals(1);
         let pressures = times.iter().map(|&t| 1e6 + over(t) + noise * normal()).collect();
-        let mut problem = Problem::new(scene::<tank::leaking::Scene>());
+        let mut problem = Problem::new(tank::scene("leaking"));
         problem.set_group("inside", times.clone().into(), vec![]).unwrap();
         problem.set_group("samples", times.clone().into(), vec![pressures]).unwrap();
         let mut solution = solve(&problem, Carrier::Splines);

@@ -1,11 +1,12 @@
 //! Scalars that are learned beside a free source: told by a motion that the source cannot have made, or by nothing.
 
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Carrier, Check, Problem, Settings, Solution, recover, scene};
+use nisp::{Carrier, Check, Problem, Settings, Solution, recover};
+use nisp_interpreter::interpret;
 
 use crate::{normals, settings, solve};
 
-nisp::pde! {
+interpret! {
     /// A damped oscillator of which neither the spring nor the force is known.
     mod spring {
         units: off;
@@ -30,7 +31,7 @@ fn measured(motion: impl Fn(f64) -> f64) -> Problem {
     let mut normal = normals(11);
     let times: Vec<f64> = (0..200).map(|i| 0.06 * f64::from(i)).collect();
     let measured = times.iter().map(|&t| motion(t) + 0.01 * normal()).collect();
-    let mut problem = Problem::new(scene::<spring::rings::Scene>());
+    let mut problem = Problem::new(spring::scene("rings"));
     problem.set_group("motion", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.into(), vec![measured]).unwrap();
     problem

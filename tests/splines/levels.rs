@@ -1,11 +1,12 @@
 //! Sources beside a field that nothing measures and that may begin anywhere: their level is open along the time that it takes to rest.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, scene};
+use nisp::{Carrier, Problem};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, simulated, solve};
 
-nisp::pde! {
+interpret! {
     /// A heated room whose wall nobody measures.
     mod room {
         units: off;
@@ -52,7 +53,7 @@ fn covered(heat: fn(f64) -> f64) -> f64 {
     };
     let mut normal = normals(1);
     let air: Vec<f64> = simulated(&times, [17.0, 13.0], slope).iter().map(|[air, _]| air + 0.03 * normal()).collect();
-    let mut problem = Problem::new(scene::<room::heating::Scene>());
+    let mut problem = Problem::new(room::scene("heating"));
     problem.set_group("inside", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.clone().into(), vec![air]).unwrap();
     let mut solution = solve(&problem, Carrier::Splines);

@@ -13,7 +13,6 @@ mod correlated;
 mod driven;
 mod equations;
 mod few;
-#[expect(deprecated, reason = "a lint says that nothing pins a field, which is what is asked here")]
 mod free;
 mod gaps;
 mod given;
@@ -24,6 +23,7 @@ mod measured;
 mod oscillator;
 mod readings;
 mod steps;
+mod told;
 
 /// Normal numbers, about: sums of twelve uniform ones.
 pub(crate) fn normals(seed: u64) -> impl FnMut() -> f64 {

@@ -1,11 +1,12 @@
 //! Measurements that are not plain: with outliers, with noise that is a share of every value, or of a logarithm.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, scene};
+use nisp::{Carrier, Problem};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, solve};
 
-nisp::pde! {
+interpret! {
     /// A culture in a vessel that is fed, whose growth is sought.
     mod vessel {
         units: off;
@@ -18,7 +19,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A vessel that runs empty while `q` fills it, of whose level a logarithm is measured.
     mod gauge {
         units: off;
@@ -31,7 +32,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// What decays at an unknown rate.
     mod decay {
         units: off;
@@ -80,7 +81,7 @@ fn a_robust_loss_leaves_out_outliers_and_nothing_else() {
     let mut spoiled = measured.clone();
     [12, 47, 90, 133].into_iter().for_each(|row| spoiled[0][row] += 3.0);
     for columns in [measured, spoiled] {
-        let mut problem = Problem::new(scene::<vessel::recover::Scene>());
+        let mut problem = Problem::new(vessel::scene("recover"));
         problem.set_robust(true);
         problem.set_group("growing", times.clone().into(), vec![]).unwrap();
         problem.set_group("samples", times.clone().into(), columns.into()).unwrap();
@@ -98,7 +99,7 @@ fn noise_that_is_a_share_of_every_value_is_no_misfit() {
     let solved = |truth: &dyn Fn(f64) -> f64| {
         let mut normal = normals(5);
         let values = times.iter().map(|&t| truth(t) * (1.0 + 0.05 * normal())).collect();
-        let mut problem = Problem::new(scene::<decay::rate::Scene>());
+        let mut problem = Problem::new(decay::scene("rate"));
         problem.set_group("inside", times.clone().into(), vec![]).unwrap();
         problem.set_group("samples", times.clone().into(), vec![values]).unwrap();
         solve(&problem, Carrier::Splines)
@@ -117,7 +118,7 @@ fn a_logarithm_is_measured_of_a_field_that_starts_at_zero() {
     let times: Vec<f64> = (0..200).map(|i| 20.0 * f64::from(i) / 199.0).collect();
     let mut normal = normals(3);
     let logarithms = times.iter().map(|&t| u(t).ln() + 0.003 * normal()).collect();
-    let mut problem = Problem::new(scene::<gauge::recover::Scene>());
+    let mut problem = Problem::new(gauge::scene("recover"));
     problem.set_group("inside", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.clone().into(), vec![logarithms]).unwrap();
     let solution = solve(&problem, Carrier::Splines);

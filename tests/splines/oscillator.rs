@@ -2,11 +2,12 @@
 //! the drive follows in closed form.
 
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Carrier, Problem, Solution, recover, resume, scene};
+use nisp::{Carrier, Problem, Solution, recover, resume};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, settings, solve};
 
-nisp::pde! {
+interpret! {
     /// An oscillator with an unknown drive.
     mod driven {
         coordinates: t [s];
@@ -19,7 +20,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// The same oscillator with a drive that is measured, and coefficients that are not known.
     mod measured {
         coordinates: t [s];
@@ -83,7 +84,7 @@ fn record_of(waves: &[(f64, f64, f64)], count: usize, noise: f64) -> Problem {
     let mut normal = normals(7);
     let times = times(count);
     let y = times.iter().map(|&t| driven_by(waves, t).0 + noise * normal()).collect();
-    let mut problem = Problem::new(scene::<driven::recover::Scene>());
+    let mut problem = Problem::new(driven::scene("recover"));
     let last = times[count - 1];
     problem
         .set_group("motion", (0..300).map(|i| last * f64::from(i) / 299.0).collect::<Vec<f64>>().into(), vec![])
@@ -154,7 +155,7 @@ fn coefficients_are_learned_from_a_measured_drive() {
     let mut normal = normals(3);
     let all = times(900);
     let (y, u) = all.iter().map(|&t| oscillation(t)).map(|(y, u)| (y + 1e-4 * normal(), u + 1e-4 * normal())).unzip();
-    let mut problem = Problem::new(scene::<measured::identify::Scene>());
+    let mut problem = Problem::new(measured::scene("identify"));
     problem.set_group("samples", all.into(), vec![y, u]).unwrap();
     let mut solution = solve(&problem, Carrier::Auto);
     assert_eq!((solution.carrier, solution.status), ("splines", Status::Converged));
@@ -169,7 +170,7 @@ fn coefficients_are_learned_from_a_measured_drive() {
 #[test]
 fn a_short_smooth_record_is_followed_too() {
     let mut normal = normals(11);
-    let mut problem = Problem::new(scene::<driven::recover::Scene>());
+    let mut problem = Problem::new(driven::scene("recover"));
     let times: Vec<f64> = (0..100).map(|i| 1e-3 * f64::from(i)).collect();
     let wave = |t: f64| 0.05 * (20.0 * t).sin();
     let y = times.iter().map(|&t| wave(t) + 5e-4 * normal()).collect();

@@ -1,11 +1,12 @@
 //! Sensors that are off by a share of what they show, and counters.
 
 use nisp::solve::driver::{Flow, Status, WarningKind};
-use nisp::{Carrier, Problem, Solution, recover, resume, scene};
+use nisp::{Carrier, Problem, Solution, recover, resume};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, settings, solve};
 
-nisp::pde! {
+interpret! {
     /// What a body takes in of a drug, and what it loses again.
     mod body {
         units: off;
@@ -34,7 +35,7 @@ fn truth(t: f64) -> (f64, f64) {
 fn record(seed: u64, deviation: impl Fn(f64) -> f64) -> Problem {
     let mut normal = normals(seed);
     let measured = times().into_iter().map(|t| truth(t).0).map(|c| c + deviation(c) * normal()).collect();
-    let mut problem = Problem::new(scene::<body::recover::Scene>());
+    let mut problem = Problem::new(body::scene("recover"));
     problem.set_group("change", times().into(), vec![]).unwrap();
     problem.set_group("samples", times().into(), vec![measured]).unwrap();
     problem

@@ -1,11 +1,12 @@
 //! Sources that step: one roughness along all of a record is too small at the step and too large elsewhere.
 
 use nisp::solve::driver::Status;
-use nisp::{Carrier, Problem, scene};
+use nisp::{Carrier, Problem};
+use nisp_interpreter::interpret;
 
 use crate::{normals, of, simulated, solve};
 
-nisp::pde! {
+interpret! {
     /// A vessel that drains, filled through a valve.
     mod vessel {
         coordinates: t [s];
@@ -18,7 +19,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A cart on a spring, pushed by what a load cell measures.
     mod cart {
         units: off;
@@ -32,7 +33,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A mass on a spring, moved by what nobody measures.
     pub mod swing {
         units: off;
@@ -45,7 +46,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// An oven whose loss nobody knows, and a heater that is switched.
     mod oven {
         units: off;
@@ -77,7 +78,7 @@ fn level(t: f64) -> f64 {
 #[test]
 fn exact_values_tell_a_valve_that_opens_and_closes() {
     let times: Vec<f64> = (0..600).map(|row| f64::from(row) / 59.0).collect();
-    let mut problem = Problem::new(scene::<vessel::filling::Scene>());
+    let mut problem = Problem::new(vessel::scene("filling"));
     problem.set_group("motion", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.clone().into(), vec![times.iter().map(|&t| level(t)).collect()]).unwrap();
     let solution = solve(&problem, Carrier::Splines);
@@ -95,7 +96,7 @@ fn a_valve_that_opens_and_closes_is_covered() {
     let times: Vec<f64> = (0..600).map(|row| f64::from(row) / 60.0).collect();
     let mut normal = normals(11);
     let measured = times.iter().map(|&t| level(t) + 0.001 * normal()).collect();
-    let mut problem = Problem::new(scene::<vessel::filling::Scene>());
+    let mut problem = Problem::new(vessel::scene("filling"));
     problem.set_group("motion", times.clone().into(), vec![]).unwrap();
     problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
     let mut solution = solve(&problem, Carrier::Splines);
@@ -129,7 +130,7 @@ fn a_measured_force_may_step_between_two_rows() {
         let mut normal = normals(seed);
         let x = states.iter().map(|state| state[0] + 0.005 * normal()).collect();
         let f = times.iter().map(|&t| force(t) + 0.08 * normal()).collect();
-        let mut problem = Problem::new(scene::<cart::pushed::Scene>());
+        let mut problem = Problem::new(cart::scene("pushed"));
         problem.set_group("motion", times.clone().into(), vec![]).unwrap();
         problem.set_group("samples", times.clone().into(), vec![x, f]).unwrap();
         let mut solution = solve(&problem, Carrier::Splines);
@@ -155,7 +156,7 @@ fn a_load_that_switches_is_within_its_bars() {
     for seed in 1..6 {
         let mut normal = normals(seed);
         let measured = states.iter().map(|[x, _]| x + 0.025 * normal()).collect();
-        let mut problem = Problem::new(scene::<swing::loaded::Scene>());
+        let mut problem = Problem::new(swing::scene("loaded"));
         problem.set_group("motion", times.clone().into(), vec![]).unwrap();
         problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
         let mut solution = solve(&problem, Carrier::Splines);
@@ -184,7 +185,7 @@ fn a_heater_that_switches_between_two_rows_is_found_with_the_loss_beside_it() {
     };
     for seed in 1..4 {
         let mut normal = normals(seed);
-        let mut problem = Problem::new(scene::<oven::heated::Scene>());
+        let mut problem = Problem::new(oven::scene("heated"));
         problem.set_group("motion", times.clone().into(), vec![]).unwrap();
         let measured = times.iter().map(|&t| warm(t) + 0.1 * normal()).collect();
         problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();

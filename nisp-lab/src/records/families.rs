@@ -2,6 +2,7 @@
 
 use nisp::{SceneRef, scene};
 use nisp_equations::{pendulum::pendulum, rlc::rlc};
+use nisp_interpreter::interpret;
 
 use super::draws::{Course, bent, circuit, course, heated, pushed, regulated};
 use super::drive::Drive;
@@ -26,7 +27,7 @@ pub(super) struct Family {
     pub(super) draw: fn(&mut Random, &[f64]) -> Course,
 }
 
-nisp::pde! {
+interpret! {
     /// An oscillator with a hardening spring.
     mod duffing {
         coordinates: t [s];
@@ -39,7 +40,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Van der Pol's oscillator under a drive.
     mod pol {
         coordinates: t [s];
@@ -52,7 +53,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A cart with friction.
     mod cart {
         coordinates: t [s];
@@ -65,7 +66,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Lorenz's equations, the first of them driven.
     mod lorenz {
         units: off;
@@ -83,7 +84,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Lotka's and Volterra's equations with a harvest of the prey.
     mod prey {
         units: off;
@@ -100,7 +101,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A tank that empties through a hole, and what flows in.
     mod tank {
         coordinates: t [s];
@@ -113,7 +114,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Two reactions in a row, the first of second order, and what is fed.
     mod reaction {
         coordinates: t [s];
@@ -129,7 +130,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A beam on two supports under an unknown load.
     mod beam {
         coordinates: x [m];
@@ -147,7 +148,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A rod that loses heat along its length and is heated somewhere.
     mod rod {
         coordinates: x [m];
@@ -179,44 +180,44 @@ pub(super) fn families() -> Vec<Family> {
         Family { absolute: true, ..plain("pendulum", of_pendulum, "motion", "f", 4.0, regulated) },
         Family { absolute: true, ..plain("pushed", of_pendulum, "motion", "f", 4.0, pushed) },
         Family { conditions: &[("start", 0.0)], ..plain("rlc", of_rlc, "circuit", "f", 2.0, circuit) },
-        plain("duffing", scene::<duffing::recover::Scene>(), "motion", "u", 6.0, |random, t| {
+        plain("duffing", duffing::scene("recover"), "motion", "u", 6.0, |random, t| {
             let drive = Drive::draw(random, 6.0, 0.3);
             let start = [0.3 * random.normal(), 0.3 * random.normal()];
             let slope = |t: f64, [y, v]: [f64; 2]| [v, (drive.at(t) - 4e-2 * v - y - 3.0 * y.powi(3)) / 4e-2];
             course(&drive, t, integrate(slope, start, t), 1)
         }),
-        plain("van der pol", scene::<pol::recover::Scene>(), "motion", "u", 12.0, |random, t| {
+        plain("van der pol", pol::scene("recover"), "motion", "u", 12.0, |random, t| {
             let drive = Drive::draw(random, 12.0, 1.5);
             let start = [random.normal(), random.normal()];
             let slope = |t: f64, [x, v]: [f64; 2]| [v, drive.at(t) + (1.0 - x * x) * v - x];
             course(&drive, t, integrate(slope, start, t), 1)
         }),
-        plain("cart", scene::<cart::recover::Scene>(), "motion", "F", 10.0, |random, t| {
+        plain("cart", cart::scene("recover"), "motion", "F", 10.0, |random, t| {
             let drive = Drive::draw(random, 10.0, 3.0);
             let slope = |t: f64, [_, v]: [f64; 2]| [v, (drive.at(t) - 0.8 * v) / 2.0];
             course(&drive, t, integrate(slope, [0.0, random.normal()], t), 1)
         }),
-        plain("lorenz", scene::<lorenz::recover::Scene>(), "flow", "f", 4.0, |random, t| {
+        plain("lorenz", lorenz::scene("recover"), "flow", "f", 4.0, |random, t| {
             let drive = Drive::draw(random, 4.0, 40.0);
             let start = [5.0 * random.normal(), 5.0 * random.normal(), 20.0 + 5.0 * random.normal()];
             let slope =
                 |t: f64, [x, y, z]: [f64; 3]| [10.0 * (y - x) + drive.at(t), x * (28.0 - z) - y, x * y - 2.667 * z];
             course(&drive, t, integrate(slope, start, t), 3)
         }),
-        plain("prey", scene::<prey::recover::Scene>(), "growth", "h", 15.0, |random, t| {
+        plain("prey", prey::scene("recover"), "growth", "h", 15.0, |random, t| {
             let drive = Drive::draw(random, 15.0, 0.08);
             let start = [1.0 + random.uniform(), 0.5 + random.uniform()];
             let slope = |t: f64, [x, y]: [f64; 2]| [x - 0.8 * x * y - drive.at(t), 0.6 * x * y - 0.9 * y];
             course(&drive, t, integrate(slope, start, t), 2)
         }),
-        plain("tank", scene::<tank::recover::Scene>(), "level", "q", 60.0, |random, t| {
+        plain("tank", tank::scene("recover"), "level", "q", 60.0, |random, t| {
             let drive = Drive::draw(random, 60.0, 0.02);
             let inflow = |t: f64| 0.06 + drive.at(t);
             let slope = |t: f64, [h]: [f64; 1]| [(inflow(t) - 0.05 * h.max(0.0).sqrt()) / 0.5];
             let levels = integrate(slope, [1.0 + random.uniform()], t);
             Course { source: t.iter().map(|&t| inflow(t)).collect(), ..course(&drive, t, levels, 1) }
         }),
-        plain("reaction", scene::<reaction::recover::Scene>(), "reactor", "u", 20.0, |random, t| {
+        plain("reaction", reaction::scene("recover"), "reactor", "u", 20.0, |random, t| {
             let drive = Drive::draw(random, 20.0, 0.15);
             let feed = |t: f64| 0.4 + drive.at(t);
             let slope = |t: f64, [a, b]: [f64; 2]| [feed(t) - 0.4 * a * a, 0.4 * a * a - 0.3 * b];
@@ -227,8 +228,8 @@ pub(super) fn families() -> Vec<Family> {
             law: "span",
             samples: "gauges",
             conditions: &[("left", 0.0), ("right", 1.0)],
-            ..plain("beam", scene::<beam::recover::Scene>(), "span", "q", 1.0, bent)
+            ..plain("beam", beam::scene("recover"), "span", "q", 1.0, bent)
         },
-        Family { samples: "probes", ..plain("rod", scene::<rod::recover::Scene>(), "inside", "q", 1.0, heated) },
+        Family { samples: "probes", ..plain("rod", rod::scene("recover"), "inside", "q", 1.0, heated) },
     ]
 }

@@ -1,5 +1,6 @@
 //! Weights far apart, points that say too little, and points on which an equation is singular.
 
+use nisp::Problem;
 use nisp::engine::Engine;
 use nisp::network::{Architecture, initialise};
 use nisp::solve::broyden::{Broyden, Update};
@@ -11,12 +12,12 @@ use nisp::solve::marquardt::Marquardt;
 use nisp::solve::method::{Method, Verdict};
 use nisp::solve::objective::LeastSquares;
 use nisp::solve::prior::WeightPrior;
-use nisp::{Problem, scene};
+use nisp_interpreter::interpret;
 
 use crate::row::{Extent, Row};
 use nisp_references::reference::engine;
 
-nisp::pde! {
+interpret! {
     mod film {
         units: off;
         coordinates: x, y;
@@ -28,7 +29,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     mod singular {
         units: off;
         coordinates: x;
@@ -44,7 +45,7 @@ const SHAPE: fn() -> Architecture = || Architecture::modified(8, 2);
 
 /// The film with its equations at some points and data at others.
 fn film_engine(inside: &[f64], samples: &[f64]) -> Engine<f64> {
-    let mut problem = Problem::new(scene::<film::recover::Scene>());
+    let mut problem = Problem::new(film::scene("recover"));
     let u = samples.chunks_exact(2).map(|p| (2.0 * p[0]).sin() * p[1].cosh()).collect();
     let bound = problem
         .set_group("inside", inside.to_vec().into(), Vec::new())
@@ -96,7 +97,7 @@ fn all_methods(make: &dyn Fn() -> Engine<f64>, steps: usize) -> (usize, usize) {
 
 /// Rows and their slopes by the head's bias where `u` is zero, as the language documents them.
 fn wrong_kinks() -> (usize, usize) {
-    let mut problem = Problem::new(scene::<singular::kinked::Scene>());
+    let mut problem = Problem::new(singular::scene("kinked"));
     problem.set_group("kinks", vec![0.0, 0.5, 1.0].into(), Vec::new()).expect("a group of the scene");
     let mut engine = engine::<f64>(&problem, SHAPE());
     let theta = vec![0.0; engine.parameters()];
@@ -119,7 +120,7 @@ fn wrong_kinks() -> (usize, usize) {
 
 /// Nought over nought is refused, and said where.
 fn wrong_ratio() -> usize {
-    let mut problem = Problem::new(scene::<singular::divided::Scene>());
+    let mut problem = Problem::new(singular::scene("divided"));
     problem.set_group("ratios", vec![-1.0, 0.5, 0.0, 1.0].into(), Vec::new()).expect("a group of the scene");
     let mut engine = engine::<f64>(&problem, SHAPE());
     let theta = vec![0.0; engine.parameters()];

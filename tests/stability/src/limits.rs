@@ -6,12 +6,13 @@ use std::f64::consts::PI;
 use nisp::local::Local;
 use nisp::network::Architecture;
 use nisp::solve::driver::{Flow, Status};
-use nisp::{Carrier, Optimizer, Points, Problem, Settings, Solution, Width, recover, scene};
+use nisp::{Carrier, Optimizer, Points, Problem, Settings, Solution, Width, recover};
 use nisp_equations::{Request, catalogue};
+use nisp_interpreter::interpret;
 
 use crate::row::{Extent, Row};
 
-nisp::pde! {
+interpret! {
     /// Plane strain in displacements alone.
     mod compact {
         coordinates: x [m], y [m];
@@ -27,7 +28,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Plane strain with the pressure as a field of its own.
     mod mixed {
         coordinates: x [m], y [m];
@@ -45,7 +46,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// Something that follows a slow cosine.
     mod relaxation {
         coordinates: t [s];
@@ -162,7 +163,7 @@ fn relaxation_error(rate: f64, end: f64, iterations: u64) -> Answer {
     let uniform = (0..=100).map(|i| end * f64::from(i) / 100.0);
     let logarithmic = (0..100).map(|i| 1e-2 / rate * (rate * end / 1e-2).powf(f64::from(i) / 100.0));
     let times: Vec<f64> = uniform.chain(logarithmic).collect();
-    let mut problem = Problem::new(scene::<relaxation::solve::Scene>());
+    let mut problem = Problem::new(relaxation::scene("solve"));
     let parameters = [("rate", rate), ("slow", slow), ("first", first), ("size", 1.0)];
     for (name, value) in parameters {
         problem.set_parameter(name, value).expect("a parameter");
@@ -207,7 +208,7 @@ pub(crate) fn rows(extent: Extent) -> Vec<Row> {
     let nus: &[f64] = extent.pick(&[0.1, 0.4999], &FULL_NU);
     let local =
         |cells| Some(Local { cells, coarser: 3, degree: 3, tests: 1, finer: 1, source_dimensions: 2, patches: None });
-    let (displacements, pressure) = (scene::<compact::solve::Scene>, scene::<mixed::solve::Scene>);
+    let (displacements, pressure) = (|| compact::scene("solve"), || mixed::scene("solve"));
     let mut rows = series(
         "elasticity with a pressure field, network",
         "nu",

@@ -2,11 +2,12 @@
 
 use nisp::network::{Architecture, initialise};
 use nisp::simd::Isa;
-use nisp::{Precision, Problem, scene_in_both_precisions as scene};
+use nisp::{Precision, Problem};
+use nisp_interpreter::interpret;
 
 use crate::row::{Extent, Row};
 
-nisp::pde! {
+interpret! {
     mod bar {
         coordinates: x [m];
         fields: u [m];
@@ -19,7 +20,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     mod plate {
         coordinates: x [m], y [m];
         fields: w [m];
@@ -42,7 +43,7 @@ struct Factors {
 }
 
 fn bar_problem(by: Factors) -> Problem {
-    let mut problem = Problem::new(scene::<bar::recover::Scene>());
+    let mut problem = Problem::new(bar::scene("recover"));
     let x: Vec<f64> = (0..40).map(|i| by.length * f64::from(i) / 39.0).collect();
     let u: Vec<f64> = x.iter().map(|x| by.field * (3.0 * x / by.length).sin()).collect();
     let bound = problem
@@ -56,7 +57,7 @@ fn bar_problem(by: Factors) -> Problem {
 }
 
 fn plate_problem(by: Factors) -> Problem {
-    let mut problem = Problem::new(scene::<plate::recover::Scene>());
+    let mut problem = Problem::new(plate::scene("recover"));
     let grid = || (0..6).flat_map(|i| (0..6).map(move |j| [f64::from(i) / 5.0, f64::from(j) / 5.0]));
     let points =
         |keep: fn(&[f64; 2]) -> bool| -> Vec<f64> { grid().filter(keep).flatten().map(|x| by.length * x).collect() };

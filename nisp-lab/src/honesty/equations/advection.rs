@@ -1,12 +1,12 @@
 //! A cloud of dye that a stream of unknown speed carries.
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Mirrored, Nothing, Outliers, Physics, Scaled, Swapped};
 use super::super::experiment::{Physics as Kind, Plain, Subject, Truth, axis, cases, lattice, line};
 use super::super::samples::Samples;
 
-nisp::pde! {
+interpret! {
     /// Transport without spreading.
     mod advection {
         coordinates: x [m], t [s];
@@ -33,7 +33,7 @@ pub(super) fn subject() -> Subject {
         };
         let u = x.iter().zip(&t).map(dye).collect();
         let plain = Plain {
-            scene: scene::<advection::identify::Scene>(),
+            scene: advection::scene("identify"),
             groups: vec![("stream", lattice(&line(0.0, 2.0, 25), &line(0.0, 1.0, 12)).into(), vec![])],
             observed: "samples",
             stated: vec![],

@@ -2,7 +2,8 @@
 
 use std::f64::consts::PI;
 
-use nisp::{Points, scene};
+use nisp::Points;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{
     Exact, Few, Gap, Mirrored, Moved, Nothing, Outliers, Parameter, Physics, Scaled,
@@ -10,7 +11,7 @@ use super::super::corruption::Corruption::{
 use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 
-nisp::pde! {
+interpret! {
     /// Euler's and Bernoulli's beam; its moment is a field of its own.
     mod beam {
         coordinates: x [m];
@@ -63,7 +64,7 @@ pub(super) fn subject() -> Subject {
             .map(|(n, amplitude)| 1e-3 * EI * amplitude * (n * PI).powi(4) * 2.0 / (n * PI))
             .sum();
         let plain = Plain {
-            scene: scene::<beam::recover::Scene>(),
+            scene: beam::scene("recover"),
             groups: vec![
                 ("span", Points { coordinates: span, weights, ..Points::default() }, vec![]),
                 ("left", vec![0.0].into(), vec![]),

@@ -1,13 +1,13 @@
 //! A body in a shell that cools in air, heated by an unknown power.
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Gap, Moved, Nothing, Outliers, Parameter, Physics, Swapped};
 use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 use crate::rk4::integrate;
 
-nisp::pde! {
+interpret! {
     /// Newton's cooling of a body through its shell.
     mod cooling {
         coordinates: t [s];
@@ -43,7 +43,7 @@ pub(super) fn subject() -> Subject {
         let states = integrate(slope, [293.0, 293.0], &times);
         let of = |at: usize| states.iter().map(|state| state[at]).collect();
         let plain = Plain {
-            scene: scene::<cooling::recover::Scene>(),
+            scene: cooling::scene("recover"),
             groups: vec![("course", line(0.0, LAST, 200).into(), vec![]), ("start", vec![0.0].into(), vec![])],
             observed: "samples",
             stated: vec![Stated { head: "q", at: vec![0.0], value: 0.0, size: 60.0 }],

@@ -2,13 +2,13 @@
 
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Early, Exact, Few, Gap, Nothing, Outliers, Parameter};
 use super::super::experiment::{Physics as Kind, Plain, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 
-nisp::pde! {
+interpret! {
     /// An oscillator with a hardening spring.
     mod duffing {
         coordinates: t [s];
@@ -44,7 +44,7 @@ pub(super) fn subject() -> Subject {
         let times = line(0.0, LAST, 300);
         let (y, u): (Vec<f64>, Vec<f64>) = times.iter().map(|&t| motion(t)).unzip();
         let plain = Plain {
-            scene: scene::<duffing::recover::Scene>(),
+            scene: duffing::scene("recover"),
             groups: vec![("motion", line(0.0, LAST, 300).into(), vec![])],
             observed: "samples",
             stated: vec![],

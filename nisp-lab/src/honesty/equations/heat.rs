@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Mirrored, Moved, Nothing, Outliers, Physics, Scaled, Swapped};
 use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, axis, cases, lattice, line};
 use super::super::samples::Samples;
 
-nisp::pde! {
+interpret! {
     /// Fourier's equation.
     mod heat {
         coordinates: x [m], t [s];
@@ -36,7 +36,7 @@ pub(super) fn subject() -> Subject {
         let (x, t) = (axis(&samples, 0), axis(&samples, 1));
         let u = x.iter().zip(&t).map(|(&x, &t)| temperature([x, t], loss)).collect();
         let plain = Plain {
-            scene: scene::<heat::identify::Scene>(),
+            scene: heat::scene("identify"),
             groups: vec![
                 ("rod", lattice(&line(0.0, 1.0, 20), &line(0.0, 1.0, 15)).into(), vec![]),
                 ("ends", lattice(&[0.0, 1.0], &line(0.0, 1.0, 15)).into(), vec![]),

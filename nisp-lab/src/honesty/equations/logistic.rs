@@ -1,12 +1,12 @@
 //! Growth that its own size slows down, with unknown rate and capacity.
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Early, Exact, Few, Moved, Nothing, Outliers, Physics, Scaled};
 use super::super::experiment::{Physics as Kind, Plain, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 
-nisp::pde! {
+interpret! {
     /// Verhulst's equation.
     mod logistic {
         coordinates: t [h];
@@ -31,7 +31,7 @@ pub(super) fn subject() -> Subject {
         };
         let n = times.iter().map(grown).collect();
         let plain = Plain {
-            scene: scene::<logistic::identify::Scene>(),
+            scene: logistic::scene("identify"),
             groups: vec![("course", times.clone().into(), vec![])],
             observed: "samples",
             stated: vec![],

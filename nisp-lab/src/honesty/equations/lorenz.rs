@@ -1,13 +1,13 @@
 //! Lorenz's equations with all three coefficients unknown.
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Nothing, Outliers, Physics, Scaled, Swapped};
 use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 use crate::rk4::integrate;
 
-nisp::pde! {
+interpret! {
     /// Lorenz's equations.
     mod lorenz {
         units: off;
@@ -39,7 +39,7 @@ pub(super) fn subject() -> Subject {
         let of = |at: usize| states.iter().map(|state| state[at]).collect();
         let stated = |(head, value)| Stated { head, at: vec![0.0], value, size: 10.0 };
         let plain = Plain {
-            scene: scene::<lorenz::identify::Scene>(),
+            scene: lorenz::scene("identify"),
             groups: vec![("flow", line(0.0, 3.0, 100).into(), vec![]), ("start", vec![0.0].into(), vec![])],
             observed: "samples",
             stated: ["x", "y", "z"].into_iter().zip(START).map(stated).collect(),

@@ -1,13 +1,13 @@
 //! A mass on a damped spring, both unknown, from its free motion out of a known start.
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Gap, Moved, Nothing, Outliers, Parameter, Physics, Scaled};
 use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 use crate::rk4::integrate;
 
-nisp::pde! {
+interpret! {
     /// A mass on a damped spring.
     mod oscillator {
         coordinates: t [s];
@@ -41,7 +41,7 @@ pub(super) fn subject() -> Subject {
             }
         };
         let plain = Plain {
-            scene: scene::<oscillator::identify::Scene>(),
+            scene: oscillator::scene("identify"),
             groups: vec![("motion", times.clone().into(), vec![]), ("start", vec![0.0].into(), vec![])],
             observed: "samples",
             stated: vec![Stated { head: "y", at: vec![0.0], value: START, size: START }],

@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Early, Exact, Few, Moved, Nothing, Outliers, Scaled, Swapped};
 use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, axis, cases, lattice, line};
 use super::super::samples::Samples;
 
-nisp::pde! {
+interpret! {
     /// A membrane under an unknown pressure, in plain numbers.
     mod poisson {
         units: off;
@@ -40,7 +40,7 @@ pub(super) fn subject() -> Subject {
         let (across, up) = (axis(&points, 0), axis(&points, 1));
         let sides = [lattice(&line(0.0, 1.0, 15), &[0.0, 1.0]), lattice(&[0.0, 1.0], &line(0.0, 1.0, 15))];
         let plain = Plain {
-            scene: scene::<poisson::recover::Scene>(),
+            scene: poisson::scene("recover"),
             groups: vec![
                 ("inside", lattice(&line(0.0, 1.0, 16), &line(0.0, 1.0, 16)).into(), vec![]),
                 ("edge", sides.concat().into(), vec![]),

@@ -1,13 +1,13 @@
 //! Predators and prey under an unknown harvest of the prey.
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Gap, Nothing, Outliers, Parameter, Physics, Scaled, Swapped};
 use super::super::experiment::{Physics as Kind, Plain, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 use crate::rk4::integrate;
 
-nisp::pde! {
+interpret! {
     /// Lotka's and Volterra's equations with a harvest.
     mod prey {
         units: off;
@@ -40,7 +40,7 @@ pub(super) fn subject() -> Subject {
         let states = integrate(slope, [3.0, 1.5], &times);
         let of = |at: usize| states.iter().map(|state| state[at]).collect();
         let plain = Plain {
-            scene: scene::<prey::recover::Scene>(),
+            scene: prey::scene("recover"),
             groups: vec![("course", line(0.0, LAST, 200).into(), vec![])],
             observed: "samples",
             stated: vec![],

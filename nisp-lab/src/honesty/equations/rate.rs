@@ -2,13 +2,13 @@
 
 use std::f64::consts::PI;
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Mirrored, Moved, Nothing, Outliers, Parameter, Scaled};
 use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 
-nisp::pde! {
+interpret! {
     /// Diffusion and reaction under a known load.
     mod rate {
         units: off;
@@ -48,7 +48,7 @@ pub(super) fn subject() -> Subject {
         let gauges = line(0.0, 1.0, 100);
         let stated = |x| Stated { head: "u", at: vec![x], value: 0.0, size: 1.0 };
         let plain = Plain {
-            scene: scene::<rate::recover::Scene>(),
+            scene: rate::scene("recover"),
             groups: vec![
                 ("inside", places.into(), vec![load]),
                 ("left", vec![0.0].into(), vec![]),

@@ -1,13 +1,13 @@
 //! A substance that turns into a second and that into a third, both rates unknown.
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Gap, Nothing, Outliers, Physics, Scaled, Swapped};
 use super::super::experiment::{Physics as Kind, Plain, Stated, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 use crate::rk4::integrate;
 
-nisp::pde! {
+interpret! {
     /// Two reactions of first order, one after the other.
     mod reaction {
         coordinates: t [s];
@@ -34,7 +34,7 @@ pub(super) fn subject() -> Subject {
         let of = |at: usize| states.iter().map(|state| state[at]).collect();
         let stated = |(head, value)| Stated { head, at: vec![0.0], value, size: FILLED };
         let plain = Plain {
-            scene: scene::<reaction::identify::Scene>(),
+            scene: reaction::scene("identify"),
             groups: vec![("course", times.clone().into(), vec![]), ("start", vec![0.0].into(), vec![])],
             observed: "samples",
             stated: [("a", FILLED), ("b", 0.0)].map(stated).into(),

@@ -1,13 +1,13 @@
 //! A pendulum of unknown length that swings far, from its angle.
 
-use nisp::scene;
+use nisp_interpreter::interpret;
 
 use super::super::corruption::Corruption::{Exact, Few, Moved, Nothing, Parameter, Physics, Scaled};
 use super::super::experiment::{Physics as Kind, Plain, Subject, Truth, cases, line};
 use super::super::samples::Samples;
 use crate::rk4::integrate;
 
-nisp::pde! {
+interpret! {
     /// A pendulum without friction.
     mod swing {
         coordinates: t [s];
@@ -30,7 +30,7 @@ pub(super) fn subject() -> Subject {
         let slope = |_, [angle, rate]: [f64; 2]| [rate, -GRAVITY / LENGTH * angle.sin() - friction * rate];
         let theta = integrate(slope, [1.2, 0.0], &times).into_iter().map(|[angle, _]| angle).collect();
         let plain = Plain {
-            scene: scene::<swing::identify::Scene>(),
+            scene: swing::scene("identify"),
             groups: vec![("motion", times.clone().into(), vec![])],
             observed: "samples",
             stated: vec![],

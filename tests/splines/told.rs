@@ -1,11 +1,12 @@
 //! What splines say of sources that a record tells little of: some are open in one direction, some cannot be told from none.
 
-#![allow(deprecated, reason = "scene `free` leaves the source under a null space on purpose")]
+use nisp::solve::driver::{Status, WarningKind};
+use nisp::{Carrier, Problem, SceneRef, Solution};
+use nisp_interpreter::interpret;
 
-use nisp::solve::driver::{Flow, Status, WarningKind};
-use nisp::{Carrier, Problem, SceneRef, Settings, Solution, recover, scene};
+use crate::{normals, solve};
 
-nisp::pde! {
+interpret! {
     /// A source that is known by its effect on a leak only: multiples of exp(-3 t) have none.
     mod leak {
         units: off;
@@ -21,7 +22,7 @@ nisp::pde! {
     }
 }
 
-nisp::pde! {
+interpret! {
     /// A mass under a force.
     mod mass {
         units: off;
@@ -41,23 +42,12 @@ fn times(count: usize) -> Vec<f64> {
 
 /// A record of a course with noise of some deviation.
 fn record(scene: SceneRef, count: usize, noise: f64, course: impl Fn(f64) -> f64) -> Problem {
-    let mut state = 3_u64;
-    let mut uniform = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 11) as f64 / (1u64 << 53) as f64
-    };
-    // Sums of twelve even numbers are nearly normal.
-    let mut normal = || (0..12).map(|_| uniform()).sum::<f64>() - 6.0;
+    let mut normal = normals(3);
     let measured = times(count).into_iter().map(|t| course(t) + noise * normal()).collect();
     let mut problem = Problem::new(scene);
     problem.set_group("motion", times(300).into(), vec![]).unwrap();
     problem.set_group("samples", times(count).into(), vec![measured]).unwrap();
     problem
-}
-
-fn solve(problem: &Problem) -> Solution {
-    let settings = Settings { carrier: Carrier::Splines, ..Settings::default() };
-    recover(problem, &settings, &mut |_| Flow::Continue).unwrap()
 }
 
 /// The leak under f = sin 2t: v' + v = 2 cos 2t + 3 sin 2t.
@@ -71,9 +61,9 @@ fn said(solution: &Solution, kind: WarningKind) -> Vec<&str> {
 
 #[test]
 fn a_condition_that_closes_a_direction_is_named_with_it() {
-    let mut problem = record(scene::<leak::recover::Scene>(), 400, 0.003, leaking);
+    let mut problem = record(leak::scene("recover"), 400, 0.003, leaking);
     problem.set_group("start", vec![0.0].into(), vec![]).unwrap();
-    let solution = solve(&problem);
+    let solution = solve(&problem, Carrier::Splines);
     assert_eq!(solution.status, Status::Converged);
     let said = said(&solution, WarningKind::Settled);
     let [said] = said[..] else { panic!("{said:?}") };
@@ -84,7 +74,7 @@ fn a_condition_that_closes_a_direction_is_named_with_it() {
 
 #[test]
 fn a_direction_that_nothing_closes_is_open() {
-    let solution = solve(&record(scene::<leak::free::Scene>(), 400, 0.003, leaking));
+    let solution = solve(&record(leak::scene("free"), 400, 0.003, leaking), Carrier::Splines);
     let said = said(&solution, WarningKind::Undetermined);
     assert!(said.iter().any(|said| said.starts_with("the data do not determine `f`: a multiple of exp(")), "{said:?}");
 }
@@ -92,7 +82,7 @@ fn a_direction_that_nothing_closes_is_open() {
 #[test]
 fn a_force_that_drowns_in_noise_is_not_called_found() {
     // Two thousandths of what the noise hides.
-    let mut solution = solve(&record(scene::<mass::recover::Scene>(), 40, 1.0, |t| -0.002 * (3.0 * t).sin()));
+    let mut solution = solve(&record(mass::scene("recover"), 40, 1.0, |t| -0.002 * (3.0 * t).sin()), Carrier::Splines);
     assert_eq!(solution.status, Status::Inconsistent);
     let failed: Vec<&str> = solution.verdict.failed().map(|check| check.check).collect();
     assert_eq!(failed, ["noise", "told"]);
@@ -101,7 +91,7 @@ fn a_force_that_drowns_in_noise_is_not_called_found() {
 
 #[test]
 fn a_force_that_stands_out_is_found() {
-    let mut solution = solve(&record(scene::<mass::recover::Scene>(), 40, 0.01, |t| -(3.0 * t).sin()));
+    let mut solution = solve(&record(mass::scene("recover"), 40, 0.01, |t| -(3.0 * t).sin()), Carrier::Splines);
     assert_eq!(solution.status, Status::Converged);
     let found = solution.evaluate_with_errors(&times(41));
     let force = found.iter().find(|estimate| estimate.name == "f").unwrap();
