@@ -13,9 +13,12 @@ fn run(folder: &Path, line: &str) -> Output {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
     let target = Path::new(env!("CARGO_BIN_EXE_nisp")).ancestors().nth(2).unwrap();
     let mut cargo = Command::new(env!("CARGO"));
-    // The workspace's profile, so that what is built already is built no more; the runtime, which is not, by both cores.
+    // The workspace's profile, so that what is built already is built no more. Our own crates are built anew: with less care.
     cargo.arg("--config").arg(root.join("Cargo.toml"));
     cargo.args(["--config", "profile.release.package.nisp-runtime.codegen-units=16"]);
+    for level in ["runtime.opt-level=1", "data.opt-level=0", "interpreter.opt-level=0"] {
+        cargo.args(["--config", &format!("profile.release.package.nisp-{level}")]);
+    }
     cargo.args(["run", "--quiet"]).args(if cfg!(debug_assertions) { None } else { Some("--release") });
     cargo.env("CARGO_TARGET_DIR", target).current_dir(folder);
     if !folder.join("Cargo.lock").exists() {

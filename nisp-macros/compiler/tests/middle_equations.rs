@@ -115,7 +115,8 @@ fn model_of(text: &str) -> Result<Model, String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 1000, failure_persistence: None, ..ProptestConfig::default() })]
+    // Others in every run.
+    #![proptest_config(ProptestConfig { cases: 300, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn random_equations_are_those_of_dense_jets(seed: u64) {
