@@ -242,7 +242,7 @@ fn by_stations(coordinates: &[f64], (inputs, axis): (usize, usize), values: &[f6
     by_records(records)
 }
 
-fn median(values: Vec<f64>) -> Option<f64> {
+pub(crate) fn median(values: Vec<f64>) -> Option<f64> {
     quantile(values, 0.5)
 }
 

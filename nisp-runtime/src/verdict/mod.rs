@@ -14,6 +14,7 @@ mod filtered;
 mod gathered;
 mod held;
 mod interpolated;
+pub(crate) mod jolts;
 pub(crate) mod known;
 pub(crate) mod leaning;
 mod learned;
@@ -24,6 +25,7 @@ mod outliers;
 mod outside;
 mod parts;
 mod patterns;
+mod repeated;
 mod scaled;
 pub(crate) mod settled;
 mod slow;
@@ -44,7 +46,7 @@ const FIRM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
-    /// `rhythm`, `filtered`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
+    /// `rhythm`, `filtered`, `repeated`, `jolt`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
     /// `leaning`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
@@ -75,10 +77,11 @@ impl Verdict {
     }
 
     /// True where an answer holds its equations firmly and misses the data: these equations do not describe the data, and another
-    /// answer could only fit them by bending the equations. Also where the data leave a source or a learned scalar open: so does any
-    /// other answer.
+    /// answer could only fit them by bending the equations. Also where the data leave a source or a learned scalar open, and where they are not as
+    /// they were measured: so does any other answer.
     pub(crate) fn contradicts(&self) -> bool {
-        if self.failed().any(|check| matches!(check.check, "determined" | "leaning" | "filtered")) {
+        if self.failed().any(|check| matches!(check.check, "determined" | "leaning" | "filtered" | "repeated" | "jolt"))
+        {
             return true;
         }
         let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");

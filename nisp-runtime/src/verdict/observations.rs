@@ -2,7 +2,7 @@
 
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
-use super::{Check, filtered, held, outliers, parts, patterns, root_mean_square, scaled, taken};
+use super::{Check, filtered, held, outliers, parts, patterns, repeated, root_mean_square, scaled, taken};
 use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
@@ -48,6 +48,7 @@ fn of(left: &Misfits, answer: &Answer) -> Vec<Check> {
     let mut checks: Vec<Check> = misfit(left, answer.finer).into_iter().collect();
     if left.is_record() && !left.is_exact() {
         checks.extend(left.term.columns.iter().map(|&column| stuck(left, column)));
+        checks.extend(left.term.columns.iter().filter_map(|&column| twice(left, column)));
     }
     if let Some(noise) = left.noise.filter(|_| left.is_record() && !left.is_robust) {
         checks.extend((0..left.term.columns.len()).map(|number| lonely(left, number, noise)));
@@ -187,6 +188,21 @@ fn stuck(left: &Misfits, column: usize) -> Check {
         left.bound.system.outward(&left.term.unit).of(Number::engine(value)),
     );
     Check::new("held", left.name(), (share, HELD), said)
+}
+
+/// Whether rows of a column are in it twice; nothing where none are.
+fn twice(left: &Misfits, column: usize) -> Option<Check> {
+    let values =
+        in_order(&left.places, &left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]));
+    let places = in_order(&left.places, &left.places);
+    let (again, first) = repeated::repeated(&values, left.noise?.deviation)?;
+    let [from, to, before] = [again.start, again.end - 1, first].map(|at| left.bound.place(&[places[at]]));
+    let said = format!(
+        "{} rows of `{}` are there twice, noise and all: those from {from} to {to} repeat those from {before} on; leave out what was written or          pasted once more",
+        again.len(),
+        left.bound.problem.scene().schema.groups[left.group].columns[column].name,
+    );
+    Some(Check::new("repeated", left.name(), (again.len() as f64, 0.0), said))
 }
 
 /// Values of a measured column that stand alone.

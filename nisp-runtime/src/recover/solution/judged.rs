@@ -33,6 +33,7 @@ impl Solution {
                 self.verdict.checks.push(patches(head.name, values, level.as_engine()));
             }
         }
+        self.verdict.checks.extend(self.jolts());
         self.verdict.checks.extend(self.left_open());
         match (self.status, self.verdict.passed()) {
             (Status::Budget, true) if self.is_met_exactly && self.has_room() => self.status = Status::Converged,
