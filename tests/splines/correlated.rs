@@ -21,7 +21,7 @@ interpret! {
 
 pub(crate) const ROWS: usize = 300;
 
-fn times() -> Vec<f64> {
+pub(crate) fn times() -> Vec<f64> {
     (0..ROWS).map(|row| row as f64 / 15.0).collect()
 }
 
@@ -52,7 +52,7 @@ pub(crate) fn levels() -> Vec<f64> {
     simulated(&times(), [2.0], |t, [h]| [(source(t) - h) / 2.0]).iter().map(|[h]| *h).collect()
 }
 
-fn places() -> Vec<f64> {
+pub(crate) fn places() -> Vec<f64> {
     simulated(&times(), [0.5, 0.0], |t, [x, v]| [v, (source(t) - 0.8 * v - 4.0 * x) / 1.5])
         .iter()
         .map(|[x, _]| *x)

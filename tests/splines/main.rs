@@ -22,6 +22,7 @@ mod levels;
 mod measured;
 mod oscillator;
 mod readings;
+mod spoiled;
 mod steps;
 mod told;
 
