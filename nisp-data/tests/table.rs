@@ -215,8 +215,17 @@ fn time_must_rise() {
     assert!(parse("t,q\n0,1\n1,1\n").require_increasing("t").is_ok());
     let fall = parse("t_s,q\n0,1\n# pause\n2,1\n1,1\n").require_increasing("t").unwrap_err().to_string();
     assert_eq!(fall, "t.csv: line 5, column `t_s`: 1 comes after 2; sort the rows by this column");
-    let twice = parse("t,q\n0,1\n2,1\n2,1\n").require_increasing("t").unwrap_err().to_string();
-    assert!(twice.contains("is there twice"), "{twice}");
+    let of = |times: &mut dyn Iterator<Item = usize>| {
+        let rows: String = times.map(|t| format!("{t},1\n")).collect();
+        parse(&format!("t,q\n{rows}")).require_increasing("t").unwrap_err().to_string()
+    };
+    let twice = of(&mut (0..20).chain(19..30));
+    assert!(
+        twice.ends_with("line 22, column `t`: the value 19 is there twice; keep one row for each value"),
+        "{twice}"
+    );
+    let rounded = of(&mut (0..30).map(|row| row / 3));
+    assert!(rounded.contains("twice, as are 20 of 30: they were rounded; give them with more digits"), "{rounded}");
 }
 
 #[test]

@@ -90,7 +90,13 @@ impl Table {
             None => values[row].to_string(),
         };
         let (before, after) = (shown(row), shown(row + 1));
-        let what = if values[row] == values[row + 1] {
+        let again = values.windows(2).filter(|pair| pair[0] == pair[1]).count();
+        let what = if values[row] == values[row + 1] && again > values.len() / 10 {
+            format!(
+                "the value {after} is there twice, as are {again} of {}: they were rounded; give them with more digits",
+                values.len()
+            )
+        } else if values[row] == values[row + 1] {
             format!("the value {after} is there twice; keep one row for each value")
         } else {
             format!("{after} comes after {before}; sort the rows by this column")

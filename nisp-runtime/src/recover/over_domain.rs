@@ -21,6 +21,9 @@ impl Solution {
     /// Checks of sources that jolt in a record.
     pub(super) fn jolts(&self) -> Vec<Check> {
         let [coordinate] = self.scene().coordinates else { return Vec::new() };
+        if !self.scene().heads.iter().any(|head| head.source) {
+            return Vec::new();
+        }
         let groups = self.scene().groups.iter().zip(&self.bound.coordinates);
         let observed = groups.filter(|(group, _)| group.terms.iter().any(|term| term.kind == TermKind::Observation));
         let Some(mut rows) = observed.map(|(_, rows)| rows.clone()).max_by_key(Vec::len) else { return Vec::new() };
