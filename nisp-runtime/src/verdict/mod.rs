@@ -46,8 +46,8 @@ const FIRM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
-    /// `rhythm`, `filtered`, `repeated`, `jolt`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`, `distance`, `seen`, `patch`, `determined`,
-    /// `leaning`, `refined`, `amplified`, `agreed` or `range`.
+    /// `rhythm`, `filtered`, `repeated`, `jolt`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
+    /// `distance`, `seen`, `patch`, `determined`, `leaning`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,

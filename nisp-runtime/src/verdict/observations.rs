@@ -198,7 +198,8 @@ fn twice(left: &Misfits, column: usize) -> Option<Check> {
     let (again, first) = repeated::repeated(&values, left.noise?.deviation)?;
     let [from, to, before] = [again.start, again.end - 1, first].map(|at| left.bound.place(&[places[at]]));
     let said = format!(
-        "{} rows of `{}` are there twice, noise and all: those from {from} to {to} repeat those from {before} on; leave out what was written or          pasted once more",
+        "{} rows of `{}` are there twice, noise and all: those from {from} to {to} repeat those from {before} on; leave out what \
+         was written or pasted once more",
         again.len(),
         left.bound.problem.scene().schema.groups[left.group].columns[column].name,
     );
