@@ -27,7 +27,10 @@ fn assert_named(solution: &Solution, check: &str, word: &str) {
 #[test]
 fn rows_that_are_there_twice_are_named() {
     let twice = |rows: &mut Vec<f64>| rows.copy_within(100..140, 200);
-    assert_named(&answer(twice), "repeated", "leave out what was written or pasted once more");
+    let solution = answer(twice);
+    for said in ["40 rows of `x`", "leave out what was written or pasted once more"] {
+        assert_named(&solution, "repeated", said);
+    }
 }
 
 #[test]
