@@ -237,6 +237,16 @@ pub enum PrepareError {
         /// Its declared unit.
         unit: &'static str,
     },
+    /// Measurements that look like those of another unit, under a header that says none.
+    #[error("{question}; if it is in {unit}, say that instead: `{name} [{unit}]` (or --column '{name}=HEADER [{unit}]')")]
+    Unlabelled {
+        /// What is asked.
+        question: String,
+        /// What was measured.
+        name: &'static str,
+        /// Its declared unit.
+        unit: &'static str,
+    },
     /// A truth at times of which the data say nothing.
     #[error(
         "{}: the truth's times, {} to {} s, are all outside those of the data, {} to {} s; check the file and the unit of \

@@ -61,6 +61,8 @@ pub(crate) struct Found {
     pub(crate) measured: Vec<Measured>,
     /// What the user should know of the data.
     pub(crate) warnings: Vec<String>,
+    /// Columns whose headers say no unit.
+    pub(crate) unlabelled: Vec<&'static str>,
     /// The places of the first measurements.
     pub(crate) places: Vec<f64>,
     /// The least and the greatest of each coordinate.
@@ -153,6 +155,7 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
         problem: Problem::new(scene),
         measured: Vec::new(),
         warnings: Vec::new(),
+        unlabelled: Vec::new(),
         places: Vec::new(),
         bounds: vec![[f64::INFINITY, f64::NEG_INFINITY]; schema.coordinates.len()],
         body: None,
@@ -199,7 +202,8 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
         found.problem.set_group(group.name, points, columns)?;
     }
     clouds::bind(&mut found, tables, request)?;
-    found.warnings.extend(units::doubts(&found.problem));
+    let doubts = units::doubts(&found.problem, &found.unlabelled)?;
+    found.warnings.extend(doubts);
     Ok(found)
 }
 

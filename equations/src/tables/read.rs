@@ -91,6 +91,9 @@ fn columns(group: &Group, table: &Table, request: &Request, found: &mut Found) -
             return Ok(vec![f64::NAN; table.rows()]);
         }
         let values = read(table, (c.name, c.unit.text), group.may_lack(c.name), request)?;
+        if !table.says_unit(c.name, header(request, c.name, table), c.unit.text) {
+            found.unlabelled.push(c.name);
+        }
         let gaps = values.iter().filter(|value| value.is_nan()).count();
         if gaps > 0 {
             found.warnings.push(format!("`{}` is not measured in {gaps} of {} rows", c.name, values.len()));

@@ -1,11 +1,13 @@
-//! Measurements whose unit may be another one than their header says: far off what the equations compare them with, and near it
-//! in that unit. A free source would take over what is off.
+//! Measurements whose unit may be another one than the declared one: far off what the equations compare them with, and near it
+//! in that unit. A free source would take over what is off, so that such a column is refused where its header says no unit.
 
 use std::collections::BTreeSet;
 
 use nisp::units::Number;
 use nisp::{Problem, Rest};
 use nisp_units::conversion;
+
+use crate::error::PrepareError;
 
 /// Scales that begin elsewhere, as headers name them and in words.
 const SHIFTED: [(&str, &str); 2] = [("degC", "Celsius"), ("degF", "Fahrenheit")];
@@ -28,11 +30,25 @@ const NEAR: f64 = 0.1;
 type Range = [f64; 2];
 
 /// Questions about the units of measurements, one for each column.
-pub(super) fn doubts(problem: &Problem) -> Vec<String> {
+///
+/// # Errors
+/// The question of a column whose header says no unit.
+pub(super) fn doubts(problem: &Problem, unlabelled: &[&'static str]) -> Result<Vec<String>, PrepareError> {
     // What is not sensibly bound is said when it is solved.
     let rests = problem.rests().unwrap_or_default();
     let mut asked = BTreeSet::new();
-    rests.iter().filter_map(|rest| question(rest).filter(|_| asked.insert(rest.column.name))).collect()
+    let mut refused = Vec::new();
+    let mut said = Vec::new();
+    for rest in &rests {
+        let Some(question) = question(rest).filter(|_| asked.insert(rest.column.name)) else { continue };
+        let (name, unit) = (rest.column.name, rest.column.unit.text);
+        if unlabelled.contains(&name) {
+            refused.push(PrepareError::Unlabelled { question, name, unit });
+        } else {
+            said.push(question);
+        }
+    }
+    if refused.is_empty() { Ok(said) } else { Err(PrepareError::all(refused)) }
 }
 
 fn question(rest: &Rest) -> Option<String> {

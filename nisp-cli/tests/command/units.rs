@@ -91,8 +91,38 @@ fn nobody_is_asked_where_units_are_right_or_nothing_is_compared() {
 fn solve_warns_of_what_check_asks() {
     let place = Place::new();
     place.put("room.pde", ROOM);
-    let lines: String = (0..60).map(|i| f64::from(i) / 4.0).map(|t| format!("{t},{:.2}\n", celsius(t))).collect();
-    place.put("run.csv", &format!("t,T\n{lines}"));
+    place.put("run.csv", &record("T [K]"));
     let ran = place.run("solve room.pde --data run.csv");
     assert!(ran.stdout.contains("is `T` in degrees Celsius"), "{}", ran.stdout);
+}
+
+#[test]
+fn a_doubtful_column_without_a_unit_is_refused_until_one_is_said() {
+    let place = Place::new();
+    place.put("room.pde", ROOM);
+    place.put("run.csv", &record("T"));
+    for command in ["solve room.pde --data run.csv", "check room.pde --data run.csv"] {
+        let ran = place.run(command);
+        assert_eq!(ran.code, Some(2), "{}", ran.stdout);
+        assert!(ran.stderr.contains("is `T` in degrees Celsius"), "{}", ran.stderr);
+        assert!(ran.stderr.contains("--column 'T=HEADER [K]'"), "{}", ran.stderr);
+    }
+    // Either unit is taken, in the header or with it; brackets need no blank.
+    for (header, column, is_asked) in [
+        ("T", "--column T=T[K]", true),
+        ("T", "--column T=T[degC]", false),
+        ("T_K", "", true),
+        ("T [degC]", "", false),
+    ] {
+        place.put("run.csv", &record(header));
+        let ran = place.run(&format!("check room.pde --data run.csv {column}"));
+        assert_eq!(ran.code, Some(0), "{header} {column}: {}", ran.stderr);
+        assert_eq!(ran.stdout.contains("in degrees"), is_asked, "{header} {column}: {}", ran.stdout);
+    }
+}
+
+/// A record of degrees Celsius under a header.
+fn record(header: &str) -> String {
+    let lines: String = (0..60).map(|i| f64::from(i) / 4.0).map(|t| format!("{t},{:.2}\n", celsius(t))).collect();
+    format!("t,{header}\n{lines}")
 }

@@ -64,6 +64,13 @@ impl Table {
         self.single(name, &self.answering(header, None))?.ok_or_else(|| self.absent(name, header))
     }
 
+    /// True if the header that was found or chosen for a quantity says in which unit its numbers are.
+    pub fn says_unit(&self, name: &str, chosen: Option<&str>, unit: &str) -> bool {
+        let says = |header: &str| header != name && (claimed(header).is_some() || found(header, unit).is_some());
+        let own = || self.find(chosen.unwrap_or(name), None).is_ok_and(|column| says(&column.header));
+        chosen.is_some_and(says) || own()
+    }
+
     /// True if no header is, or may be meant to be, that of a quantity.
     pub fn lacks(&self, name: &str) -> bool {
         self.answering(name, None).is_empty()

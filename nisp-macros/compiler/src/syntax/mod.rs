@@ -34,7 +34,7 @@
 //!           | NUMBER UNIT?  | NAME  | pi  | I  | [EXPR, ...]  | EXPR[INDEX, INDEX?]
 //!           | d(EXPR, x)  | d(EXPR, x, 2)  | d(EXPR, x, 2, y)  | w_xxy
 //!           | FUNCTION(EXPR, ...)
-//! UNIT        [m/s^2]  | [kg m^-3]  | [W/(m K)]  | [m^(1/2)]  | [1]
+//! UNIT        [m/s^2]  | [kg m^-3]  | [W/(m K)]  | [m^(1/2)]  | [m^0.5]  | [1]
 //! ```
 
 use proc_macro2::TokenStream;

@@ -1,4 +1,4 @@
-//! Units in brackets: `[m/s^2]`, `[kg m^-3]`, `[m^(1/2)]`, `[1]`.
+//! Units in brackets: `[m/s^2]`, `[kg m^-3]`, `[m^(1/2)]`, `[m^0.5]`, `[1]`.
 
 use num_traits::{One, Zero};
 use proc_macro2::Delimiter;
@@ -9,6 +9,9 @@ use crate::error::{Checked, Place, catalogue};
 use crate::rational::Rational;
 use crate::unit::frame::Scale;
 use crate::unit::{Dimension, Unit, look_up};
+
+/// What stands above and below the line of an exponent, at most.
+const MOST: i128 = 100;
 
 /// A product of powers under construction.
 struct Product {
@@ -119,17 +122,17 @@ fn base(stream: &mut Stream<'_>, context: &mut Context<'_>, text: &mut String) -
     }
 }
 
-/// `2`, `-3`, `(1/2)`, `(-1/2)`.
+/// `2`, `-3`, `0.5`, `(1/2)`, `(-1/2)`.
 fn exponent(stream: &mut Stream<'_>, context: &mut Context<'_>, text: &mut String) -> Checked<Rational> {
     let Some((mut inside, _)) = stream.take_group(Delimiter::Parenthesis) else {
-        return integer(stream, context, text);
+        return number(stream, context, text);
     };
     text.push('(');
-    let mut value = integer(&mut inside, context, text)?;
+    let mut value = number(&mut inside, context, text)?;
     let place = inside.place();
     if inside.take("/").is_some() {
         text.push('/');
-        let below = integer(&mut inside, context, text)?;
+        let below = number(&mut inside, context, text)?;
         if below.is_zero() {
             return Err(context.errors.report(place, catalogue::absurd_unit()));
         }
@@ -142,14 +145,15 @@ fn exponent(stream: &mut Stream<'_>, context: &mut Context<'_>, text: &mut Strin
     Ok(value)
 }
 
-fn integer(stream: &mut Stream<'_>, context: &mut Context<'_>, text: &mut String) -> Checked<Rational> {
+/// A number that is a fraction of two small ones.
+fn number(stream: &mut Stream<'_>, context: &mut Context<'_>, text: &mut String) -> Checked<Rational> {
     let negative = stream.take("-").is_some();
     let (place, found) = (stream.place(), stream.found());
     let number = match stream.take_literal() {
         Some(literal) => parse_number::parse(&literal, context)?,
         None => return Err(context.errors.report(place, catalogue::expected_exponent(&found))),
     };
-    match number.exact.filter(|value| value.is_integer() && *value.numer() <= 100) {
+    match number.exact.filter(|value| *value.numer() <= MOST && *value.denom() <= MOST) {
         Some(value) => {
             text.push_str(if negative { "-" } else { "" });
             text.push_str(&number.text);

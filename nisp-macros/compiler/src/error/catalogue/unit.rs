@@ -65,5 +65,5 @@ pub(crate) fn unknown_unit(symbol: &str) -> String {
 }
 
 pub(crate) fn expected_exponent(found: &str) -> String {
-    help(format!("expected a whole exponent, found {found}"), "for instance `m^2`, `s^-1`, `m^(1/2)`")
+    help(format!("expected an exponent, found {found}"), "for instance `m^2`, `s^-1`, `m^0.5`, `m^(1/2)`")
 }
