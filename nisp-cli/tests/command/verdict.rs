@@ -43,8 +43,37 @@ fn two_sources_that_act_alike_are_named_together() {
     place.put("run.csv", &format!("t [s],T [K]\n{}", (0..100).map(row).collect::<String>()));
     let ran = place.run("solve two.pde --data run.csv");
     assert_eq!(ran.code, Some(3), "{}", ran.stdout);
-    let said = "only what both make together may be known";
+    let said = "nothing tells `P` from `S`";
     assert!(ran.stderr.contains(said) || ran.stdout.contains(said), "{}{}", ran.stdout, ran.stderr);
+}
+
+#[test]
+fn two_sources_of_which_one_multiplies_a_field_are_not_told_apart() {
+    let place = Place::new();
+    // A mixer with its inflow and what flows in; with the inflow measured as well, both are known.
+    let mixer = "coordinates: t [min]; fields: c [g/L]; sources: Q [L/min], cin [g/L];
+        on mixer { balance: 10 [L] * d(c, t) == Q * (cin - c); } on samples { observe c; }";
+    let (dt, mut c) = (0.01, 4.0);
+    let (mut one, mut both) = ("t [min],c [g/L]\n".to_string(), "t [min],c [g/L],Q [L/min]\n".to_string());
+    for i in 0..6000 {
+        let t = dt * f64::from(i);
+        let (flow, entering) = (2.0 + 0.8 * (0.2 * t).sin(), 5.0 + 2.0 * (0.13 * t + 1.0).cos());
+        if i % 30 == 0 {
+            let noise = 0.003 * (7.0 * f64::from(i)).sin();
+            one += &format!("{t:.2},{:.5}\n", c + noise);
+            both += &format!("{t:.2},{:.5},{:.4}\n", c + noise, flow + noise);
+        }
+        c += dt * flow * (entering - c) / 10.0;
+    }
+    place.put("mixer.pde", mixer);
+    place.put("run.csv", &one);
+    let ran = place.run("solve mixer.pde --data run.csv");
+    assert_eq!(ran.code, Some(3), "{}", ran.stdout);
+    assert!(ran.stderr.contains("nothing tells `Q` from `cin`"), "{}{}", ran.stdout, ran.stderr);
+    place.put("metered.pde", &mixer.replace("observe c;", "observe c, Q;"));
+    place.put("run.csv", &both);
+    let ran = place.run("solve metered.pde --data run.csv");
+    assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
 }
 
 #[test]

@@ -6,6 +6,7 @@ use super::on_lattice::OnLattice;
 use super::on_splines::OnSplines;
 use super::settings::{Carrier, Optimizer, Settings};
 use crate::local::{Local, smooth};
+use crate::noise;
 use crate::problem::Bound;
 use crate::schema::Scene;
 use crate::solve::state::State;
@@ -116,15 +117,16 @@ fn is_for_lattices(schema: &Scene) -> bool {
 }
 
 /// Splines where they can: a record of any length has an answer in less time than a network takes its first steps. Of a source
-/// that is differentiated a network finds more on short records, where it has the time.
+/// that is differentiated a network finds far more on short exact records, and hardly more where there is noise.
 fn by_data(bound: &Bound) -> (Chosen, String) {
     let schema = bound.problem.scene().schema;
-    let differentiated = differentiated(schema).filter(|_| most_rows(bound) <= MANY);
+    let is_short_and_exact = || most_rows(bound) <= MANY && !noise::estimate(bound).is_there(schema);
+    let differentiated = differentiated(schema).filter(|_| is_short_and_exact());
     match (beyond_splines(schema), schema.coordinates.len(), differentiated) {
         (Some(what), ..) => (Chosen::Network, format!("splines do not do {what}")),
         (None, 1, _) if is_for_lattices(schema) => (Chosen::Lattice, "a cloud, an integral or pairs of points".into()),
         (None, 2.., _) => (Chosen::Lattice, format!("{} coordinates", schema.coordinates.len())),
-        (None, _, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short")),
+        (None, _, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short and exact")),
         (None, _, None) => (Chosen::Splines, "one coordinate".into()),
     }
 }

@@ -11,6 +11,7 @@ mod blurred;
 mod clouds;
 mod equations;
 mod filtered;
+mod free;
 mod gathered;
 mod held;
 mod interpolated;
@@ -153,7 +154,10 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
     let is_off = settled.iter().any(|check| check.check == "refined" && !check.passed);
     checks.extend(if is_off { amplified::checks(bound, answer, values) } else { Vec::new() });
     checks.extend(settled);
-    checks.extend(told::checks(bound, &answer.told));
+    let free = free::sources(bound);
+    checks.extend(free::check(&free));
+    // How large these are says nothing.
+    checks.extend(told::checks(bound, &answer.told).into_iter().filter(|check| !free.contains(&check.term)));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));
     checks.extend(leaning::checks(bound, &answer.leaning));

@@ -40,7 +40,7 @@ struct Row {
 pub(super) struct Clashes {
     /// Points, flat.
     pub(super) places: Vec<f64>,
-    /// The groups of these conditions.
+    /// The groups of these conditions, but for those that contradict only what sources were taken to be.
     pub(super) groups: Vec<usize>,
 }
 
@@ -65,6 +65,7 @@ pub(super) fn clashes(bound: &Bound) -> Clashes {
         fields: (0..schema.heads.len()).filter(|&head| !schema.heads[head].source).collect(),
         powers: powers(schema.coordinates.len(), order + 2),
     };
+    let reads_source = |group: usize| schema.groups[group].jets.iter().any(|jet| schema.heads[jet.head].source);
     let rows: Vec<Row> = groups.iter().flat_map(|&at| rows(bound, at, &smooth.widths)).collect();
     let near = ROWS * smooth.fields.len() * smooth.powers.len();
     let places: Vec<[f64; MOST_COORDINATES]> = rows.iter().map(|row| row.place).collect();
@@ -77,18 +78,19 @@ pub(super) fn clashes(bound: &Bound) -> Clashes {
         // A jump of a derivative matters more, the farther it goes on.
         let highest = near.iter().map(|row| schema.groups[row.group].order).max()?;
         let farther = radius.powi(-(highest as i32));
-        Some((row, [smooth, constant, farther]))
+        let is_free = near.iter().any(|row| reads_source(row.group));
+        Some(((row, is_free), [smooth, constant, farther]))
     });
-    let found: Vec<(&Row, [f64; 3])> = found.collect();
+    let found: Vec<((&Row, bool), [f64; 3])> = found.collect();
     let change = found.iter().map(|(_, [_, constant, farther])| constant * farther).fold(0.0, f64::max);
     let clash = found.into_iter().filter(|(_, [smooth, constant, farther])| {
         *smooth > LEFT * constant && *smooth > ROUNDING && smooth * farther > MATTERS * change
     });
-    let clash: Vec<&Row> = clash.map(|(row, _)| row).collect();
+    let clash: Vec<(&Row, bool)> = clash.map(|(row, _)| row).collect();
     let place = |row: &Row| smooth.widths.iter().zip(row.place).map(|(width, x)| width * x).collect::<Vec<f64>>();
-    let meets = |group: &usize| clash.iter().any(|row| row.group == *group);
+    let meets = |group: &usize| clash.iter().any(|(row, is_free)| row.group == *group && !is_free);
     Clashes {
-        places: clash.iter().flat_map(|row| place(row)).collect(),
+        places: clash.iter().flat_map(|(row, _)| place(row)).collect(),
         groups: groups.iter().copied().filter(meets).collect(),
     }
 }

@@ -20,7 +20,7 @@ pub(super) fn finish(
     noise: &Noise,
     (clock, changes): (&Clock, &Changes),
 ) -> Result<LocalSolution, LocalError> {
-    let Run { state, loss, ahead, moved, factor, status, longest, checkpoint, .. } = run;
+    let Run { state, loss, ahead, moved, factor, status, longest, usual, checkpoint, .. } = run;
     let mut warnings = Vec::new();
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     let schema = bound.problem.scene().schema;
@@ -31,7 +31,7 @@ pub(super) fn finish(
     let is_beside_sources = solver.is_beside_sources();
     let is_minimum = status == Status::Converged;
     let rougher = if is_minimum { solver.rougher(&state, clock, longest) } else { None };
-    let (draws, beyond) = if wants_bars && clock.has_time(BARS * longest) {
+    let (draws, beyond) = if wants_bars && clock.has_time(BARS * usual) {
         solver.doubted(&state).unwrap_or_default()
     } else {
         if is_open && matches!(status, Status::Converged | Status::Budget) {

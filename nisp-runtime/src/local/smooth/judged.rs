@@ -32,7 +32,7 @@ pub(super) const FAR: f64 = 4.0;
 const ALIKE: f64 = 5.0;
 const SLIGHT: f64 = 0.05;
 /// Steps to an answer under another belief.
-pub(super) const DOUBTS: u64 = 4;
+const DOUBTS: u64 = 4;
 
 impl Solver<'_> {
     /// Deviations of all unknowns from an answer, and by coefficient the deviation of what the cells cannot hold. How an answer

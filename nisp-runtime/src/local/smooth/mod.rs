@@ -70,8 +70,8 @@ use state::State;
 /// Name of the method in saved states.
 pub(crate) const METHOD: &str = "splines on a lattice";
 
-/// What error bars take, in steps.
-const BARS: f64 = 6.0 + judged::DOUBTS as f64;
+/// What error bars take, in usual steps: ten for the answer under another belief and its evidence, and the draws.
+const BARS: f64 = 13.0;
 
 /// Points of the largest equation on a finer lattice, beside those on the one before.
 const MORE: usize = 2;
@@ -155,11 +155,13 @@ pub(crate) fn solve(
         if strain < 1.0 && is_seen || idle >= patience {
             break;
         }
-        let bars = BARS * run.longest;
+        let bars = BARS * run.usual;
         let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + bars);
         let factors: &[usize] = if missed > FAR { &[MORE * MORE, MORE] } else { &[MORE] };
-        let Some(more) = factors.iter().find(|times| has_time(times)).map(|times| times * points) else {
-            // If the last lattice did not help, this one's answer does not wait for the next.
+        // If the last lattice did not help, this one's answer does not wait for the next. If it did, this one's answer is not the last,
+        // and whatever time there is may be enough.
+        let any = (idle == 0 && clock.has_time(run.longest)).then_some(&MORE);
+        let Some(more) = factors.iter().find(|times| has_time(times)).or(any).map(|times| times * points) else {
             if idle == 0 {
                 run.status = Status::Budget;
             }
@@ -196,7 +198,7 @@ pub(crate) fn solve(
         };
         match found.status {
             // Error bars matter more than that they are short.
-            Status::Converged if clock.has_time(BARS * found.longest) => (solver, run) = (more, found),
+            Status::Converged if clock.has_time(BARS * found.usual) => (solver, run) = (more, found),
             status => {
                 run.status = if status == Status::Interrupted { status } else { run.status };
                 (run.checkpoint, run.state.step) = (found.checkpoint, found.state.step);
@@ -219,14 +221,14 @@ fn with_more<'a>(
     let (all, used) = (measurements(bound), measurements(&solver.bound));
     let times = all as f64 / used as f64;
     // Seconds of a step are at most in proportion to the measurements.
-    let longer = times.min(clock.left() / ((STEPS + BARS) * run.longest));
+    let longer = times.min(clock.left() / ((STEPS + BARS) * run.usual));
     if longer < times.min(WORTH) {
         return None;
     }
     let most = if longer < times { (longer * solver.most as f64) as usize } else { usize::MAX };
     let mut more = Solver::new(bound, points, asked, noise, Some(most)).ok()?;
     let state = State { classes: run.state.known(), since: 0, ..run.state.clone() };
-    let found = Run::go(&mut more, state, noise, points, clock, BARS * longer * run.longest, monitor).ok()?;
+    let found = Run::go(&mut more, state, noise, points, clock, BARS * longer * run.usual, monitor).ok()?;
     Some((more, found))
 }
 

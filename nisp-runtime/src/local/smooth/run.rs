@@ -59,9 +59,10 @@ pub(super) struct Run {
     pub(super) moved: f64,
     pub(super) factor: Factor,
     pub(super) status: Status,
-    /// Seconds of the longest step, and of all.
+    /// Seconds of the longest step, of all, and of one in the mean.
     pub(super) longest: f64,
     pub(super) seconds: f64,
+    pub(super) usual: f64,
     pub(super) checkpoint: Saved,
 }
 
@@ -78,7 +79,7 @@ impl Run {
     ) -> Result<Self, LocalError> {
         let began = clock.elapsed_s();
         let save = |state: &State| proportions.save(state.save().with_counter("points", points as u64));
-        let mut longest = 0.0_f64;
+        let (mut longest, before) = (0.0_f64, state.step);
         let mut found = None;
         let mut status = loop {
             if found.is_some() && (!clock.has_time(longest + kept) || state.step >= clock.limits.iterations) {
@@ -129,6 +130,7 @@ impl Run {
         }
         let (loss, (ahead, moved), factor) = found.ok_or(LocalError::Factorisation)?;
         let seconds = clock.elapsed_s() - began;
-        Ok(Self { state, loss, ahead, moved, factor, status, longest, seconds, checkpoint })
+        let usual = seconds / (state.step - before).max(1) as f64;
+        Ok(Self { state, loss, ahead, moved, factor, status, longest, seconds, usual, checkpoint })
     }
 }
