@@ -88,6 +88,17 @@ pub enum PrepareError {
         /// Its columns.
         columns: String,
     },
+    /// A column of an edge that seems to be its normal.
+    #[error(
+        "`{column}` of group `{group}` is a vector that no table has: if it is meant for the normal of the boundary, name it `normal`, \
+         as in `columns: normal: vector [1]`"
+    )]
+    Normal {
+        /// The group.
+        group: &'static str,
+        /// The column.
+        column: String,
+    },
     /// A surface of which nobody gave a cloud.
     #[error(
         "`{term}` of `{group}` wants a cloud; give its file: --data {group}.{term}=FILE (PLY, PCD, NPY, NPZ, CSV or XYZ)"

@@ -63,6 +63,8 @@ const UNITS: &[Row] = &[
     row("d",   86400.0, 0, false,             [0, 0, 1, 0, 0, 0, 0]),
     // Of 365.25 days.
     row("year", 31557600.0, 0, false,         [0, 0, 1, 0, 0, 0, 0]),
+    row("yr",  31557600.0, 0, false,          [0, 0, 1, 0, 0, 0, 0]),
+    row("week", 604800.0, 0, false,           [0, 0, 1, 0, 0, 0, 0]),
     row("day", 86400.0, 0, false,             [0, 0, 1, 0, 0, 0, 0]),
     row("L",   1.0, -3, true,                 [3, 0, 0, 0, 0, 0, 0]),
     row("l",   1.0, -3, true,                 [3, 0, 0, 0, 0, 0, 0]),
@@ -83,6 +85,10 @@ const UNITS: &[Row] = &[
     // An angle in a time: 2 pi radians a minute.
     row("rpm", std::f64::consts::PI / 30.0, 0, false, [0, 0, -1, 0, 0, 0, 0]),
     row("ppm", 1.0, -6, false,                [0, 0, 0, 0, 0, 0, 0]),
+    row("ppb", 1.0, -9, false,                [0, 0, 0, 0, 0, 0, 0]),
+    row("mph", 0.447_04, 0, false,            [1, 0, -1, 0, 0, 0, 0]),
+    // Of 550 foot-pounds in a second.
+    row("hp",  745.699_871_582_270_2, 0, false, [2, 1, -3, 0, 0, 0, 0]),
     row("eV",  1.602_176_634, -19, true,      [2, 1, -2, 0, 0, 0, 0]),
 ];
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use nisp::schema::{Origin, Scene};
+use nisp::schema::{Coordinate, Origin, Portion, Scene};
 use nisp_data::Table;
 
 use super::{Tables, wants_data};
@@ -46,6 +46,28 @@ pub(super) fn headers(schema: &Scene, tables: &[&Table], request: &Request) -> R
         (Some((name, header)), [first, _, ..]) => Err(first.absent(name, header).into()),
         _ => Ok(()),
     }
+}
+
+/// A vector of an edge that no table has is known there, if it is called what the normal is called.
+pub(super) fn normals(schema: &Scene, tables: &Tables<'_>) -> Result<(), PrepareError> {
+    let [axis, ..] = schema.coordinates else { return Ok(()) };
+    let edges = schema.groups.iter().filter(|group| group.place.is_some_and(|at| at.portion == Portion::Boundary));
+    for group in edges {
+        let lacks = |name: &str| tables.of(group).is_none_or(|table| table.lacks(name));
+        let vectors = group.columns.iter().filter_map(|column| {
+            let base = column.name.strip_suffix(&format!("_{}", axis.name))?;
+            let is_whole = |other: &Coordinate| {
+                let entry = format!("{base}_{}", other.name);
+                group.columns.iter().any(|column| column.name == entry && column.unit.text.is_empty())
+            };
+            schema.coordinates.iter().filter(|other| other.unit == axis.unit).all(is_whole).then_some((column, base))
+        });
+        let mut unknown = vectors.filter(|(column, base)| *base != "normal" && lacks(column.name));
+        if let Some((_, base)) = unknown.next() {
+            return Err(PrepareError::Normal { group: group.name, column: base.to_string() });
+        }
+    }
+    Ok(())
 }
 
 /// Every group with columns of measurements must have a table.

@@ -150,6 +150,7 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
     let schema = scene.schema;
     check::columns(schema, request)?;
     check::points(schema, tables, request)?;
+    check::normals(schema, tables)?;
     check::measured(schema, tables)?;
     let mut found = Found {
         problem: Problem::new(scene),

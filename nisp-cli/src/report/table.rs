@@ -60,7 +60,7 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
         line(format!("  assumed    {} (others with --set)", assumed.join(", ")));
     }
     if found.scores.is_empty() {
-        found_rows(found).into_iter().for_each(&mut line);
+        found_rows(found, solution.is_sound()).into_iter().for_each(&mut line);
     } else {
         line("mean absolute error".into());
     }
@@ -101,11 +101,17 @@ pub(crate) fn table(solution: &Solution, run: &Run<'_>, found: &Found) -> String
 }
 
 /// What was found, where no truth is known.
-fn found_rows(found: &Found) -> Vec<String> {
+fn found_rows(found: &Found, is_sound: bool) -> Vec<String> {
     let of = |value: f64, unit: &str| format!("{value:.2e} {unit}").trim_end().to_string();
+    // Those of an answer that is not sound are withheld, and the verdict says so.
+    let is_exact = is_sound && found.terms.iter().any(|term| term.observation);
     let sizes = found.sizes.iter().map(|size| {
-        let bars = size.deviation.map(|deviation| format!(", standard deviation {}", of(deviation, size.unit)));
-        (size.name.to_string(), of(size.value, size.unit) + &bars.unwrap_or_default())
+        let bars = match size.deviation {
+            Some(deviation) => format!(", standard deviation {}", of(deviation, size.unit)),
+            None if is_exact => ", without error bars: the data are taken as exact but for rounding".into(),
+            None => String::new(),
+        };
+        (size.name.to_string(), of(size.value, size.unit) + &bars)
     });
     let noise = found.terms.iter().filter_map(|term| {
         let name = term.name.rsplit('.').next().unwrap_or(&term.name);
