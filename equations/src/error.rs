@@ -249,7 +249,9 @@ pub enum PrepareError {
         unit: &'static str,
     },
     /// Measurements that look like those of another unit, under a header that says none.
-    #[error("{question}; if it is in {unit}, say that instead: `{name} [{unit}]` (or --column '{name}=HEADER [{unit}]')")]
+    #[error(
+        "{question}; if it is in {unit}, say that instead: `{name} [{unit}]` (or --column '{name}=HEADER [{unit}]')"
+    )]
     Unlabelled {
         /// What is asked.
         question: String,

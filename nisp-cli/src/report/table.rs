@@ -108,7 +108,7 @@ fn found_rows(found: &Found, is_sound: bool) -> Vec<String> {
     let sizes = found.sizes.iter().map(|size| {
         let bars = match size.deviation {
             Some(deviation) => format!(", standard deviation {}", of(deviation, size.unit)),
-            None if is_exact => ", without error bars: the data are taken as exact but for rounding".into(),
+            None if is_exact => ", without error bars: noise below 1e-5 of the data's spread counts as rounding".into(),
             None => String::new(),
         };
         (size.name.to_string(), of(size.value, size.unit) + &bars)

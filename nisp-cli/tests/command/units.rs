@@ -108,12 +108,9 @@ fn a_doubtful_column_without_a_unit_is_refused_until_one_is_said() {
         assert!(ran.stderr.contains("--column 'T=HEADER [K]'"), "{}", ran.stderr);
     }
     // Either unit is taken, in the header or with it; brackets need no blank.
-    for (header, column, is_asked) in [
-        ("T", "--column T=T[K]", true),
-        ("T", "--column T=T[degC]", false),
-        ("T_K", "", true),
-        ("T [degC]", "", false),
-    ] {
+    for (header, column, is_asked) in
+        [("T", "--column T=T[K]", true), ("T", "--column T=T[degC]", false), ("T_K", "", true), ("T [degC]", "", false)]
+    {
         place.put("run.csv", &record(header));
         let ran = place.run(&format!("check room.pde --data run.csv {column}"));
         assert_eq!(ran.code, Some(0), "{header} {column}: {}", ran.stderr);

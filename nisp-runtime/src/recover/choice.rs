@@ -126,7 +126,9 @@ fn by_data(bound: &Bound) -> (Chosen, String) {
         (Some(what), ..) => (Chosen::Network, format!("splines do not do {what}")),
         (None, 1, _) if is_for_lattices(schema) => (Chosen::Lattice, "a cloud, an integral or pairs of points".into()),
         (None, 2.., _) => (Chosen::Lattice, format!("{} coordinates", schema.coordinates.len())),
-        (None, _, Some(name)) => (Chosen::Network, format!("`{name}` is differentiated, and the record is short and exact")),
+        (None, _, Some(name)) => {
+            (Chosen::Network, format!("`{name}` is differentiated, and the record is short and exact"))
+        }
         (None, _, None) => (Chosen::Splines, "one coordinate".into()),
     }
 }

@@ -22,7 +22,9 @@ pub(super) fn check(sources: &[&'static str]) -> Option<Check> {
     let (first, others) = sources.split_first()?;
     let others: Vec<String> = others.iter().map(|name| format!("`{name}`")).collect();
     let said = match &others[..] {
-        [] => format!("nothing settles `{first}`: all equations are needed to find the fields; measure it, or another field"),
+        [] => format!(
+            "nothing settles `{first}`: all equations are needed to find the fields; measure it, or another field"
+        ),
         others => format!(
             "nothing tells `{first}` from {}: there are fewer equations and measured quantities than unknown functions, so that any course of one is met \
              by some course of the others; measure one of them, or declare it as a column or a parameter",
