@@ -1,13 +1,12 @@
 //! What equations settle of a source by themselves. Splines of a field cannot follow every pattern of a source, and equations rule
 //! out those that they cannot follow: this says nothing of how much the source bends. The evidence is that of the measurements,
-//! given the equations and conditions (MacKay 1992), so that it counts what is settled beyond that. A source that is known along an edge is
-//! smooth there, and may bend far more inside.
+//! given the equations (MacKay 1992), so that it counts what is settled beyond that.
 
 use super::freedom::{Before, Unmeasured};
 use super::rows::{Asked, Rows, is_any};
 use super::solver::Solver;
 use super::state::{Phase, State};
-use crate::schema::TermKind;
+use crate::schema::{self, TermKind};
 
 /// Change of the logarithm of a roughness after which what is settled is counted anew.
 const STALE: f64 = 0.02;
@@ -61,11 +60,13 @@ impl Solver<'_> {
         Some(all)
     }
 
-    /// Rows of a group of which those do not count that measure something.
+    /// Rows of a group of which those do not count that measure something. A condition on a source alone does.
     pub(super) fn without(&self, asked: &Asked) -> Asked {
+        let (group, schema) = (&self.groups[asked.at], self.schema());
+        let is_of_source = |&jet: &usize| schema.heads[group.schema.jets[jet].head].source;
+        let measures = |term: &&schema::Term| term.kind == TermKind::Observation || term.jets.iter().all(is_of_source);
         let mut without = asked.clone();
-        let terms = self.groups[asked.at].schema.terms.iter();
-        for term in terms.filter(|term| term.kind == TermKind::Observation) {
+        for term in group.schema.terms.iter().filter(measures) {
             without.counts[term.first..term.first + term.rows].iter_mut().for_each(|counts| counts.fill(false));
         }
         without
