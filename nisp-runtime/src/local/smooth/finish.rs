@@ -5,7 +5,7 @@ use super::changes::Changes;
 use super::run::{Clock, Run};
 use super::solver::Solver;
 use super::state::State;
-use super::{BARS, SAME, leaning, places, told};
+use super::{SAME, leaning, places, told};
 use crate::local::{KeptLattices, LocalError, LocalSolution};
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -20,7 +20,7 @@ pub(super) fn finish(
     noise: &Noise,
     (clock, changes): (&Clock, &Changes),
 ) -> Result<LocalSolution, LocalError> {
-    let Run { state, loss, ahead, moved, factor, status, longest, usual, checkpoint, .. } = run;
+    let Run { state, loss, ahead, moved, factor, status, longest, bars, checkpoint, .. } = run;
     let mut warnings = Vec::new();
     let is_noisy = noise.is_there(bound.problem.scene().schema);
     let schema = bound.problem.scene().schema;
@@ -31,7 +31,7 @@ pub(super) fn finish(
     let is_beside_sources = solver.is_beside_sources();
     let is_minimum = status == Status::Converged;
     let rougher = if is_minimum { solver.rougher(&state, clock, longest) } else { None };
-    let (draws, beyond) = if wants_bars && clock.has_time(BARS * usual) {
+    let (draws, beyond) = if wants_bars && clock.has_time(bars) {
         solver.doubted(&state).unwrap_or_default()
     } else {
         if is_open && matches!(status, Status::Converged | Status::Budget) {

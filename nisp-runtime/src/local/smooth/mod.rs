@@ -70,9 +70,6 @@ use state::State;
 /// Name of the method in saved states.
 pub(crate) const METHOD: &str = "splines on a lattice";
 
-/// What error bars take, in usual steps: ten for the answer under another belief and its evidence, and the draws.
-const BARS: f64 = 13.0;
-
 /// Points of the largest equation on a finer lattice, beside those on the one before.
 const MORE: usize = 2;
 /// A finer lattice that leaves more of the strain than this does not help.
@@ -155,8 +152,7 @@ pub(crate) fn solve(
         if strain < 1.0 && is_seen || idle >= patience {
             break;
         }
-        let bars = BARS * run.usual;
-        let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + bars);
+        let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + run.bars);
         let factors: &[usize] = if missed > FAR { &[MORE * MORE, MORE] } else { &[MORE] };
         // If the last lattice did not help, this one's answer does not wait for the next. If it did, this one's answer is not the last,
         // and whatever time there is may be enough.
@@ -176,7 +172,9 @@ pub(crate) fn solve(
         // What was found of noise and roughness holds there too, unless it is cells that miss the measurements.
         let classes = if is_missed { first.classes } else { run.state.known() };
         let first = State { classes, ..first };
-        let Ok(found) = Run::go(&mut finer, first, noise, (more, &proportions), &clock, bars, monitor) else { break };
+        let Ok(found) = Run::go(&mut finer, first, noise, (more, &proportions), &clock, run.bars, monitor) else {
+            break;
+        };
         // Steps on a finer lattice begin anew: where they agree with the coarser answer, that is no matter of where they began.
         changes.add(finer.apart(&found.state, &solver, &run.state), found.status == Status::Converged);
         match found.status {
@@ -198,7 +196,7 @@ pub(crate) fn solve(
         };
         match found.status {
             // Error bars matter more than that they are short.
-            Status::Converged if clock.has_time(BARS * found.usual) => (solver, run) = (more, found),
+            Status::Converged if clock.has_time(found.bars) => (solver, run) = (more, found),
             status => {
                 run.status = if status == Status::Interrupted { status } else { run.status };
                 (run.checkpoint, run.state.step) = (found.checkpoint, found.state.step);
@@ -221,14 +219,14 @@ fn with_more<'a>(
     let (all, used) = (measurements(bound), measurements(&solver.bound));
     let times = all as f64 / used as f64;
     // Seconds of a step are at most in proportion to the measurements.
-    let longer = times.min(clock.left() / ((STEPS + BARS) * run.usual));
+    let longer = times.min(clock.left() / (STEPS * run.longest + run.bars));
     if longer < times.min(WORTH) {
         return None;
     }
     let most = if longer < times { (longer * solver.most as f64) as usize } else { usize::MAX };
     let mut more = Solver::new(bound, points, asked, noise, Some(most)).ok()?;
     let state = State { classes: run.state.known(), since: 0, ..run.state.clone() };
-    let found = Run::go(&mut more, state, noise, points, clock, BARS * longer * run.usual, monitor).ok()?;
+    let found = Run::go(&mut more, state, noise, points, clock, longer * run.bars, monitor).ok()?;
     Some((more, found))
 }
 

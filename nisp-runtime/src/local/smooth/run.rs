@@ -28,6 +28,10 @@ const GAINED: f64 = 1e-2;
 /// Steps with all equations at most.
 const MOST_STEPS: u64 = 60;
 
+/// What error bars take in the longest steps, and in usual ones, at most.
+const BARS: f64 = 8.0;
+const USUAL_BARS: f64 = 13.0;
+
 /// When a solver began, and what it may take.
 pub(super) struct Clock {
     pub(super) start: Instant,
@@ -59,10 +63,11 @@ pub(super) struct Run {
     pub(super) moved: f64,
     pub(super) factor: Factor,
     pub(super) status: Status,
-    /// Seconds of the longest step, of all, and of one in the mean.
+    /// Seconds of the longest step, and of all.
     pub(super) longest: f64,
     pub(super) seconds: f64,
-    pub(super) usual: f64,
+    /// Seconds that error bars take about.
+    pub(super) bars: f64,
     pub(super) checkpoint: Saved,
 }
 
@@ -130,7 +135,9 @@ impl Run {
         }
         let (loss, (ahead, moved), factor) = found.ok_or(LocalError::Factorisation)?;
         let seconds = clock.elapsed_s() - began;
+        // One step may take far longer than all others.
         let usual = seconds / (state.step - before).max(1) as f64;
-        Ok(Self { state, loss, ahead, moved, factor, status, longest, seconds, usual, checkpoint })
+        let bars = (BARS * longest).min(USUAL_BARS * usual);
+        Ok(Self { state, loss, ahead, moved, factor, status, longest, seconds, bars, checkpoint })
     }
 }
