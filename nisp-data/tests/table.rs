@@ -100,6 +100,8 @@ fn refuses_with_what_to_do() {
     assert!(refusal(b"t,q\n0,1\n").contains("at least 2 are needed"));
     assert!(refusal(b"t,q\n0,1\n1\n").contains("line 3: 1 cells where the header has 2"));
     assert!(refusal(b"Run 3\n0;1\n1;2\n").contains("the line that begins with `Run 3` is a title"));
+    let parted = refusal(b"t,T(x=0.1 m, y=0.2 m) [K],T(x=0.3 m, y=0.2 m) [K]\n0,1,2\n1,2,3\n");
+    assert!(parted.contains("put a header with a comma in it into quotation marks"), "{parted}");
     assert!(refusal(b"0,1\n0,1\n1,2\n").contains("put a line of column names above it"));
     assert!(refusal(b"t,q\n0,\xff\n").contains("not UTF-8 text (byte 6)"));
     assert!(Table::read("/nowhere/t.csv").unwrap_err().to_string().contains("no such file"));

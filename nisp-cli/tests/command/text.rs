@@ -56,6 +56,21 @@ fn a_new_equation_already_solves() {
     assert!(place.run("new 3d").stderr.contains("letters, digits and underscores"));
 }
 
+#[test]
+fn words_of_rust_are_names_where_they_mean_nothing() {
+    let place = Place::new();
+    place.put(
+        "reactor.pde",
+        "coordinates: t [h]; fields: yield [kg]; sources: loop [kg/h]; parameters: type [1/h] = 0.1;
+         on move { static: d(yield, t) == loop - type * yield; } on box { observe yield; }",
+    );
+    let row = |i: u32| format!("{i},{}\n", 5.0 + (0.3 * f64::from(i)).sin());
+    place.put("run.csv", &format!("t [h],yield [kg]\n{}", (0..60).map(row).collect::<String>()));
+    let ran = place.run("solve reactor.pde --data run.csv");
+    assert_eq!(ran.code, Some(0), "{}{}", ran.stdout, ran.stderr);
+    assert!(ran.stdout.contains("loop") && ran.stdout.contains("yield"), "{}", ran.stdout);
+}
+
 /// A number that is put into seconds and back is shown as it was written.
 #[test]
 fn what_is_assumed_is_shown_as_it_was_declared() {

@@ -69,7 +69,7 @@ fn two_sources_of_which_one_multiplies_a_field_are_not_told_apart() {
     place.put("run.csv", &one);
     let ran = place.run("solve mixer.pde --data run.csv");
     assert_eq!(ran.code, Some(3), "{}", ran.stdout);
-    assert!(ran.stderr.contains("nothing tells `Q` from `cin`"), "{}{}", ran.stdout, ran.stderr);
+    assert!(ran.stdout.contains("nothing tells `Q` from `cin`"), "{}{}", ran.stdout, ran.stderr);
     place.put("metered.pde", &mixer.replace("observe c;", "observe c, Q;"));
     place.put("run.csv", &both);
     let ran = place.run("solve metered.pde --data run.csv");

@@ -54,8 +54,13 @@ impl Table {
             |record: &StringRecord| place.of_record(text, record.position().map_or(0, |at| at.byte() as usize));
         let below = line_of(&units);
         columns.iter_mut().zip(&units).for_each(|(column, unit)| column.add_unit(below, unit));
-        let title =
-            format!("if the line that begins with `{}` is a title, begin it with `#` or remove it", &headers[0]);
+        let is_parted = headers.iter().any(|header| header.contains('(') && !header.contains(')'));
+        let title = match is_parted {
+            true => "put a header with a comma in it into quotation marks, as in `\"T(x=0.1 m, y=0.2 m) [K]\"`".into(),
+            false => {
+                format!("if the line that begins with `{}` is a title, begin it with `#` or remove it", &headers[0])
+            }
+        };
         let mut lines = Vec::new();
         for record in records {
             let record = record.map_err(|error| syntax(path, &error))?;

@@ -33,6 +33,7 @@ impl Engine<f64> {
             ahead: None,
             moved: None,
             strain: None,
+            is_coarse: false,
             shared: Vec::new(),
             used: 1.0,
             refined: None,

@@ -69,6 +69,8 @@ pub(crate) struct Answer {
     pub(crate) moved: Option<f64>,
     /// How far the cells hold the answer back, over what may be, where the budget ended before finer ones were tried.
     pub(crate) strain: Option<f64>,
+    /// Whether its cells leave more of the equations between the points that they were asked at than may be.
+    pub(crate) is_coarse: bool,
     /// By group and term, the noise that neighbouring rows share; nothing where each has its own. Empty where the carrier knows no such noise.
     pub(crate) shared: Vec<Vec<Option<SharedNoise>>>,
     /// How much the last finer lattice has changed an answer without noise, as a share; nothing where there was none.
@@ -86,5 +88,8 @@ impl Answer {
     }
 }
 
-/// What to do where splines, on a line or a lattice, may be too coarse: no option makes their cells finer.
+/// What to do where splines on a lattice may be too coarse whose equations hold at points that are drawn in a domain.
+pub(crate) const MORE_POINTS: &str = "cells get finer with more --points of its equations";
+
+/// The same where no option makes cells finer.
 pub(crate) const OTHER_THAN_SPLINES: &str = "--carrier network tries another one";

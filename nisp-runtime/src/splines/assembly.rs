@@ -127,7 +127,7 @@ impl Solver<'_> {
     }
 
     /// True if a term's rows count in a phase: data, and conditions on values, are regressed before equations hold.
-    fn takes_part(&self, at: usize, term: &schema::Term, phase: Phase) -> bool {
+    pub(super) fn takes_part(&self, at: usize, term: &schema::Term, phase: Phase) -> bool {
         let group = &self.groups[at];
         let is_condition = || term.kind == TermKind::Residual && group.len() < MANY && group.schema.is_of_values(term);
         phase == Phase::Solve || term.kind == TermKind::Observation || is_condition()

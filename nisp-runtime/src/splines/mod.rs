@@ -13,6 +13,7 @@ mod between;
 mod blurred;
 mod bounded;
 mod cells;
+mod clean;
 mod correlated;
 mod course;
 mod drives;
@@ -250,6 +251,7 @@ pub(crate) fn solve(
         ahead,
         moved: None,
         strain: None,
+        is_coarse: false,
         shared,
         used: 1.0,
         refined: None,

@@ -81,6 +81,7 @@ impl Solver<'_> {
             }
             loss += 0.5 * row.value.powi(2);
         }
+        self.clean(state, phase, &mut tallies);
         let worth = self.count_priors(state, &mut tallies, phase);
         let noisy =
             state.classes.iter().zip(&tallies).filter_map(|(class, tally)| class.told_by(tally)).reduce(f64::min);

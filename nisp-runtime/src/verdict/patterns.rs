@@ -32,7 +32,7 @@ pub(super) fn checks(left: &Misfits, answer: &Answer) -> Vec<Check> {
     let rows = left.kept();
     let long = rows.iter().filter(|row| row.len() >= FEW);
     if !left.is_record() {
-        return long.map(|row| over(left, row, answer.used)).collect();
+        return long.map(|row| over(left, row, answer)).collect();
     }
     let mut checks: Vec<Check> = long.clone().map(|row| along(left, row)).collect();
     checks.extend(long.enumerate().filter_map(|(at, row)| stretch(left, at, row)));
@@ -41,14 +41,15 @@ pub(super) fn checks(left: &Misfits, answer: &Answer) -> Vec<Check> {
 }
 
 /// Smooth misfits over several coordinates, or neighbouring ones that are alike, beside an answer made from a share of the measurements.
-fn over(left: &Misfits, row: &[f64], used: f64) -> Check {
+fn over(left: &Misfits, row: &[f64], answer: &Answer) -> Check {
+    let (used, finer) = (answer.used, answer.finer);
     let (excess, share) = smooth::excess(&left.places, left.axes(), row, used);
     let (alike, deviations) = correlation::over_coordinates(&left.places, left.axes(), row);
     // An answer made from a share of the measurements is off from one place to the next by what the noise of these leaves.
     if used < 1.0 || alike < SLIGHT || deviations < excess {
         let said = format!(
             "what is left of `{}` is no noise: {:.1} % of its square is smooth, so the equations or a parameter do not fit these data, \
-             or a part of them is smoothed away",
+             or a part of them is smoothed away ({finer})",
             left.term.name,
             100.0 * share
         );
@@ -56,7 +57,7 @@ fn over(left: &Misfits, row: &[f64], used: f64) -> Check {
     }
     let said = format!(
         "what is left of `{}` is no noise: neighbours correlate by {alike:.2}, so that the equations or a parameter do not fit these data, \
-         a source varies along a coordinate that it was not given, or the cells are too coarse for it",
+         a source varies along a coordinate that it was not given, or the cells are too coarse for it ({finer})",
         left.term.name
     );
     Check::new("pattern", left.name(), (deviations, SMOOTH), said)

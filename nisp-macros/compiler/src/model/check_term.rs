@@ -3,7 +3,7 @@
 use super::elaborate::Elaborator;
 use super::orders::Walker;
 use super::value::{Dim, Extent, Reads, Scalar, Value};
-use super::{Column, Expr, Field, Node, Term, TermKind, build, cancel};
+use super::{Column, Expr, Field, Node, Role, Term, TermKind, build, cancel};
 use crate::error::{Checked, catalogue};
 use crate::rational::Rational;
 use crate::syntax::{self, Comparison, Condition, ExprKind, Relation, TermBody, print_latex, print_text, real};
@@ -100,10 +100,20 @@ impl TermInput<'_, '_> {
         let join = |parts: Vec<String>| parts.join(", ");
         Body {
             kind,
-            unit: Unit::si(dim.known().cloned().unwrap_or_default()),
+            unit: self.written(dim),
             equation: join(relations.iter().map(|relation| equation(relation)).collect()),
             latex: join(relations.iter().map(|relation| self.equation_latex(relation)).collect()),
         }
+    }
+
+    /// The unit in which rows of a dimension are told: that of a source or a field, as it was written, or SI.
+    fn written(&self, dim: &Dim) -> Unit {
+        let dimension = dim.known().cloned().unwrap_or_default();
+        let of = |role: Role| {
+            let mut fields = self.fields.iter().filter(|field| field.role == role && !dimension.is_none());
+            fields.find(|field| field.unit.dimension == dimension).map(|field| field.unit.clone())
+        };
+        of(Role::Source).or_else(|| of(Role::Field)).unwrap_or_else(|| Unit::si(dimension))
     }
 
     fn equation_latex(&self, relation: &Comparison) -> String {

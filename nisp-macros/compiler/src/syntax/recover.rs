@@ -78,7 +78,14 @@ pub(super) fn statements(
     }
 }
 
-/// True of what can be a name: no word of Rust.
+/// Words of Rust that mean nothing here, so that equations may have them as names: the yield of a reactor, a loop of a circuit.
+const PLAIN: [&str; 33] = [
+    "abstract", "async", "await", "become", "box", "break", "const", "continue", "do", "dyn", "enum", "extern",
+    "final", "fn", "gen", "impl", "loop", "macro", "match", "move", "override", "priv", "ref", "return", "static",
+    "struct", "trait", "try", "type", "typeof", "unsized", "virtual", "yield",
+];
+
+/// True of what can be the name of a module: no word of Rust.
 pub fn is_name(text: &str) -> bool {
     text != "_" && syn::parse_str::<syn::Ident>(text).is_ok()
 }
@@ -95,7 +102,7 @@ pub(super) fn name(stream: &mut Stream<'_>, context: &mut Context<'_>, what: &st
         context.broken.extend([plain.to_string(), name.text.clone()]);
         return Err(context.errors.report(place, catalogue::raw_name(plain)));
     }
-    if !is_name(&name.text) {
+    if !is_name(&name.text) && !PLAIN.contains(&name.text.as_str()) {
         context.broken.insert(name.text.clone());
         return Err(context.errors.report(place, catalogue::keyword_as_name(&name.text)));
     }

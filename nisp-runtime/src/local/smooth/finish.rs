@@ -63,8 +63,10 @@ pub(super) fn finish(
     let is_loose = state.strictest > solver.tolerance;
     let may_change = solver.is_measured() && (is_early || is_loose);
     let strain = may_change.then(|| solver.strain(&state, noise));
+    let is_coarse = solver.left_of_equations(&state, noise) > 1.0;
     solver.judge_at(bound);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
+    answer.is_coarse = is_coarse;
     (answer.strain, answer.used) = (strain, measurements(&solver.bound) as f64 / measurements(bound).max(1) as f64);
     // Noise may fall differently on other cells; without it they are all that changes an answer.
     answer.refined = if solver.is_measured() { changes.taken().filter(|_| !is_noisy) } else { Some(changes.off()) };

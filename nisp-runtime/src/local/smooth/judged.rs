@@ -1,12 +1,13 @@
 //! What an answer on a lattice says: deviations, misfits, and what the verdict is made from.
 
 use super::belief::BorneOut;
+use super::between::stating;
 use super::means::Asked;
 use super::solver::{Others, Solver, groups};
 use super::state::{Phase, State};
 use super::{edges, short};
 use crate::correlation;
-use crate::facts::{Answer, OTHER_THAN_SPLINES};
+use crate::facts::{Answer, MORE_POINTS, OTHER_THAN_SPLINES};
 use crate::local::draws::{Deviations, Draws};
 use crate::local::group::Group;
 use crate::local::misfits::Misfits;
@@ -99,6 +100,12 @@ impl Solver<'_> {
     /// How far the cells of the lattice hold an answer back, over what may be: equations and conditions that are left over beside
     /// their tolerance, and measurements that are missed by more than their noise.
     pub(super) fn strain(&mut self, state: &State, noise: &Noise) -> f64 {
+        let left = self.left_of_equations(state, noise);
+        left.max(self.missed(state, noise) / MISSED).max(self.alike(state, noise))
+    }
+
+    /// The same of equations and conditions alone.
+    pub(super) fn left_of_equations(&mut self, state: &State, noise: &Noise) -> f64 {
         self.set_learned(&state.learned);
         self.size(state);
         self.set_sigmas(state);
@@ -126,7 +133,7 @@ impl Solver<'_> {
             left.fold(0.0, f64::max)
         };
         let between = self.others.as_ref().map_or(0.0, of_others);
-        asked.chain([between, self.missed(state, noise) / MISSED, self.alike(state, noise)]).fold(0.0, f64::max)
+        asked.chain([between]).fold(0.0, f64::max)
     }
 
     /// How much more neighbouring misfits of noisy measurements are alike than those of noise may be, at most: so they are where cells are
@@ -195,6 +202,11 @@ impl Solver<'_> {
         inexact.map(|found| size(found) / found.deviation).fold(0.0, f64::max)
     }
 
+    /// Whether the points of equations are drawn in a domain, as many as the user likes.
+    fn is_drawn(&self) -> bool {
+        stating(&self.bound).into_iter().any(|at| self.groups[at].schema.place.is_some())
+    }
+
     /// Cells of the lattice along the coordinate that has most.
     pub(super) fn cells(&self) -> usize {
         self.heads.lattices.iter().flat_map(|lattice| &lattice.cells).copied().max().unwrap_or(0)
@@ -224,7 +236,8 @@ impl Solver<'_> {
             shared: Vec::new(),
             used: 1.0,
             refined: None,
-            finer: OTHER_THAN_SPLINES,
+            is_coarse: false,
+            finer: if self.is_drawn() { MORE_POINTS } else { OTHER_THAN_SPLINES },
         }
     }
 

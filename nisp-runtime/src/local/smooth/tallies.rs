@@ -4,13 +4,13 @@ use rand::SeedableRng;
 use rand::rngs::StdRng;
 
 use super::freedom::Unmeasured;
-use super::rows::Rows;
+use super::rows::{Asked, Rows};
 use super::sampled::{Sampled, used};
 use super::solver::Solver;
 use super::state::{Phase, State};
 use crate::local::block::Block;
 use crate::local::normal::factor::Factor;
-use crate::loss::deviation_of_clean;
+use crate::loss::{Loss, deviation_of_clean};
 use crate::schema::{self, TermKind};
 use crate::weighed::Tally;
 
@@ -62,6 +62,9 @@ impl Solver<'_> {
         for (((class, count), sum), used) in of.into_iter().zip(&sums).zip(used(&sums, factor)?) {
             tallies[class] = sum.tally(count, used);
         }
+        for asked in &rows.asked {
+            self.clean(state, asked, &mut tallies);
+        }
         for surface in &self.surfaces {
             let tally = &mut tallies[self.class(surface)];
             // Clouds have outliers, which are no noise.
@@ -91,5 +94,23 @@ impl Solver<'_> {
             };
         }
         Some(tallies)
+    }
+
+    /// Puts the squares of clean misfits at a state in place of what rows under Huber's loss have added to their tallies: squares by their
+    /// weights grow with every outlier's distance.
+    fn clean(&self, state: &State, asked: &Asked, tallies: &mut [Tally]) {
+        let group = &self.groups[asked.at];
+        let terms = group.schema.terms.iter().enumerate();
+        let is_such = |number: usize| matches!(self.bound.losses[asked.at][number], Loss::Huber(_));
+        for (number, term) in terms.filter(|(number, term)| is_such(*number) && term.kind == TermKind::Observation) {
+            let found = group.evaluate(&self.heads, &state.theta, &self.scalars, false);
+            let misfits = (term.first..term.first + term.rows).flat_map(|row| {
+                let there = (0..group.places()).filter(|&place| asked.counts[row][place]);
+                there.map(|place| group.over_tolerance(&found, row, place)).collect::<Vec<f64>>()
+            });
+            let tally = &mut tallies[self.classes[asked.at][number]];
+            let clean = deviation_of_clean(misfits.collect(), tally.used);
+            tally.squares = clean.powi(2) * (tally.count - tally.used).max(0.0);
+        }
     }
 }

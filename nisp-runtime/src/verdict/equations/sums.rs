@@ -13,6 +13,13 @@ impl Judged<'_> {
         let weights = self.bound.weights(group, term.measure.as_ref());
         let outward = |x| self.bound.system.outward(&term.unit).of(Number::engine(x));
         let whole = self.facts.plain_rows(self.programs, self.schema, self.scalars);
+        let instead = match self.bound.problem.scene().schema.coordinates {
+            [axis] => format!(
+                ", or state it as a field that adds up: its derivative by `{}` is what is summed, and it is zero at the start and this at the end",
+                axis.name
+            ),
+            _ => String::new(),
+        };
         let mut checks = Vec::new();
         for row in term.first..term.first + term.rows {
             let parts = whole[row].iter().enumerate().map(|(p, x)| x * weights.get(p).copied().unwrap_or(1.0));
@@ -24,7 +31,7 @@ impl Judged<'_> {
             };
             let said = format!(
                 "`{}.{}` sums to {:.3e}{} where {:.3e} is wanted: the answer does not meet it; check what is given against the \
-                 other data",
+                 other data{instead}",
                 self.schema.name,
                 term.name,
                 outward(sum),
