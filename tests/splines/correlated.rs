@@ -25,7 +25,7 @@ pub(crate) fn times() -> Vec<f64> {
     (0..ROWS).map(|row| row as f64 / 15.0).collect()
 }
 
-fn source(t: f64) -> f64 {
+pub(crate) fn source(t: f64) -> f64 {
     3.0 + 1.2 * (0.9 * t).sin() + 0.8 * (1.7 * t + 1.0).cos()
 }
 

@@ -2,10 +2,24 @@
 
 use nisp::solve::driver::Status;
 use nisp::{Carrier, Problem, Solution};
+use nisp_interpreter::interpret;
 
-use crate::correlated::{ROWS, places, times, with};
+use crate::correlated::{ROWS, places, source, times, with};
 use crate::steps::swing;
-use crate::{normals, solve};
+use crate::{normals, of, solve};
+
+interpret! {
+    /// The swing, of whose records some values are strays.
+    mod bounded {
+        units: off;
+        coordinates: t;
+        fields: x;
+        sources: f;
+        on motion { balance: 1.5 * d(x, t, 2) + 0.8 * d(x, t) + 4 * x == f; }
+        on samples { observe x with huber(3); }
+        scene loaded { }
+    }
+}
 
 /// Noise of single rows.
 const NOISE: f64 = 0.005;
@@ -54,4 +68,20 @@ fn a_blow_is_a_force() {
     };
     let solution = answer(struck);
     assert!(solution.verdict.failed().all(|check| check.check != "jolt"), "{:?}", solution.verdict);
+}
+
+/// Strays of eighty deviations, one of 25 rows: under Huber's loss each pulls as a row of three deviations does.
+#[test]
+fn strays_are_no_noise_under_hubers_loss() {
+    let mut normal = normals(4);
+    let mut measured: Vec<f64> = places().iter().map(|place| place + NOISE * normal()).collect();
+    measured.iter_mut().skip(7).step_by(25).for_each(|row| *row += 80.0 * NOISE);
+    let mut solution = solve(&with(Problem::new(bounded::scene("loaded")), measured, &[0.0; ROWS]), Carrier::Splines);
+    let noise = solution.terms().iter().find_map(|term| term.noise).unwrap();
+    assert!((0.8..1.25).contains(&(noise / NOISE)), "{noise}");
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.failed().collect::<Vec<_>>());
+    let found = solution.evaluate(&times());
+    let squares = of(&found, "f").values.iter().zip(times()).map(|(f, t)| (f - source(t)).powi(2));
+    let error = (squares.sum::<f64>() / ROWS as f64).sqrt();
+    assert!(error < 0.1 * 3.0, "{error}");
 }
