@@ -15,7 +15,7 @@ pub(super) fn parse(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Check
     if !stream.take_word("mod") {
         return Err(context.errors.report(stream.place(), catalogue::expected_module(&stream.found())));
     }
-    let name = recover::name(stream, context, "a module")?;
+    let name = recover::module_name(stream, context)?;
     let mut inside = recover::block(stream, context, &name.text)?;
     if !stream.at_end() {
         context.errors.push(stream.place(), catalogue::one_module(&stream.found()));

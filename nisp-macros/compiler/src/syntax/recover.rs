@@ -4,7 +4,7 @@ use proc_macro2::{Delimiter, TokenTree};
 
 use super::stream::{Context, Stream};
 use super::tree::Name;
-use crate::error::{Checked, Place, catalogue};
+use crate::error::{Checked, Place, Reported, catalogue};
 
 /// Words that begin a statement of a module.
 pub(super) const STATEMENTS: [&str; 11] =
@@ -102,11 +102,18 @@ pub(super) fn name(stream: &mut Stream<'_>, context: &mut Context<'_>, what: &st
         context.broken.extend([plain.to_string(), name.text.clone()]);
         return Err(context.errors.report(place, catalogue::raw_name(plain)));
     }
-    if !is_name(&name.text) && !PLAIN.contains(&name.text.as_str()) {
-        context.broken.insert(name.text.clone());
-        return Err(context.errors.report(place, catalogue::keyword_as_name(&name.text)));
-    }
-    Ok(name)
+    if is_name(&name.text) || PLAIN.contains(&name.text.as_str()) { Ok(name) } else { Err(keyword(&name, context)) }
+}
+
+/// Takes the name of a module, which no word of Rust is: files and crates are called after it.
+pub(super) fn module_name(stream: &mut Stream<'_>, context: &mut Context<'_>) -> Checked<Name> {
+    let name = name(stream, context, "a module")?;
+    if is_name(&name.text) { Ok(name) } else { Err(keyword(&name, context)) }
+}
+
+fn keyword(name: &Name, context: &mut Context<'_>) -> Reported {
+    context.broken.insert(name.text.clone());
+    context.errors.report(name.span, catalogue::keyword_as_name(&name.text))
 }
 
 /// Takes an operator, or says what it was for.
