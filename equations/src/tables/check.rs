@@ -48,7 +48,7 @@ pub(super) fn headers(schema: &Scene, tables: &[&Table], request: &Request) -> R
     }
 }
 
-/// A vector of an edge that no table has is known there, if it is called what the normal is called.
+/// An edge knows its normal under the name `normal` alone. A vector that no table has may be meant for it under another name.
 pub(super) fn normals(schema: &Scene, tables: &Tables<'_>) -> Result<(), PrepareError> {
     let [axis, ..] = schema.coordinates else { return Ok(()) };
     let edges = schema.groups.iter().filter(|group| group.place.is_some_and(|at| at.portion == Portion::Boundary));

@@ -69,7 +69,7 @@ pub(crate) struct Answer {
     pub(crate) moved: Option<f64>,
     /// How far the cells hold the answer back, over what may be, where the budget ended before finer ones were tried.
     pub(crate) strain: Option<f64>,
-    /// Whether its cells leave more of the equations between the points that they were asked at than may be.
+    /// Whether more than may be is left of equations between the points that they were asked at: its cells are too coarse for them.
     pub(crate) is_coarse: bool,
     /// By group and term, the noise that neighbouring rows share; nothing where each has its own. Empty where the carrier knows no such noise.
     pub(crate) shared: Vec<Vec<Option<SharedNoise>>>,
@@ -88,8 +88,9 @@ impl Answer {
     }
 }
 
-/// What to do where splines on a lattice may be too coarse whose equations hold at points that are drawn in a domain.
+/// What to do where splines on a lattice may be too coarse. Cells are as fine as the points of the equations, which a user may choose where
+/// they are drawn in a domain.
 pub(crate) const MORE_POINTS: &str = "cells get finer with more --points of its equations";
 
-/// The same where no option makes cells finer.
+/// What to do where splines may be too coarse, and no option makes their cells finer.
 pub(crate) const OTHER_THAN_SPLINES: &str = "--carrier network tries another one";

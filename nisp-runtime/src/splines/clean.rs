@@ -1,5 +1,5 @@
-//! How noisy measurements under Huber's loss are: as those say that are no outliers. Squares by their weights grow with every outlier's
-//! distance, so that a few of them would make the noise many times too large.
+//! The noise of measurements under Huber's loss, from those that are no outliers. A weighted square grows with the distance of an outlier, so
+//! that a few outliers would make the noise many times too large.
 
 use super::iterate::{Phase, State};
 use super::solver::Solver;

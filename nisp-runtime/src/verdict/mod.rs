@@ -156,7 +156,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
     checks.extend(settled);
     let free = free::sources(bound);
     checks.extend(free::check(&free));
-    // How large these are says nothing.
+    // The size of a source that may have any course says nothing.
     checks.extend(told::checks(bound, &answer.told).into_iter().filter(|check| !free.contains(&check.term)));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));

@@ -104,7 +104,7 @@ impl Solver<'_> {
         left.max(self.missed(state, noise) / MISSED).max(self.alike(state, noise))
     }
 
-    /// The same of equations and conditions alone.
+    /// How far the cells hold equations and conditions back, over what may be; measurements do not count.
     pub(super) fn left_of_equations(&mut self, state: &State, noise: &Noise) -> f64 {
         self.set_learned(&state.learned);
         self.size(state);
