@@ -35,6 +35,8 @@ pub(super) struct Given {
     /// Numbers of cells in which an answer is not to be trusted.
     left_out: Vec<i64>,
     check: Option<Check>,
+    /// What the first rows say against every answer.
+    lasting: Option<String>,
 }
 
 impl Given {
@@ -61,6 +63,7 @@ impl Given {
             events: VecDeque::new(),
             left_out: Vec::new(),
             check: None,
+            lasting: doubt.lasting,
         };
         own.judge(window);
         own
@@ -69,6 +72,11 @@ impl Given {
     /// What gains most by another value.
     pub(super) fn check(&self) -> Option<&Check> {
         self.check.as_ref()
+    }
+
+    /// What speaks against every answer.
+    pub(super) fn lasting(&self) -> Option<&String> {
+        self.lasting.as_ref()
     }
 
     /// Keeps what was asked for at a place, until its cell is turned in.

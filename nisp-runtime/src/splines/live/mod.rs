@@ -74,7 +74,8 @@ pub struct Smoothed {
     /// Logarithm of the probability that another value of a given number would gain, by all rows up to here (Rao's score test): a source
     /// takes over what is given wrongly, and what it cannot take over shows the clearer the longer the record is.
     pub given: f64,
-    /// Which number that is and what it should rather be, where it gains more than chance does.
+    /// What speaks against the answer beside these numbers, and what to do: which given number should rather be another, where that gains
+    /// more than chance does, and what a whole record of the first rows would be doubted for.
     pub doubt: Option<String>,
     /// Whether the row is a stray: what was observed there is far from what all other rows say, and does not count.
     pub is_stray: bool,
@@ -101,12 +102,12 @@ impl Smoothed {
     pub const GIVEN: f64 = known::GAIN_OF_DATA;
 
     /// True where equations and data agree, sources are as smooth as they were taken to be and within their bounds, learned scalars do not
-    /// rest on how large sources are taken to be, no given number is doubted, and no sensor stood still.
+    /// rest on how large sources are taken to be, nothing else speaks against it, and no sensor stood still.
     pub fn is_sound(&self) -> bool {
-        self.is_met() && self.given <= Self::GIVEN && !self.is_held
+        self.is_met() && self.doubt.is_none() && !self.is_held
     }
 
-    /// The same, whatever is said of given numbers and sensors.
+    /// The same, whatever else speaks against it and whatever is said of sensors.
     fn is_met(&self) -> bool {
         self.misfit <= Self::MISFIT
             && self.nearby <= Self::NEARBY

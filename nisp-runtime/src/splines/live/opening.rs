@@ -3,12 +3,20 @@
 //! A whole record's answer counts with sources that set in with the record, or are rougher in one part of it than in another. A
 //! window knows neither: its priors are alike all along.
 
+use super::super::SplineSolution;
 use super::super::heads::Heads;
 use super::super::kept::KeptSplines;
 use crate::facts::Score;
 use crate::noise;
+use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status};
+use crate::verdict::{Verdict, judge};
+
+/// Checks of a whole record that rows behind the first ones cannot mend: what they are about holds all along.
+const LASTING: [&str; 2] = ["determined", "filtered"];
+/// Checks that say nothing of the beginning of a record: a source may be at rest there.
+const LATER: [&str; 1] = ["told"];
 
 /// What the first rows say as a whole, and up to where that is the answer.
 pub(super) struct Opening {
@@ -16,12 +24,16 @@ pub(super) struct Opening {
     until: f64,
     /// By group and term: how far rows are off, and the noise.
     misfits: Vec<Vec<(Vec<f64>, Option<f64>)>>,
+    /// What speaks against it, as against a whole record's answer.
+    against: Option<String>,
 }
 
-/// What the first rows say of given numbers.
+/// What the first rows say of given numbers, and of the record as a whole.
 #[derive(Default)]
 pub(super) struct Doubt {
     pub(super) scores: Vec<Score>,
+    /// What speaks against every answer.
+    pub(super) lasting: Option<String>,
     /// Whether a window may say it of further rows: it takes each row's noise for its own.
     pub(super) goes_on: bool,
 }
@@ -35,10 +47,18 @@ impl Opening {
             return (None, Doubt::default());
         };
         let is_told = found.status == Status::Converged && found.kept.deviations(0, &[]).is_some();
-        let own = || Self { kept: found.kept, until: f64::INFINITY, misfits: found.misfits };
+        let verdict = judged(bound, &found, &noise);
+        let against = failed(&verdict, |check| !LATER.contains(&check));
+        let lasting = failed(&verdict, |check| LASTING.contains(&check));
+        let own = || Self { kept: found.kept, until: f64::INFINITY, misfits: found.misfits, against };
         let (scores, shared) = (found.answer.scores, found.answer.shared);
         let goes_on = !scores.is_empty() && shared.iter().flatten().all(Option::is_none);
-        (is_told.then(own), Doubt { scores, goes_on })
+        (is_told.then(own), Doubt { scores, lasting, goes_on })
+    }
+
+    /// What speaks against it.
+    pub(super) fn against(&self) -> Option<&String> {
+        self.against.as_ref()
     }
 
     /// As the answer up to a place.
@@ -66,4 +86,17 @@ impl Opening {
     pub(super) fn splines(&self) -> (&Heads, &[f64]) {
         (&self.kept.heads, &self.kept.theta)
     }
+}
+
+/// The verdict on the first rows, as on a whole record.
+fn judged(bound: &Bound, found: &SplineSolution, noise: &Noise) -> Verdict {
+    let points = bound.coordinates.concat();
+    let heads = 0..bound.problem.scene().schema.heads.len();
+    let values: Vec<Vec<f64>> = heads.map(|head| found.kept.evaluate(head, &points)).collect();
+    judge(bound, &found.answer, &values, noise)
+}
+
+/// What the first failed check of some says.
+fn failed(verdict: &Verdict, is_asked: impl Fn(&str) -> bool) -> Option<String> {
+    verdict.failed().find(|check| is_asked(check.check)).map(|check| check.message.clone())
 }

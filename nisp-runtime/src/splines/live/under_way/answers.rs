@@ -3,6 +3,7 @@
 use super::{Live, SLACK};
 use crate::splines::live::Smoothed;
 use crate::splines::live::met::{Nearby, count_all, count_bend, count_near};
+use crate::splines::live::opening::Opening;
 use crate::units::{Declared, Engine, Number, Scale};
 
 impl Live {
@@ -60,6 +61,7 @@ impl Live {
         let (lag, misfit, leaning) = (outward(self.last - at), self.square.sqrt(), self.window.weights().leaning);
         let is_stray = events.iter().any(|event| event.is_stray);
         let given = self.given.check();
+        let other = opening.and_then(Opening::against).or_else(|| self.given.lasting());
         let answer = Smoothed {
             at: outward(at),
             lag,
@@ -70,7 +72,7 @@ impl Live {
             leaning,
             beyond,
             given: given.map_or(0.0, |check| check.value),
-            doubt: given.filter(|check| !check.passed).map(|check| check.message.clone()),
+            doubt: given.filter(|check| !check.passed).map(|check| &check.message).or(other).cloned(),
             is_stray,
             is_held: false,
         };
