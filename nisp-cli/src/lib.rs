@@ -9,6 +9,7 @@ mod config;
 mod eval;
 mod explain;
 mod help;
+mod inputs;
 pub mod interrupt;
 mod list;
 mod new;

@@ -14,6 +14,7 @@ use nisp_equations::{Entry, Prepared, Request, Survey, Truth, Wanted};
 
 use crate::args::Options;
 use crate::checkpoint::{self, Keeper};
+use crate::inputs::spare;
 use crate::options::view;
 use crate::program::Program;
 use crate::report::{self, Run};
@@ -45,6 +46,8 @@ pub(crate) fn solve(program: &Program, options: &Options) -> Result<ExitCode, St
     let from = options.resume.as_deref().map(checkpoint::read).transpose()?;
     interrupt::listen(program.name)?;
     let names = [results::names(&prepared), vec![checkpoint::NAME]].concat();
+    let inputs = options.inputs();
+    names.iter().try_for_each(|name| spare(&inputs, &options.out.join(name)))?;
     OutDir::require_free(&options.out, &names).map_err(|error| error.to_string())?;
     let out = OutDir::create(&options.out).map_err(|error| error.to_string())?;
     interrupt::clean(out.traces());

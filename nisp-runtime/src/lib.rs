@@ -41,6 +41,7 @@ mod shared_noise;
 pub mod simd;
 pub mod solve;
 mod splines;
+mod standing;
 mod start;
 mod student;
 mod tolerance;

@@ -17,6 +17,7 @@ use crate::roughness::{directions, roughness};
 use crate::schema::{self, TermKind};
 pub use crate::solve::vector::deviation;
 use crate::solve::vector::{root_mean_square, spread};
+use crate::standing::moving;
 
 /// Noise of what is observed.
 #[derive(Clone, Debug, PartialEq)]
@@ -98,6 +99,9 @@ impl Noise {
     }
 }
 
+/// Values that move, at least, where those that stand still do not count.
+pub(crate) const FEWEST: usize = 4 * EIGHT;
+
 /// True where noise of some deviation is no more than rounding, for data of some spread.
 pub fn is_exact(deviation: f64, spread: f64) -> bool {
     deviation <= EXACT * spread
@@ -109,8 +113,9 @@ pub(crate) fn estimate(bound: &Bound) -> Noise {
     for (at, group) in bound.problem.scene().schema.groups.iter().enumerate() {
         for (term, _) in group.terms.iter().enumerate().filter(|(_, term)| !term.columns.is_empty()) {
             let columns = measured(bound, at, term);
-            let spread = root_mean_square(columns.iter().map(|column| deviation(column)));
-            let found = of_columns(bound, at, term, &evened(bound, at, term, columns));
+            let moving = moving_rows(bound, (at, term), &columns);
+            let spread = root_mean_square(columns.iter().map(|column| deviation(&picked(column, &moving))));
+            let found = of_columns(bound, (at, term), &evened(bound, at, term, columns), &moving);
             observations.extend(found.map(|deviation| ObservationNoise { group: at, term, deviation, spread }));
         }
     }
@@ -124,7 +129,7 @@ pub(crate) fn relative(bound: &Bound, group: usize, term: usize) -> Option<(f64,
     let logarithms = |column: &Vec<f64>| column.iter().map(|y| y.abs().ln()).collect();
     let shares: Vec<Vec<f64>> = columns.iter().filter(|column| has_sign(column)).map(logarithms).collect();
     (shares.len() == columns.len())
-        .then(|| of_columns(bound, group, term, &shares))
+        .then(|| of_columns(bound, (group, term), &shares, &moving_rows(bound, (group, term), &columns)))
         .flatten()
         .map(|share| (share, columns))
 }
@@ -142,16 +147,37 @@ fn evened(bound: &Bound, group: usize, term: usize, columns: Vec<Vec<f64>>) -> V
     columns.into_iter().zip(rows).map(|(column, row)| bound.evened((group, schema), row, column)).collect()
 }
 
-/// The noise of values at an observation's places; nothing where it cannot be judged.
-fn of_columns(bound: &Bound, group: usize, term: usize, columns: &[Vec<f64>]) -> Option<f64> {
+/// Numbers of the rows of an observation along a record in which no column of it stands still; of all rows over several coordinates.
+fn moving_rows(bound: &Bound, (group, term): (usize, usize), columns: &[Vec<f64>]) -> Vec<usize> {
+    let schema = bound.problem.scene().schema;
+    let rows = columns.first().map_or(0, Vec::len);
+    if schema.coordinates.len() > 1 {
+        return (0..rows).collect();
+    }
+    let places = bound.measured(group, &schema.groups[group].terms[term], &bound.coordinates[group]);
+    let order = order(&places);
+    let mut moves = vec![0; rows];
+    for column in columns {
+        moving(&picked(column, &order), FEWEST).into_iter().for_each(|at| moves[order[at]] += 1);
+    }
+    (0..rows).filter(|&row| moves[row] == columns.len()).collect()
+}
+
+fn picked(values: &[f64], rows: &[usize]) -> Vec<f64> {
+    rows.iter().map(|&row| values[row]).collect()
+}
+
+/// The noise of values at an observation's places, by some of its rows; nothing where it cannot be judged.
+fn of_columns(bound: &Bound, (group, term): (usize, usize), columns: &[Vec<f64>], rows: &[usize]) -> Option<f64> {
     let schema = bound.problem.scene().schema;
     let inputs = schema.coordinates.len();
-    let places = &bound.measured(group, &schema.groups[group].terms[term], &bound.coordinates[group]);
+    let places = bound.measured(group, &schema.groups[group].terms[term], &bound.coordinates[group]);
     if places.is_empty() {
         return None;
     }
+    let places: Vec<f64> = rows.iter().flat_map(|row| &places[row * inputs..][..inputs]).copied().collect();
     let outliers = bound.losses[group][term].is_robust();
-    let noise_of = |values: &Vec<f64>| of_values(places, inputs, values, outliers);
+    let noise_of = |values: &Vec<f64>| of_values(&places, inputs, &picked(values, rows), outliers);
     columns.iter().map(noise_of).collect::<Option<Vec<f64>>>().map(root_mean_square)
 }
 
@@ -197,9 +223,14 @@ fn steps(values: &[f64]) -> f64 {
 
 /// Values in the order of their only coordinate.
 pub(crate) fn in_order(coordinates: &[f64], values: &[f64]) -> Vec<f64> {
-    let mut order: Vec<usize> = (0..values.len()).collect();
+    picked(values, &order(coordinates))
+}
+
+/// Numbers of coordinates, the least first.
+fn order(coordinates: &[f64]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..coordinates.len()).collect();
     order.sort_by(|&a, &b| coordinates[a].total_cmp(&coordinates[b]));
-    order.into_iter().map(|at| values[at]).collect()
+    order
 }
 
 /// The median magnitude of a standard normal number.

@@ -12,6 +12,7 @@ use nisp_data::input::read_bytes;
 use nisp_interpreter::{ask, is_same_equation, open};
 
 use crate::args::EvalOptions;
+use crate::inputs::spare;
 use crate::program::Program;
 
 /// Bytes of an answer at most: the largest networks that fit into memory stay below.
@@ -32,6 +33,7 @@ struct Evaluated {
 /// Reads an answer at the points that are wanted, and prints or writes what it says there.
 pub(crate) fn eval(program: &Program, options: &EvalOptions) -> Result<ExitCode, String> {
     let path = &options.answer;
+    options.out.iter().try_for_each(|out| spare(&options.inputs(), out))?;
     let saved = read(path)?;
     let (answer, names) = match &options.of {
         None => {

@@ -155,6 +155,17 @@ impl Scene {
         (0..self.coordinates.len()).filter(|axis| !is_held(axis)).collect()
     }
 
+    /// Whether a term reads values of states alone: fields with derivatives in an equation, which do not leap.
+    pub(crate) fn reads_states(&self, group: usize, term: &Term) -> bool {
+        let equations = || self.groups.iter().filter(|group| !group.is_beliefs());
+        let is_state = |head: usize| {
+            let mut own = equations().flat_map(|group| group.jets).filter(|jet| jet.head == head);
+            !self.heads[head].source && own.any(|jet| !jet.is_value())
+        };
+        let jets = term.jets.iter().map(|&jet| &self.groups[group].jets[jet]);
+        !term.jets.is_empty() && jets.into_iter().all(|jet| jet.is_value() && is_state(jet.head))
+    }
+
     /// The heads that observations and clouds read.
     pub(crate) fn observed(&self) -> Vec<usize> {
         let is_data = |term: &&Term| matches!(term.kind, TermKind::Observation | TermKind::Chamfer { .. });

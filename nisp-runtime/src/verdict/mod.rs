@@ -13,7 +13,6 @@ mod equations;
 mod filtered;
 mod free;
 mod gathered;
-mod held;
 mod interpolated;
 pub(crate) mod jolts;
 pub(crate) mod known;
@@ -47,7 +46,7 @@ const FIRM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
-    /// `rhythm`, `filtered`, `repeated`, `jolt`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
+    /// `rhythm`, `filtered`, `repeated`, `polled`, `jolt`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
     /// `distance`, `seen`, `patch`, `determined`, `leaning`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
@@ -81,8 +80,9 @@ impl Verdict {
     /// answer could only fit them by bending the equations. Also where the data leave a source or a learned scalar open, and where they are not as
     /// they were measured: so does any other answer.
     pub(crate) fn contradicts(&self) -> bool {
-        if self.failed().any(|check| matches!(check.check, "determined" | "leaning" | "filtered" | "repeated" | "jolt"))
-        {
+        if self.failed().any(|check| {
+            matches!(check.check, "determined" | "leaning" | "filtered" | "repeated" | "polled" | "held" | "jolt")
+        }) {
             return true;
         }
         let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");

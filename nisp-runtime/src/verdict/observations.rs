@@ -2,11 +2,12 @@
 
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
-use super::{Check, filtered, held, outliers, parts, patterns, repeated, root_mean_square, scaled, taken};
+use super::{Check, filtered, outliers, parts, patterns, repeated, root_mean_square, scaled, taken};
 use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
 use crate::schema::TermKind;
+use crate::standing::{held, polled};
 use crate::units::Number;
 
 /// Misfit over a declared tolerance.
@@ -17,6 +18,8 @@ const EXACT: f64 = 2e-3;
 const OUTLIERS: f64 = 1.0;
 /// Share of a column in which its sensor may stand still.
 const HELD: f64 = 0.02;
+/// Rows that a value of a sensor may stand for.
+const POLLED: f64 = 1.5;
 /// Misfit over its size by the median beyond which few values make most of it.
 const HEAVY: f64 = 2.0;
 /// Share of the values that may be outliers.
@@ -48,6 +51,7 @@ fn of(left: &Misfits, answer: &Answer) -> Vec<Check> {
     let mut checks: Vec<Check> = misfit(left, answer.finer).into_iter().collect();
     if left.is_record() && !left.is_exact() {
         checks.extend(left.term.columns.iter().map(|&column| stuck(left, column)));
+        checks.extend(left.term.columns.iter().filter_map(|&column| often(left, column)));
         checks.extend(left.term.columns.iter().filter_map(|&column| twice(left, column)));
     }
     if let Some(noise) = left.noise.filter(|_| left.is_record() && !left.is_robust) {
@@ -178,7 +182,10 @@ fn share(left: &Misfits) -> Option<f64> {
 fn stuck(left: &Misfits, column: usize) -> Check {
     let values = left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]);
     let values = in_order(&left.places, &values);
-    let (count, value) = held::held(&values);
+    let is_state = left.bound.problem.scene().schema.reads_states(left.group, left.term);
+    let held = held(&values, is_state);
+    let count: usize = held.iter().map(|run| run.len()).sum();
+    let value = held.iter().max_by_key(|run| run.len()).map_or(0.0, |run| values[run.start]);
     let share = count as f64 / values.len().max(1) as f64;
     let said = format!(
         "`{}` stands still in {count} of {} rows, at {:.3e} in the longest run, and varies elsewhere: a sensor at the end of its \
@@ -188,6 +195,18 @@ fn stuck(left: &Misfits, column: usize) -> Check {
         left.bound.system.outward(&left.term.unit).of(Number::engine(value)),
     );
     Check::new("held", left.name(), (share, HELD), said)
+}
+
+/// How many rows each value of a column stands for; nothing where that cannot be told.
+fn often(left: &Misfits, column: usize) -> Option<Check> {
+    let values = left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]);
+    let rows = polled(&in_order(&left.places, &values))?;
+    let said = format!(
+        "each value of `{}` stands in about {rows:.1} rows: a sensor that is read more often than it measures; keep the first row of \
+         each value, and leave the other cells empty",
+        left.bound.problem.scene().schema.groups[left.group].columns[column].name,
+    );
+    Some(Check::new("polled", left.name(), (rows, POLLED), said))
 }
 
 /// Whether rows of a column are in it twice; nothing where none are.

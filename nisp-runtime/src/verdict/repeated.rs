@@ -16,13 +16,19 @@ pub(super) fn repeated(values: &[f64], noise: f64) -> Option<(Range<usize>, usiz
         return None;
     }
     let bits = |at: usize| -> [u64; LONG] { std::array::from_fn(|next| values[at + next].to_bits()) };
+    // What a sensor at rest shows is there as long as it rests.
+    let is_still = |at: usize| values[at..at + LONG].iter().all(|value| *value == values[at]);
     let mut known = HashMap::new();
     let mut longest = (0..0, 0);
     let mut at = 0;
     while at + LONG <= values.len() {
+        if is_still(at) {
+            at += 1;
+            continue;
+        }
         let Some(&first) = known.get(&bits(at)) else {
             // One of every few stretches is kept, and all are compared with them.
-            if let Some(before) = (at + 1).checked_sub(LONG).filter(|before| before % LONG == 0) {
+            if let Some(before) = (at + 1).checked_sub(LONG).filter(|before| before % LONG == 0 && !is_still(*before)) {
                 known.entry(bits(before)).or_insert(before);
             }
             at += 1;

@@ -14,7 +14,7 @@ use crate::solve::driver::{Flow, Limits, Status};
 use crate::verdict::{Verdict, judge};
 
 /// Checks of a whole record that rows behind the first ones cannot mend: what they are about holds all along.
-const LASTING: [&str; 2] = ["determined", "filtered"];
+const LASTING: [&str; 3] = ["determined", "filtered", "polled"];
 /// Checks that say nothing of the beginning of a record: a source may be at rest there.
 const LATER: [&str; 1] = ["told"];
 

@@ -95,6 +95,19 @@ impl Layout {
         Ok(Self { measured, continuous, columns })
     }
 
+    /// The columns that are observed.
+    pub(super) fn observed(&self) -> impl Iterator<Item = usize> + '_ {
+        (0..self.columns.len()).filter(|&column| self.columns[column].may_lack)
+    }
+
+    /// Whether what is observed in a column is a state.
+    pub(super) fn is_state(&self, problem: &Problem, column: usize) -> bool {
+        let schema = problem.scene().schema;
+        let Some((group, own)) = self.place_of(column) else { return false };
+        let mut readers = schema.groups[group].terms.iter().filter(|term| term.columns.contains(&own));
+        readers.all(|term| schema.reads_states(group, term))
+    }
+
     /// The group of a column, and its number there.
     pub(super) fn place_of(&self, column: usize) -> Option<(usize, usize)> {
         let (group, first) = self.measured.iter().rfind(|(_, first)| *first <= column)?;
@@ -114,7 +127,7 @@ impl Layout {
     /// Finds the rows that are strays by their neighbours alone. Columns that equations read are what they are.
     pub(super) fn mark_strays(&self, rows: &mut [MeasuredRow<Declared>]) {
         rows.iter_mut().for_each(|row| row.is_stray = false);
-        for column in (0..self.columns.len()).filter(|&column| self.columns[column].may_lack) {
+        for column in self.observed() {
             let there: Vec<usize> = (0..rows.len()).filter(|&row| !rows[row].values[column].is_nan()).collect();
             let values: Vec<(f64, f64)> = there.iter().map(|&row| (rows[row].at, rows[row].values[column])).collect();
             alone::strays(&values).into_iter().for_each(|stray| rows[there[stray]].is_stray = true);

@@ -48,6 +48,7 @@ impl FixedLagSmoother {
             return Err(LiveError::Scene(what));
         }
         let layout = Layout::of(&problem)?;
+        let held = Held::new(layout.observed().map(|column| layout.is_state(&problem, column)));
         Ok(Self {
             problem,
             settings,
@@ -59,7 +60,7 @@ impl FixedLagSmoother {
             due: settings.first_rows.max(FEWEST),
             live: None,
             patience: Patience::default(),
-            held: Held::default(),
+            held,
         })
     }
 
@@ -122,8 +123,7 @@ impl FixedLagSmoother {
     fn take(&mut self, row: MeasuredRow<Declared>) -> Result<Vec<Smoothed>, LiveError> {
         let (live, layout) = (self.live.as_ref(), &self.layout);
         let noise = |column| live.and_then(|live| live.noise(layout, column)).unwrap_or(f64::NAN);
-        let observed = (0..layout.columns.len()).filter(|&column| layout.columns[column].may_lack);
-        self.held.take(row.at, observed.map(|column| [row.values[column], noise(column)]));
+        self.held.take(row.at, layout.observed().map(|column| [row.values[column], noise(column)]));
         let found = self.answered(row)?;
         Ok(self.said(found))
     }

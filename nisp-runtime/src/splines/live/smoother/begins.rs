@@ -4,6 +4,7 @@ use super::{FEWEST, FixedLagSmoother};
 use crate::problem::BindError;
 use crate::splines::live::again::{OPEN, ROWS};
 use crate::splines::live::begun::Begun;
+use crate::splines::live::held::are_at_rest;
 use crate::splines::live::record::MeasuredRow;
 use crate::splines::live::under_way::{Live, Reach};
 use crate::splines::live::{LiveError, Smoothed};
@@ -16,9 +17,16 @@ impl FixedLagSmoother {
     /// Begins with the rows that wait. Where they leave something open, as a sensor at rest does, twice as many may tell.
     pub(super) fn begin(&mut self, open: f64) -> Result<Vec<Smoothed>, LiveError> {
         let first = self.settings.first_rows.max(FEWEST);
-        let rows = std::mem::take(&mut self.waiting);
+        let mut rows = std::mem::take(&mut self.waiting);
         let count = rows.len();
-        let found = if open > 0.0 && count < MOST_WAITS * first {
+        let may_wait = open > 0.0 && count < MOST_WAITS * first;
+        if may_wait && are_at_rest(&self.layout, &rows) {
+            self.waiting = rows;
+            self.due = 2 * count;
+            return Ok(Vec::new());
+        }
+        self.held.leave_out(&self.layout, &mut rows);
+        let found = if may_wait {
             match self.begin_with(rows.clone(), self.settings.lag, open) {
                 Err(
                     LiveError::Open
