@@ -3,13 +3,13 @@
 use std::time::SystemTime;
 
 use nisp::schema::{Place, Portion};
-use nisp::{FixedLagSmoother, LagSettings, Problem, RowColumn, SceneRef};
+use nisp::{FixedLagSmoother, LagSettings, Problem, Rest, RowColumn, SceneRef};
 use nisp_data::Table;
 
 use crate::entry::Entry;
 use crate::error::PrepareError;
 use crate::request::Request;
-use crate::tables::{Clock, header, read};
+use crate::tables::{Clock, doubts, header, read};
 
 /// How rows of a table become those of a scene.
 #[derive(Clone)]
@@ -18,6 +18,8 @@ pub struct Record {
     request: Request,
     /// What a row has, and whether the table has it.
     columns: Vec<(RowColumn, bool)>,
+    /// Columns whose headers say no unit.
+    unlabelled: Vec<&'static str>,
 }
 
 impl Record {
@@ -28,7 +30,7 @@ impl Record {
     pub fn new(entry: &Entry, request: &Request, table: &Table) -> Result<Self, PrepareError> {
         let scene = entry.scene(request.scene.as_deref())?;
         crate::tables::check_columns(scene.schema, request)?;
-        let record = Self { scene, request: request.clone(), columns: Vec::new() };
+        let record = Self { scene, request: request.clone(), columns: Vec::new(), unlabelled: Vec::new() };
         let smoother = FixedLagSmoother::new(record.problem(0.0)?, LagSettings::default())?;
         let is_there = |column: &RowColumn| {
             !column.may_lack || header(request, column.name, table).is_some() || !table.lacks(column.name)
@@ -37,7 +39,11 @@ impl Record {
         if columns.iter().all(|(_, is_there)| !is_there) {
             columns.iter_mut().for_each(|(_, is_there)| *is_there = true);
         }
-        let record = Self { columns, ..record };
+        let is_unlabelled =
+            |column: &&RowColumn| !table.says_unit(column.name, header(request, column.name, table), column.unit.text);
+        let there = columns.iter().filter(|(_, is_there)| *is_there).map(|(column, _)| column);
+        let unlabelled = there.filter(is_unlabelled).map(|column| column.name).collect();
+        let record = Self { columns, unlabelled, ..record };
         record.cells(table)?;
         Ok(record)
     }
@@ -45,6 +51,14 @@ impl Record {
     /// What the rows measure nothing of.
     pub fn lacking(&self) -> impl Iterator<Item = &'static str> + '_ {
         self.columns.iter().filter(|(_, is_there)| !is_there).map(|(column, _)| column.name)
+    }
+
+    /// What is to be asked about the units of rows, by where they would rest.
+    ///
+    /// # Errors
+    /// The question of a column whose header says no unit.
+    pub fn doubts(&self, rests: &[Rest]) -> Result<Vec<String>, PrepareError> {
+        doubts(rests, &self.unlabelled)
     }
 
     /// What the user should know where places are given by dates, which are counted from a moment.

@@ -27,6 +27,7 @@ pub(crate) use clock::Clock;
 pub(crate) use clouds::CloudFile;
 use read::Rows;
 pub(crate) use read::{header, read};
+pub(crate) use units::doubts;
 use unmeasured::unmeasured;
 use wanted::{planes, wanted};
 
@@ -203,7 +204,9 @@ pub(crate) fn bind(scene: SceneRef, tables: &Tables<'_>, request: &Request) -> R
         found.problem.set_group(group.name, points, columns)?;
     }
     clouds::bind(&mut found, tables, request)?;
-    let doubts = units::doubts(&found.problem, &found.unlabelled)?;
+    // What is not sensibly bound is said when it is solved.
+    let rests = found.problem.rests().unwrap_or_default();
+    let doubts = units::doubts(&rests, &found.unlabelled)?;
     found.warnings.extend(doubts);
     Ok(found)
 }

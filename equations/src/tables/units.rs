@@ -3,8 +3,8 @@
 
 use std::collections::BTreeSet;
 
+use nisp::Rest;
 use nisp::units::Number;
-use nisp::{Problem, Rest};
 use nisp_units::conversion;
 
 use crate::error::PrepareError;
@@ -33,13 +33,11 @@ type Range = [f64; 2];
 ///
 /// # Errors
 /// The question of a column whose header says no unit.
-pub(super) fn doubts(problem: &Problem, unlabelled: &[&'static str]) -> Result<Vec<String>, PrepareError> {
-    // What is not sensibly bound is said when it is solved.
-    let rests = problem.rests().unwrap_or_default();
+pub(crate) fn doubts(rests: &[Rest], unlabelled: &[&'static str]) -> Result<Vec<String>, PrepareError> {
     let mut asked = BTreeSet::new();
     let mut refused = Vec::new();
     let mut said = Vec::new();
-    for rest in &rests {
+    for rest in rests {
         let Some(question) = question(rest).filter(|_| asked.insert(rest.column.name)) else { continue };
         let (name, unit) = (rest.column.name, rest.column.unit.text);
         if unlabelled.contains(&name) {
@@ -86,7 +84,7 @@ fn shifted(rest: &Rest) -> Option<String> {
     Some(if is_measured {
         format!("is `{name}` in degrees {words}? say so in its header, as in `{name} [{header}]`")
     } else {
-        format!("is what it is compared with in degrees {words}?")
+        format!("is what it is compared with in degrees {words}? give that in {}", rest.column.unit.text)
     })
 }
 
@@ -102,7 +100,8 @@ fn scaled(rest: &Rest) -> Option<String> {
     let suits = |factor: &f64| gap([factor * low, factor * high], [from, to]) <= NEAR * to;
     let has_time = rest.column.unit.exponents[SECOND] != 0.0;
     let factor = FACTORS.into_iter().chain(FACTORS_OF_TIME.into_iter().filter(|_| has_time)).find(suits)?;
-    Some(format!("is one of them in another unit, {} times too large or small?", short(factor.max(factor.recip()))))
+    let (times, unit) = (short(factor.max(factor.recip())), rest.column.unit.text);
+    Some(format!("is one of them in another unit, {times} times too large or small? give both in {unit}"))
 }
 
 /// The magnitudes of a range without zero.

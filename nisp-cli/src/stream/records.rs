@@ -62,8 +62,12 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
         move || bring(rows, &record, &sender)
     };
     Builder::new().name("rows".into()).spawn(bring).map_err(|error| format!("cannot start a thread: {error}"))?;
-    let mut answers =
-        Answers { scene, settings: LagSettings { lag: options.lag, ..LagSettings::default() }, smoother: None };
+    let mut answers = Answers {
+        scene,
+        settings: LagSettings { lag: options.lag, ..LagSettings::default() },
+        smoother: None,
+        is_asked: false,
+    };
     match answers.follow(&record, &came)? {
         Ended::NotWritten(message) => Ok(not_written(&message)),
         Ended::Open(message) => {
@@ -113,13 +117,15 @@ struct Answers {
     settings: LagSettings,
     /// From the first row on.
     smoother: Option<FixedLagSmoother>,
+    /// Whether the units of the first rows have been looked at.
+    is_asked: bool,
 }
 
 impl Answers {
     /// Takes rows until they end.
     ///
     /// # Errors
-    /// Parameters that do not fit.
+    /// Parameters that do not fit, or rows that seem to be in another unit under a header without one.
     fn follow(&mut self, record: &Record, rows: &Receiver<(Instant, Row)>) -> Result<Ended, String> {
         loop {
             let (row, is_live) = match rows.recv_timeout(LOOK) {
@@ -153,6 +159,11 @@ impl Answers {
                 },
                 (None, None) => return Ok(Ended::Open("there was no row; give some below the header".into())),
             };
+            if !found.is_empty() && !std::mem::replace(&mut self.is_asked, true) {
+                let rests = self.smoother.as_mut().and_then(FixedLagSmoother::rests).unwrap_or_default();
+                let doubts = record.doubts(&rests).map_err(|error| error.to_string())?;
+                doubts.iter().for_each(|doubt| say(&format!("warning: {doubt}")));
+            }
             let wrong = wrong.map(
                 |(error, place)| json!({ "status": "error", "error": error, self.scene.coordinates[0].name: place }),
             );

@@ -141,8 +141,13 @@ impl Layout {
         MeasuredRow { values: row.values.iter().zip(&self.columns).map(counts).collect(), ..*row }
     }
 
-    /// The problem of the first rows.
+    /// The problem of the first rows, bound.
     pub(super) fn bound(&self, problem: &Problem, rows: &[MeasuredRow<Declared>]) -> Result<Bound, LiveError> {
+        Ok(self.problem(problem, rows)?.bound(Inputs::Automatic)?)
+    }
+
+    /// The problem of the first rows.
+    pub(super) fn problem(&self, problem: &Problem, rows: &[MeasuredRow<Declared>]) -> Result<Problem, LiveError> {
         let schema = problem.scene().schema;
         let mut problem = problem.clone();
         for &group in &self.continuous {
@@ -152,7 +157,7 @@ impl Layout {
             let (places, columns) = self.table(group, rows);
             problem.set_group(schema.groups[group].name, places.into(), columns)?;
         }
-        Ok(problem.bound(Inputs::Automatic)?)
+        Ok(problem)
     }
 
     /// A later stretch of a record whose first rows are bound, in the same units and with the same scales.

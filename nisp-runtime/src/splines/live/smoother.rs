@@ -7,7 +7,7 @@ use super::held::Held;
 use super::record::{Layout, MeasuredRow};
 use super::under_way::{Live, Reach};
 use super::{LagSettings, LiveError, RowColumn, Smoothed};
-use crate::problem::Problem;
+use crate::problem::{Problem, Rest};
 use crate::units::Declared;
 
 /// Rows that say anything of a noise and a source.
@@ -34,6 +34,8 @@ pub struct FixedLagSmoother {
     live: Option<Live>,
     patience: Patience,
     held: Held,
+    /// Where the first rows would rest, until it is asked for.
+    rests: Option<Vec<Rest>>,
 }
 
 impl FixedLagSmoother {
@@ -61,6 +63,7 @@ impl FixedLagSmoother {
             live: None,
             patience: Patience::default(),
             held,
+            rests: None,
         })
     }
 
@@ -108,6 +111,12 @@ impl FixedLagSmoother {
     /// The place of a row that was far ahead and is left out, because the last one pushed was not; it is said once.
     pub fn left_out(&mut self) -> Option<f64> {
         self.left_out.take()
+    }
+
+    /// Where the rows are that a record begins with, and where they would rest if nothing acted; it is said once. A column in another
+    /// unit than its declared one is far off.
+    pub fn rests(&mut self) -> Option<Vec<Rest>> {
+        self.rests.take()
     }
 
     /// Whether a row is so far ahead that its place may be a wrong one.

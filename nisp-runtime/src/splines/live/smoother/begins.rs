@@ -26,6 +26,7 @@ impl FixedLagSmoother {
             return Ok(Vec::new());
         }
         self.held.leave_out(&self.layout, &mut rows);
+        self.rests = self.layout.problem(&self.problem, &rows).ok().and_then(|first| first.rests().ok());
         let found = if may_wait {
             match self.begin_with(rows.clone(), self.settings.lag, open) {
                 Err(
