@@ -18,6 +18,9 @@ const LASTING: [&str; 3] = ["determined", "filtered", "polled"];
 /// Checks that say nothing of the beginning of a record: a source may be at rest there.
 const LATER: [&str; 1] = ["told"];
 
+/// Steps at most, several times as many as most records take: later rows wait meanwhile.
+const STEPS: u64 = 400;
+
 /// What the first rows say as a whole, and up to where that is the answer.
 pub(super) struct Opening {
     kept: KeptSplines,
@@ -43,7 +46,8 @@ impl Opening {
     pub(super) fn solve(bound: &Bound) -> (Option<Self>, Doubt) {
         let mut monitor = |_: super::super::Progress<'_>| Flow::Continue;
         let noise = noise::estimate(bound);
-        let Ok(found) = super::super::solve(bound, &noise, &[], Limits::default(), None, &mut monitor) else {
+        let limits = Limits { iterations: STEPS, ..Limits::default() };
+        let Ok(found) = super::super::solve(bound, &noise, &[], limits, None, &mut monitor) else {
             return (None, Doubt::default());
         };
         let is_told = found.status == Status::Converged && found.kept.deviations(0, &[]).is_some();

@@ -161,8 +161,9 @@ impl FixedLagSmoother {
                 }
                 Err(_) => {
                     let is_taken = live.has(row.at);
-                    // What cannot be evaluated here may be so farther on.
-                    match self.begin_again() {
+                    // What cannot be evaluated here may be so farther on, but a beginning takes as long as many rows.
+                    let is_due = self.patience.is_over();
+                    match is_due.then(|| self.begin_again()).flatten() {
                         Some(again) if is_taken => found.extend(again),
                         Some(again) => {
                             found.extend(again);
