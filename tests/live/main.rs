@@ -4,6 +4,7 @@ use nisp::solve::driver::Flow;
 use nisp::{Carrier, FixedLagSmoother, LagSettings, Problem, SceneRef, Settings, Smoothed, recover};
 use nisp_interpreter::interpret;
 
+mod first;
 mod given;
 mod learned;
 mod rows;

@@ -48,6 +48,24 @@ fn rows_that_are_there_twice_are_named() {
 }
 
 #[test]
+fn a_sensor_that_stands_still_is_named_whatever_its_share_and_value() {
+    for (first, last, value) in [(120, ROWS, 0.123), (0, 200, 0.123), (150, ROWS, 0.0), (0, 150, -999.0)] {
+        let dead = |rows: &mut Vec<f64>| {
+            // Away from zero, where a swing may be.
+            rows.iter_mut().for_each(|row| *row += 2.0);
+            rows[first..last].fill(value);
+        };
+        assert_named(&answer(dead), "held", &format!("`x` stands still in {} of {ROWS} rows", last - first));
+    }
+}
+
+#[test]
+fn a_sensor_that_is_read_more_often_than_it_measures_is_named() {
+    let polled = |rows: &mut Vec<f64>| rows.chunks_mut(4).for_each(|rows| rows.fill(rows[0]));
+    assert_named(&answer(polled), "polled", "each value of `x` stands in about 4.0 rows");
+}
+
+#[test]
 fn a_record_that_jumps_is_no_force() {
     for moved in [0.5, -0.5] {
         let later = |rows: &mut Vec<f64>| rows[ROWS / 2..].iter_mut().for_each(|row| *row += moved);

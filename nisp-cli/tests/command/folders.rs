@@ -6,7 +6,7 @@ use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::Duration;
 
-use crate::common::{Place, names};
+use crate::common::{Place, circuit_table, names};
 use serde_json::Value;
 
 const FILES: [&str; 4] = ["answer.nisp", "plot.svg", "source.csv", "state.csv"];
@@ -47,6 +47,27 @@ fn a_folder_holds_the_files_of_one_run_and_what_is_the_users_own() {
     fs::write(place.path("own/misfits.csv"), "mine").unwrap();
     assert_eq!(place.run("solve pendulum --out own").code, Some(0));
     assert_eq!(fs::read_to_string(place.path("own/misfits.csv")).unwrap(), "mine");
+}
+
+#[test]
+fn a_file_that_is_read_is_not_written_over() {
+    let place = Place::new();
+    fs::create_dir(place.path("own")).unwrap();
+    let data = circuit_table();
+    place.put("own/state.csv", &data);
+    let solve = "solve rlc --iterations 2 --out own --data own/state.csv";
+    let ran = place.run(solve);
+    assert_eq!(ran.code, Some(2), "{}", ran.stderr);
+    let words =
+        "own/state.csv is read here, and results would be written over it: give another --out, or move the file";
+    assert!(ran.stderr.contains(words), "{}", ran.stderr);
+    assert_eq!(fs::read_to_string(place.path("own/state.csv")).unwrap(), data);
+    assert_eq!(names(&place.path("own")), ["state.csv"]);
+    // An answer is read, too.
+    assert_eq!(place.run("solve pendulum --out p").code, Some(0));
+    let answer = fs::read(place.path("p/answer.nisp")).unwrap();
+    assert_eq!(place.run("eval p/answer.nisp --grid 5 --out p/answer.nisp").code, Some(2));
+    assert_eq!(fs::read(place.path("p/answer.nisp")).unwrap(), answer);
 }
 
 #[test]

@@ -25,10 +25,11 @@ fn motion(t: f64) -> (f64, f64) {
     (sine, (4.0 - rate * rate) * sine + 0.4 * rate * cosine)
 }
 
-/// A row of the record; multiples of the golden ratio stand for noise.
+/// A row of the record; digits of a sine that turns fast stand for noise.
 fn row(i: usize) -> String {
     let t = 0.05 * i as f64;
-    format!("{t},{}", motion(t).0 + 0.02 * ((i as f64 * 0.618_033_988_75).fract() - 0.5))
+    let noise = (43_758.545_3 * (12.989_8 * i as f64).sin()).rem_euclid(1.0) - 0.5;
+    format!("{t},{}", motion(t).0 + 0.02 * noise)
 }
 
 fn lines(text: &str) -> Vec<Value> {

@@ -33,6 +33,19 @@ fn celsius(t: f64) -> f64 {
 }
 
 #[test]
+fn a_stream_asks_as_well() {
+    let place = Place::new();
+    place.put("room.pde", ROOM);
+    let lines: String = (0..60).map(|i| f64::from(i) / 4.0).map(|t| format!("{t},{}\n", celsius(t))).collect();
+    for (header, code, rows) in [("T", 2, 0), ("T [K]", 0, 60), ("T [degC]", 0, 60)] {
+        place.put("run.csv", &format!("t,{header}\n{lines}"));
+        let ran = place.run("stream room.pde --data run.csv");
+        assert_eq!((ran.code, ran.stdout.lines().count()), (Some(code), rows), "{header}: {}", ran.stderr);
+        assert_eq!(ran.stderr.contains("is `T` in degrees Celsius"), header != "T [degC]", "{}", ran.stderr);
+    }
+}
+
+#[test]
 fn degrees_under_kelvins_are_suspected() {
     let said = checked(ROOM, "T [K]", celsius);
     let question = "and `room.balance` would hold it at 278 K where nothing acts: is `T` in degrees Celsius";

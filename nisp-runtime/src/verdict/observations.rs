@@ -38,9 +38,11 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
     let of = |(at, _)| {
         let shared = answer.shared(group, at);
         let left = Misfits::of(bound, (group, at), rows, (noise, shared))?;
-        // Rows that are not as they were measured are the likely cause of all else.
-        let mut checks = filtered::checks(&left, shared);
-        checks.extend(of(&left, answer));
+        let own = of(&left, answer);
+        // Rows that are not as they were measured are the likely cause of all else. Values that are there several times look filtered.
+        let is_polled = own.iter().any(|check| check.check == "polled" && !check.passed);
+        let mut checks = if is_polled { Vec::new() } else { filtered::checks(&left, shared) };
+        checks.extend(own);
         Some(checks)
     };
     observations.filter_map(of).flatten().collect()

@@ -2,6 +2,8 @@
 
 mod begins;
 
+use std::collections::VecDeque;
+
 use super::again::Patience;
 use super::held::Held;
 use super::record::{Layout, MeasuredRow};
@@ -12,6 +14,8 @@ use crate::units::Declared;
 
 /// Rows that say anything of a noise and a source.
 const FEWEST: usize = 10;
+/// What a place is off after it has been in the engine's units, as a share of it.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 /// How far ahead of the last row one may be, at first, over the mean distance of rows, before its place is doubted.
 const LEAP: f64 = 10.0;
 
@@ -34,6 +38,8 @@ pub struct FixedLagSmoother {
     live: Option<Live>,
     patience: Patience,
     held: Held,
+    /// Places of rows without an answer as they came: to the engine's units and back is not the same to the last digit.
+    places: VecDeque<f64>,
     /// Where the first rows would rest, until it is asked for.
     rests: Option<Vec<Rest>>,
 }
@@ -63,6 +69,7 @@ impl FixedLagSmoother {
             live: None,
             patience: Patience::default(),
             held,
+            places: VecDeque::new(),
             rests: None,
         })
     }
@@ -132,13 +139,23 @@ impl FixedLagSmoother {
     fn take(&mut self, row: MeasuredRow<Declared>) -> Result<Vec<Smoothed>, LiveError> {
         let (live, layout) = (self.live.as_ref(), &self.layout);
         let noise = |column| live.and_then(|live| live.noise(layout, column)).unwrap_or(f64::NAN);
+        self.places.push_back(row.at);
         self.held.take(row.at, layout.observed().map(|column| [row.values[column], noise(column)]));
         let found = self.answered(row)?;
         Ok(self.said(found))
     }
 
-    /// Says of answers whether a sensor stood still there.
+    /// Says of answers where they are, and whether a sensor stood still there.
     fn said(&mut self, mut found: Vec<Smoothed>) -> Vec<Smoothed> {
+        for answer in &mut found {
+            let slack = ROUNDING * answer.at.abs();
+            while let Some(place) = self.places.pop_front_if(|place| *place <= answer.at + slack) {
+                if place >= answer.at - slack {
+                    answer.at = place;
+                    break;
+                }
+            }
+        }
         for answer in found.iter_mut().filter(|answer| self.held.is_at(answer.at)) {
             answer.is_held = true;
             if let Some(live) = &mut self.live {

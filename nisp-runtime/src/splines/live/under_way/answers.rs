@@ -61,6 +61,7 @@ impl Live {
         let (lag, misfit, leaning) = (outward(self.last - at), self.square.sqrt(), self.window.weights().leaning);
         let is_stray = events.iter().any(|event| event.is_stray);
         let given = self.given.check();
+        // Rows that are not as they were measured are the likely cause of all else.
         let other = opening.and_then(Opening::against).or_else(|| self.given.lasting());
         let answer = Smoothed {
             at: outward(at),
@@ -72,7 +73,7 @@ impl Live {
             leaning,
             beyond,
             given: given.map_or(0.0, |check| check.value),
-            doubt: given.filter(|check| !check.passed).map(|check| &check.message).or(other).cloned(),
+            doubt: other.or(given.filter(|check| !check.passed).map(|check| &check.message)).cloned(),
             is_stray,
             is_held: false,
         };
