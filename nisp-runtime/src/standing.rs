@@ -133,9 +133,9 @@ mod tests {
         let wave = |at: usize| 2.0 + wave(at);
         let late: Vec<f64> = (0..190).map(|at| if at < 50 { 0.0 } else { wave(at) }).collect();
         assert_eq!(held(&late, false), [], "a pump that is switched on");
-        assert_eq!(held(&late, true), [0..50], "a temperature does not leap");
+        assert_eq!((held(&late, true).len(), count(&late, true)), (1, 50), "a temperature does not leap");
         let dead: Vec<f64> = (0..190).map(|at| if at < 100 { wave(at) } else { 0.0 }).collect();
-        assert_eq!(held(&dead, true), [100..190]);
+        assert_eq!((held(&dead, true).len(), count(&dead, true)), (1, 90));
         let stops: Vec<f64> = (0..190).map(|at| (100.0 - at as f64).max(0.0) * (1.0 + 1e-3 * wave(at))).collect();
         assert_eq!(held(&stops, true), [], "a car that stops");
     }

@@ -123,6 +123,8 @@ Rows of a record:
   were. A row that cannot be taken (time that goes back, a word for a number) gets a line that says so, and the next one
   is waited for; so does a time far ahead that the next row's time is not. A value that stands alone, far off, is left
   out. First rows that tell nothing (a sensor at rest, empty cells) wait for others: 1600 at most.
+  The first rows are judged as `nisp solve` judges a record. A column that seems to be in another unit ends the stream where its
+  header says none.
 
 Answers to rows, one JSON object a line:
   t           where the answer holds: the row's own place (under the coordinate's own name)
@@ -138,10 +140,11 @@ Answers to rows, one JSON object a line:
   leaning     how far a learned parameter moves where sources may be larger, as a share of itself
   beyond      how far the rows draw a field or a source beyond its bounds, in its deviations; values are within them
   given       logarithm of the probability that another value of a given number would gain, by all rows so far
-  doubt       which number that is, and about what it should be, where that is more than chance makes
+  doubt       what speaks against the answer and what to do: a given number that should rather be another, what the first rows
+              would be doubted for; all along, sources that nothing tells apart, and rows that are not as they were measured
   status      converged, inconsistent (misfit above 1.6 or nearby above 2: equation or parameters do not fit; bend above 3:
               a source is rougher than it was; leaning above .1: little is known of what is learned; beyond above 4.5:
-              rows contradict a bound; given above 10: a given number is wrong, or its equation; held), or error
+              rows contradict a bound; given above 10: a given number is wrong, or its equation; held; doubt), or error
               (`error` says why)
   latency_ms  work of the row that brought the answer
 
