@@ -58,6 +58,12 @@ pub(crate) fn calibrate(program: &Program, options: &Frames) -> Result<ExitCode,
     let text = best.calibration.text().map_err(|error| error.to_string())?;
     let mut files = vec![(FILE, text.into_bytes())];
     let mut warnings = failed;
+    warnings.extend(fits.iter().filter(|fit| fit.solution.status == Status::Budget).map(|fit| {
+        let law = &fit.calibration.scene;
+        format!("{law}: the budget was spent before the fit had settled; give more --budget")
+    }));
+    warnings.extend(best.solution.verdict.failed().map(|check| check.message.clone()));
+    warnings.extend(best.calibration.doubt());
     match picture(&best.calibration) {
         Ok(bytes) => files.push((PLOT, bytes)),
         Err(error) => warnings.push(format!("{PLOT} is not drawn: {error}")),
@@ -73,7 +79,8 @@ pub(crate) fn calibrate(program: &Program, options: &Frames) -> Result<ExitCode,
     } else {
         table(best, &fits, &warnings, options)
     })?;
-    Ok(ExitCode::SUCCESS)
+    let is_settled = best.solution.status != Status::Budget;
+    Ok(if is_settled { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
 }
 
 /// Fits one law; what went wrong where it does not fit.
@@ -98,8 +105,8 @@ fn fit(entry: &Entry, law: &'static str, options: &Frames) -> Result<Result<Fit,
         Ok(solution) => solution,
         Err(error) => return Ok(Err(format!("{law}: {error}"))),
     };
-    if !matches!(solution.status, Status::Converged | Status::Inconsistent) {
-        let why = solution.warnings.first().map_or("the budget is spent", |warning| warning.message.as_str());
+    if !matches!(solution.status, Status::Converged | Status::Inconsistent | Status::Budget) {
+        let why = solution.warnings.first().map_or("no answer was reached", |warning| warning.message.as_str());
         return Ok(Err(format!("{law}: {why}")));
     }
     let learned = solution.learned();
@@ -111,7 +118,8 @@ fn fit(entry: &Entry, law: &'static str, options: &Frames) -> Result<Result<Fit,
         estimate.map(|estimate| estimate.values)
     };
     let value = |name: &str| learned.iter().find(|learned| learned.name == name).map(|learned| learned.value);
-    let calibration = references.calibration(entry, law, contact, &values, &value)?;
+    let modulus = learned.iter().find(|learned| learned.name == "E").and_then(|learned| learned.deviation);
+    let calibration = references.calibration(entry, law, contact, &values, &value, modulus)?;
     Ok(Ok(Fit { calibration, learned, solution }))
 }
 

@@ -51,7 +51,8 @@ impl References {
         Ok(Self { frames: request.data.len(), cloud, given: known })
     }
 
-    /// What a solution says of the sensor: `values` are those of its heads, `learned` its learned scalars in declared units.
+    /// What a solution says of the sensor: `values` are those of its heads, `learned` its learned scalars in declared units, and the modulus has a
+    /// standard deviation where the solution has any.
     ///
     /// # Errors
     /// A scene that does not move its surface, or that learned no pose.
@@ -62,6 +63,7 @@ impl References {
         contact: &Contact,
         values: &Values<'_>,
         learned: &dyn Fn(&str) -> Option<f64>,
+        young_deviation: Option<f64>,
     ) -> Result<Calibration, PrepareError> {
         let missing = |what: &str| PrepareError::Data(DataError::Invalid(format!("the scene `{scene}` has no {what}")));
         let of = |name: &str| learned(name).ok_or_else(|| missing(&format!("learned `{name}`")));
@@ -98,6 +100,7 @@ impl References {
             pressure,
             misfit_m: spread(offs.iter().map(|off| off.distance)),
             noise_m: spread(left),
+            young_deviation,
         };
         let held = format!(
             "free frames tell E * t over the pressure, not both: the gauge pressure was held at {pressure} Pa and the thickness \

@@ -149,6 +149,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         None => {}
     }
 
+    let doubt = frames.calibration.as_ref().and_then(Calibration::doubt);
     let headers = Headers { chosen: &request.columns, rather: theory.rather, also: ALSO };
     let truth = observed.truth.as_ref().map(|table| Truth::read(table, schema, &[], headers)).transpose()?;
     let mut contact = Contact {
@@ -175,7 +176,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         truth,
         source: observed.source.display().to_string(),
         begin: None,
-        warnings: observed.cloud.warnings,
+        warnings: observed.cloud.warnings.into_iter().chain(doubt).collect(),
         assumed,
         rival: None,
         local,

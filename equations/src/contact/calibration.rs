@@ -46,6 +46,9 @@ pub struct Quality {
     pub misfit_m: f64,
     /// The same after the smooth deviation is taken off.
     pub noise_m: f64,
+    /// The standard deviation of Young's modulus, where there is one.
+    #[serde(rename = "young_sd_Pa", default, skip_serializing_if = "Option::is_none")]
+    pub young_deviation: Option<f64>,
 }
 
 /// Material and size of a membrane, in the keys of samples and calibrations and in SI units.
@@ -104,6 +107,21 @@ impl Calibration {
         let about =
             "# What free frames told of a sensor, for --calibration. Lengths are in metres, angles in radians.\n";
         Ok(format!("{about}{}", toml::to_string(self)?))
+    }
+
+    /// That forces are off by more than their deviations, where the modulus is hardly known: a stretch at rest that makes up for it has
+    /// about the same free shape.
+    pub fn doubt(&self) -> Option<String> {
+        /// Share of itself that a modulus may be off before forces are by more than clouds leave open.
+        const KNOWN: f64 = 0.05;
+        let share = self.found.young_deviation? / self.membrane.young?;
+        (share > KNOWN).then(|| {
+            format!(
+                "free frames tell `E` to {:.0} % only, since a stretch at rest makes up for it: forces found with this calibration may be off \
+                 by up to half of that share, which their deviations do not hold",
+                100.0 * share
+            )
+        })
     }
 
     /// The scene of the same law that does what this one does.
