@@ -8,8 +8,8 @@ const LONG: usize = 8;
 const STEPS: f64 = 0.2;
 /// How many such runs chance makes of values that repeat as often as the others do.
 const CHANCE: f64 = 1e-3;
-/// How many times as far as any other two neighbours a state must have moved in one row to be held at nothing: it comes to rest there
-/// in smaller steps.
+/// A state that comes to rest at zero does so in steps like its others. One that moves there in a single row, so many times as far as in
+/// any other, is held at zero by its sensor.
 const LEAP: f64 = 3.0;
 /// Runs of equal values, at least, that say whether a sensor has steps.
 const RUNS: usize = 20;
@@ -17,8 +17,8 @@ const RUNS: usize = 20;
 const FINE: f64 = 0.1;
 
 /// Of values in the order of their coordinate, those that stand in long runs of equal ones, or are the largest or the least of all and
-/// often so, where the other values seldom repeat anywhere. A quantity that is nothing may be exactly that, unless it is a state, which
-/// changes along with its coordinate, and leaps there.
+/// often so, where the other values seldom repeat anywhere. Zero is left out, since a flow that is switched off is exactly zero; of a state,
+/// which does not leap, zero counts where the values leap to it.
 pub(crate) fn held(values: &[f64], is_state: bool) -> Vec<Range<usize>> {
     let [least, most] = [f64::min, f64::max].map(|of| values.iter().copied().reduce(of).unwrap_or(0.0));
     let often = |end: f64| values.iter().filter(|value| **value == end).count() >= LONG;

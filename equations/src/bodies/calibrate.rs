@@ -51,8 +51,8 @@ impl References {
         Ok(Self { frames: request.data.len(), cloud, given: known })
     }
 
-    /// What a solution says of the sensor: `values` are those of its heads, `learned` its learned scalars in declared units, and the modulus has a
-    /// standard deviation where the solution has any.
+    /// What a solution says of the sensor: `values` are those of its heads, `learned` its learned scalars in declared units, and
+    /// `young_deviation` the standard deviation of Young's modulus in pascals, where there is one.
     ///
     /// # Errors
     /// A scene that does not move its surface, or that learned no pose.

@@ -46,7 +46,7 @@ pub struct Quality {
     pub misfit_m: f64,
     /// The same after the smooth deviation is taken off.
     pub noise_m: f64,
-    /// The standard deviation of Young's modulus, where there is one.
+    /// The standard deviation of Young's modulus in pascals, where there is one.
     #[serde(rename = "young_sd_Pa", default, skip_serializing_if = "Option::is_none")]
     pub young_deviation: Option<f64>,
 }
@@ -109,10 +109,10 @@ impl Calibration {
         Ok(format!("{about}{}", toml::to_string(self)?))
     }
 
-    /// That forces are off by more than their deviations, where the modulus is hardly known: a stretch at rest that makes up for it has
-    /// about the same free shape.
+    /// A warning where Young's modulus is hardly known: forces may then be off by more than their deviations. A softer membrane that is
+    /// stretched more at rest has about the same free shape.
     pub fn doubt(&self) -> Option<String> {
-        /// Share of itself that a modulus may be off before forces are by more than clouds leave open.
+        /// Deviation of the modulus, as a share of it, up to which clouds leave more of a force open than the modulus does.
         const KNOWN: f64 = 0.05;
         let share = self.found.young_deviation? / self.membrane.young?;
         (share > KNOWN).then(|| {
