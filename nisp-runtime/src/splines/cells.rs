@@ -45,9 +45,18 @@ pub(super) fn breakpoints(bound: &Bound, noise: &Noise) -> Vec<f64> {
 }
 
 /// True where a source may set in with the record, in a layer that its start is looked at more closely for. A long record is not
-/// one answer to one start.
+/// one answer to one start. And a condition on a source's value says something of the source beside it, which it does not where the
+/// source may leave it at once.
 pub(super) fn stretches(bound: &Bound) -> bool {
-    prior::may_stretch(bound.problem.scene().schema) && bound.coordinates.iter().all(|points| points.len() <= LONG)
+    let schema = bound.problem.scene().schema;
+    let is_known = |(group, points): (&schema::Group, &Vec<f64>)| {
+        let is_condition = |term: &schema::Term| term.kind == TermKind::Residual && group.is_of_values(term);
+        let reads_source = group.jets.iter().any(|jet| schema.heads[jet.head].source);
+        points.len() < MANY && reads_source && group.terms.iter().any(is_condition)
+    };
+    prior::may_stretch(schema)
+        && bound.coordinates.iter().all(|points| points.len() <= LONG)
+        && !schema.groups.iter().zip(&bound.coordinates).any(is_known)
 }
 
 /// Breakpoints at all measurements, with so many cells in between at `least`, and more at the start where it `stretches`; as many as equations can tell where those hold at

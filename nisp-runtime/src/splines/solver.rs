@@ -22,6 +22,8 @@ const REGRESS: Smoothness = Smoothness { order: 2, course: Course::Steady };
 const LEVEL: Smoothness = Smoothness { order: 1, course: Course::Steady };
 /// Cells of a source's shortest wave, before the first step says how smooth it is.
 pub(super) const SHORTEST: f64 = 12.0;
+/// Cells of the shortest wave that they hold.
+const HELD: f64 = 4.0;
 
 /// A problem on its splines.
 pub(super) struct Solver<'a> {
@@ -182,7 +184,7 @@ impl<'a> Solver<'a> {
             let Some(amplitude) = self.amplitude[head] else { continue };
             let [own, rough] = [amplitude, self.roughness[head]].map(|class| state.classes[class].size);
             let cells = before.cells(rough, own);
-            let is_wave = cells < self.heads.bases[head].cells() as f64;
+            let is_wave = (HELD..self.heads.bases[head].cells() as f64).contains(&cells);
             let (own, cells) = if is_wave { (own, cells) } else { (self.length.sqrt(), SHORTEST) };
             state.classes[amplitude].restart(own);
             state.classes[self.roughness[head]].restart(self.priors[head].roughness(own, cells));
