@@ -9,6 +9,7 @@ mod checkpoint;
 mod choice;
 mod compared;
 mod course;
+mod edges;
 mod layers;
 mod misfits;
 mod network;

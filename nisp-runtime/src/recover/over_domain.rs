@@ -17,6 +17,11 @@ fn step(points: usize) -> usize {
     points.div_ceil(MOST).max(1)
 }
 
+/// Those of a group's points that say how large a head is.
+pub(super) fn some(points: &[f64], inputs: usize) -> impl Iterator<Item = &[f64]> {
+    points.chunks_exact(inputs).step_by(step(points.len() / inputs))
+}
+
 impl Solution {
     /// Checks of sources that jolt in a record.
     pub(super) fn jolts(&self) -> Vec<Check> {
@@ -46,9 +51,7 @@ impl Solution {
         let inputs = self.scene().coordinates.len();
         let outward: Vec<_> = self.scene().coordinates.iter().map(|c| self.bound.system.outward(&c.unit)).collect();
         let some = |group: &Vec<f64>| {
-            let points = group.chunks_exact(inputs);
-            let step = step(points.len());
-            let along = points.step_by(step).flatten().zip(outward.iter().cycle());
+            let along = some(group, inputs).flatten().zip(outward.iter().cycle());
             along.map(|(&x, outward)| outward.of(Number::engine(x)).as_declared()).collect::<Vec<f64>>()
         };
         let points: Vec<f64> = self.bound.coordinates.iter().flat_map(some).collect();

@@ -17,8 +17,6 @@ use super::straight::{self, Straight};
 use super::triangle::{Row, Triangle};
 use crate::schema;
 
-/// Exponents of the unit of time.
-const SECOND: [f64; 7] = [0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0];
 /// Range of a stretched time over the width of the layer at its start.
 const LAYER: f64 = 100.0;
 
@@ -64,7 +62,7 @@ const fn of(order: usize, course: Course) -> Smoothness {
 
 /// True if something may be set off with the records of a scene: they are over time.
 pub(super) fn may_stretch(schema: &schema::Scene) -> bool {
-    schema.coordinates[0].unit.exponents == SECOND && schema.heads.iter().any(|head| head.source)
+    schema.coordinates[0].unit.is_time() && schema.heads.iter().any(|head| head.source)
 }
 
 /// How much faster than on average a stretched time passes, at a share of the record.

@@ -9,6 +9,7 @@ mod believed;
 mod between;
 mod blurred;
 mod clouds;
+pub(crate) mod edges;
 mod equations;
 mod filtered;
 mod free;
@@ -46,7 +47,7 @@ const FIRM: f64 = 0.25;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
-    /// `rhythm`, `filtered`, `repeated`, `polled`, `jolt`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
+    /// `rhythm`, `filtered`, `repeated`, `polled`, `jolt`, `edge`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
     /// `distance`, `seen`, `patch`, `determined`, `leaning`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
@@ -81,7 +82,10 @@ impl Verdict {
     /// they were measured: so does any other answer.
     pub(crate) fn contradicts(&self) -> bool {
         if self.failed().any(|check| {
-            matches!(check.check, "determined" | "leaning" | "filtered" | "repeated" | "polled" | "held" | "jolt")
+            matches!(
+                check.check,
+                "determined" | "leaning" | "filtered" | "repeated" | "polled" | "held" | "jolt" | "edge"
+            )
         }) {
             return true;
         }

@@ -15,7 +15,9 @@ impl Solution {
         let noise = noise::estimate(&self.bound);
         self.warnings.extend(self.uneven_noise(&noise));
         let mut answer = self.carried.answer(&self.bound);
-        let values = self.where_read(self.values_over_domain(), &answer);
+        let values = self.values_over_domain();
+        let edges = self.edges(&values);
+        let values = self.where_read(values, &answer);
         self.is_met_exactly = self.meets_data_exactly(&noise)
             && answer.told.iter().all(|told| told.size.is_some_and(|size| size > PLAIN));
         // Deviations are of an end that the run did not come to.
@@ -33,7 +35,7 @@ impl Solution {
                 self.verdict.checks.push(patches(head.name, values, level.as_engine()));
             }
         }
-        self.verdict.checks.extend(self.jolts());
+        self.verdict.checks.extend(self.jolts().into_iter().chain(edges));
         self.verdict.checks.extend(self.left_open());
         match (self.status, self.verdict.passed()) {
             (Status::Budget, true) if self.is_met_exactly && self.has_room() => self.status = Status::Converged,
