@@ -16,7 +16,6 @@ use super::{Local, LocalError};
 use crate::problem::Bound;
 use crate::solve::driver::Warning;
 use crate::solve::fault::Fault;
-use crate::units::Number;
 
 /// Stiffness of coefficients, and of their differences, for those that rows hardly see: functions at the edge of the domain.
 const RIDGE: f64 = 1e-6;
@@ -193,8 +192,7 @@ pub(super) fn sparse<'a>(
     let prior = settings.patches.filter(|_| declared.source)?;
     let is_below = heads.limits[head].is_some_and(|limits| limits.is_below(heads.offset[head]));
     let sign = if is_below { -1.0 } else { 1.0 };
-    let level = bound.system.inward(&declared.unit).of(Number::declared(prior.level));
-    let level = level.as_engine() / heads.scale[head] * sign;
+    let level = prior.least(bound, head) / heads.scale[head] * sign;
     Some(Sparse {
         heads,
         head,

@@ -9,6 +9,8 @@ use super::heads::Heads;
 use super::lattice::Lattice;
 use super::normal::Normal;
 use super::unseen::Unseen;
+use crate::problem::Bound;
+use crate::units::Number;
 
 /// A prior for a source that is zero nearly everywhere. Its penalties are those for clouds that are as noisy as a cell is
 /// wide: finer data can pretend smaller patches, so that penalties rise as noise falls, that of an area as the square of that
@@ -23,6 +25,14 @@ pub struct Patches {
     pub area: f64,
     /// Height over `level` beyond which a patch costs no more. What is lower is taken for noise.
     pub end: f64,
+}
+
+impl Patches {
+    /// The least that a head is where it is not zero, in the engine's units.
+    pub(crate) fn least(&self, bound: &Bound, head: usize) -> f64 {
+        let unit = &bound.problem.scene().schema.heads[head].unit;
+        bound.system.inward(unit).of(Number::declared(self.level)).as_engine()
+    }
 }
 
 /// Heights above this many levels are compressed.

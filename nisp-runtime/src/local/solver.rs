@@ -10,6 +10,8 @@ use super::refuse::refuse_what_networks_do;
 use super::surface::{Feet, Surface};
 use super::{Local, LocalError};
 use crate::problem::Bound;
+use crate::schema::{Term, TermKind};
+use crate::solve::vector::root_mean_square;
 
 /// Tests that see less than this share of the fullest one's weight are left out: they say next to nothing.
 const LEAST_MASS: f64 = 0.05;
@@ -17,6 +19,9 @@ const LEAST_MASS: f64 = 0.05;
 /// How far equations may be off, as a share of their natural size: about the error of splines on their lattice. Held to less,
 /// they would take that error for a load.
 const TOLERANCE: f64 = 1e-2;
+
+/// The same as a share of what a source adds to them where it is not zero.
+const OFF: f64 = 0.2;
 
 /// Least stiffness against a step of every field's coefficient, in tolerances over natural sizes: what rows tell is hardly
 /// slowed by it.
@@ -35,6 +40,8 @@ pub(super) struct Solver {
     pub(super) scalars: Vec<f64>,
     /// Size of the base lattice's cells, the largest.
     pub(super) cell: f64,
+    /// By group and term, what an equation is held to a share of.
+    sizes: Vec<Vec<f64>>,
     /// Coefficients, learned parameters and [`State::across`] whose feet are found for good.
     settled: Option<(Vec<f64>, Vec<f64>, f64)>,
 }
@@ -80,9 +87,52 @@ impl Solver {
         let scalars = bound.scalars.clone();
         let learned = vec![0.0; bound.learned.len()];
         let (bound, settings) = (bound.clone(), *settings);
-        let mut solver = Self { bound, settings, heads, outer, groups, surfaces, normal, scalars, cell, settled: None };
+        let mut solver = Self {
+            bound,
+            settings,
+            heads,
+            outer,
+            groups,
+            surfaces,
+            normal,
+            scalars,
+            cell,
+            sizes: Vec::new(),
+            settled: None,
+        };
+        solver.sizes = solver.sizes_beside_sources();
         solver.set_learned(&learned);
         Ok(solver)
+    }
+
+    /// By group and term, what an equation is held to a share of: its natural size, or what the least of a source adds to it, times so much that
+    /// equations may be off by [`OFF`] of that. Natural sizes are those of the steepest answer that is expected. For a membrane that is hardly
+    /// bulged they are a hundred times the pressure that touches it, and an equation that is off by a share of them says nothing of it.
+    fn sizes_beside_sources(&self) -> Vec<Vec<f64>> {
+        let mut sizes = self.bound.sizes.clone();
+        let Some(prior) = self.settings.patches else { return sizes };
+        let heads = &self.bound.problem.scene().schema.heads;
+        for (group, sizes) in self.groups.iter().zip(&mut sizes).filter(|(group, _)| !group.tests.is_empty()) {
+            let jets = group.schema.jets;
+            let is_source = |jet: &usize| heads[jets[*jet].head].source && jets[*jet].is_value();
+            let least = |jet: usize| prior.least(&self.bound, jets[jet].head);
+            let mut facts = group.facts(&self.heads, &vec![0.0; self.heads.len()]);
+            // At its bound a source has hardly a slope.
+            for jet in (0..jets.len()).filter(is_source) {
+                facts.jets[jet * facts.stride..][..facts.stride].fill(least(jet));
+            }
+            let equations = group.schema.terms.iter().zip(sizes);
+            let is_equation = |term: &Term| term.kind == TermKind::Residual && term.within.is_none();
+            for (term, size) in equations.filter(|(term, _)| is_equation(term)) {
+                let slopes = facts.slopes(group.kernel.programs, group.schema, term.first, &self.scalars);
+                let sources = term.jets.iter().copied().filter(is_source);
+                let added: f64 = sources.map(|jet| root_mean_square(slopes[jet].iter().copied()) * least(jet)).sum();
+                if added > 0.0 {
+                    *size = size.min(OFF / TOLERANCE * added);
+                }
+            }
+        }
+        sizes
     }
 
     /// Takes over the clouds and given parameters of a problem that is the same otherwise.
@@ -147,7 +197,7 @@ impl Solver {
             self.scalars[learned.slot] = *value;
         }
         for (at, group) in self.groups.iter_mut().enumerate() {
-            let terms = group.schema.terms.iter().zip(&self.bound.sizes[at]).zip(&self.bound.powers[at]);
+            let terms = group.schema.terms.iter().zip(&self.sizes[at]).zip(&self.bound.powers[at]);
             for ((term, size), powers) in terms {
                 let grown = pairs().zip(powers.iter());
                 let (grown, growth): (Vec<f64>, Vec<f64>) =

@@ -4,7 +4,6 @@ use super::Solution;
 use crate::facts::Told;
 use crate::noise::{self, Noise};
 use crate::solve::driver::{Status, WarningKind};
-use crate::units::Number;
 use crate::verdict::{Check, determined, judge, patches};
 
 impl Solution {
@@ -30,9 +29,8 @@ impl Solution {
         }
         self.verdict = judge(&self.bound, &answer, &values, &noise);
         if let Some(prior) = self.settings.carrier.patches_everywhere(self.scene()) {
-            for (head, values) in self.scene().heads.iter().zip(&values).filter(|(head, _)| head.source) {
-                let level = self.bound.system.inward(&head.unit).of(Number::declared(prior.level));
-                self.verdict.checks.push(patches(head.name, values, level.as_engine()));
+            for (at, head) in self.scene().heads.iter().enumerate().filter(|(_, head)| head.source) {
+                self.verdict.checks.push(patches(head.name, &values[at], prior.least(&self.bound, at)));
             }
         }
         self.verdict.checks.extend(self.jolts().into_iter().chain(edges));
