@@ -101,7 +101,7 @@ impl Entry {
 
     /// The time within which its answers are usually there.
     pub fn usual_budget(&self) -> Duration {
-        Duration::from_secs(if matches!(self.binding, Binding::Cloud(_)) { 30 } else { 10 })
+        Duration::from_secs(if self.sees() { 30 } else { 10 })
     }
 
     /// How its scenes over time are bound to tables, if that is what they are.

@@ -21,7 +21,7 @@ const LEAST_MASS: f64 = 0.05;
 const TOLERANCE: f64 = 1e-2;
 
 /// The same as a share of what a source adds to them where it is not zero.
-const OFF: f64 = 0.2;
+const OFF: f64 = 1.0 / 3.0;
 
 /// Least stiffness against a step of every field's coefficient, in tolerances over natural sizes: what rows tell is hardly
 /// slowed by it.

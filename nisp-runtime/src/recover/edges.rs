@@ -2,7 +2,7 @@
 
 use super::Solution;
 use super::over_domain::some;
-use crate::ends::ends;
+use crate::ends::{ends, ranges};
 use crate::schema::{Term, TermKind};
 use crate::verdict::{Check, edges};
 
@@ -27,10 +27,13 @@ impl Solution {
 
     /// Names of fields whose values are stated on both sides along every coordinate but time, and where.
     fn stated_around(&self) -> Vec<(&'static str, Vec<&[f64]>)> {
-        /// Shares of half the range within which a place is on a side.
-        const CLOSE: f64 = 0.1;
-        let (schema, scaling) = (self.scene(), &self.bound.scaling);
+        /// Share of the range within which a place is on a side.
+        const CLOSE: f64 = 0.05;
+        /// Places that say what is along them, at most.
+        const MOST: usize = 200;
+        let schema = self.scene();
         let inputs = schema.coordinates.len();
+        let ranges = ranges(&self.bound.coordinates, inputs);
         let in_space: Vec<usize> = (0..inputs).filter(|&at| !schema.coordinates[at].unit.is_time()).collect();
         let fields = schema.heads.iter().enumerate().filter(|(_, head)| !head.source);
         let stated = fields.map(|(head, field)| {
@@ -41,12 +44,15 @@ impl Solution {
                 group.terms.iter().any(|term| is_of_values(term) && reads(term)) && !self.is_beginning(*at)
             };
             let groups = schema.conditions().into_iter().filter(states);
-            (field.name, groups.flat_map(|at| some(&self.bound.coordinates[at], inputs)).collect::<Vec<&[f64]>>())
+            let places: Vec<&[f64]> = groups.flat_map(|at| some(&self.bound.coordinates[at], inputs)).collect();
+            let every = places.len().div_ceil(MOST).max(1) | 1;
+            (field.name, places.into_iter().step_by(every).collect::<Vec<&[f64]>>())
         });
         let is_around = |(_, places): &(&str, Vec<&[f64]>)| {
             let reaches = |&at: &usize| {
-                let (low, high) = ends(places.iter().map(|place| (place[at] - scaling.centre[at]) / scaling.half[at]));
-                low < CLOSE - 1.0 && high > 1.0 - CLOSE
+                let ((low, high), whole) = (ends(places.iter().map(|place| place[at])), ranges[at]);
+                let close = CLOSE * (whole.1 - whole.0);
+                low < whole.0 + close && high > whole.1 - close
             };
             !places.is_empty() && !in_space.is_empty() && in_space.iter().all(reaches)
         };

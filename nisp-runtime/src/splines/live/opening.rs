@@ -6,7 +6,7 @@
 use super::super::SplineSolution;
 use super::super::heads::Heads;
 use super::super::kept::KeptSplines;
-use crate::facts::Score;
+use crate::facts::{Answer, Score};
 use crate::noise;
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -17,6 +17,9 @@ use crate::verdict::{Verdict, judge};
 const LASTING: [&str; 3] = ["determined", "filtered", "polled"];
 /// Checks that say nothing of the beginning of a record: a source may be at rest there.
 const LATER: [&str; 1] = ["told"];
+
+/// What to do where splines may be too coarse: a stream has no other carrier.
+const BY_A_SOLVE: &str = "a solve of the whole record may take another one";
 
 /// Steps at most, several times as many as most records take: later rows wait meanwhile.
 const STEPS: u64 = 400;
@@ -97,7 +100,7 @@ fn judged(bound: &Bound, found: &SplineSolution, noise: &Noise) -> Verdict {
     let points = bound.coordinates.concat();
     let heads = 0..bound.problem.scene().schema.heads.len();
     let values: Vec<Vec<f64>> = heads.map(|head| found.kept.evaluate(head, &points)).collect();
-    judge(bound, &found.answer, &values, noise)
+    judge(bound, &Answer { finer: BY_A_SOLVE, ..found.answer.clone() }, &values, noise)
 }
 
 /// What the first failed check of some says.
