@@ -20,7 +20,8 @@ const LEAST_MASS: f64 = 0.05;
 /// they would take that error for a load.
 const TOLERANCE: f64 = 1e-2;
 
-/// The same as a share of what a source adds to them where it is not zero.
+/// How far they may be off as a share of what a source adds to them where it is not zero. Of a fifth a bubble was doubted whose modulus was known
+/// to a third.
 const OFF: f64 = 1.0 / 3.0;
 
 /// Least stiffness against a step of every field's coefficient, in tolerances over natural sizes: what rows tell is hardly
@@ -40,7 +41,7 @@ pub(super) struct Solver {
     pub(super) scalars: Vec<f64>,
     /// Size of the base lattice's cells, the largest.
     pub(super) cell: f64,
-    /// By group and term, what an equation is held to a share of.
+    /// By group and term, the size of which an equation may be off by [`TOLERANCE`].
     sizes: Vec<Vec<f64>>,
     /// Coefficients, learned parameters and [`State::across`] whose feet are found for good.
     settled: Option<(Vec<f64>, Vec<f64>, f64)>,
@@ -105,9 +106,9 @@ impl Solver {
         Ok(solver)
     }
 
-    /// By group and term, what an equation is held to a share of: its natural size, or what the least of a source adds to it, times so much that
-    /// equations may be off by [`OFF`] of that. Natural sizes are those of the steepest answer that is expected. For a membrane that is hardly
-    /// bulged they are a hundred times the pressure that touches it, and an equation that is off by a share of them says nothing of it.
+    /// By group and term, the size of which an equation may be off by [`TOLERANCE`]: its natural size, or a smaller one where that would be more than
+    /// [`OFF`] of what the least of a source adds to the equation. Natural sizes are those of the steepest answer that is expected. For a membrane
+    /// that is hardly bulged they are a hundred times the pressure that touches it, and an equation that is off by a share of them says nothing of it.
     fn sizes_beside_sources(&self) -> Vec<Vec<f64>> {
         let mut sizes = self.bound.sizes.clone();
         let Some(prior) = self.settings.patches else { return sizes };

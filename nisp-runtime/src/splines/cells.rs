@@ -45,8 +45,8 @@ pub(super) fn breakpoints(bound: &Bound, noise: &Noise) -> Vec<f64> {
 }
 
 /// True where a source may set in with the record, in a layer that its start is looked at more closely for. A long record is not
-/// one answer to one start. And a condition on a source's value says something of the source beside it, which it does not where the
-/// source may leave it at once.
+/// one answer to one start. Nor does a source set in whose value a condition states: a source that could leave this value at once would make
+/// the condition say nothing.
 pub(super) fn stretches(bound: &Bound) -> bool {
     let schema = bound.problem.scene().schema;
     let is_known = |(group, points): (&schema::Group, &Vec<f64>)| {
