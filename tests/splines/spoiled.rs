@@ -6,7 +6,20 @@ use nisp_interpreter::interpret;
 
 use crate::correlated::{ROWS, places, source, times, with};
 use crate::steps::swing;
-use crate::{normals, of, solve};
+use crate::{normals, of, simulated, solve};
+
+interpret! {
+    /// A vessel that drains, with a gauge of its height.
+    mod vessel {
+        units: off;
+        coordinates: t;
+        fields: h;
+        sources: q;
+        on motion { content: 12 * d(h, t) == q - 0.8 * h; }
+        on samples { observe h; }
+        scene filling { }
+    }
+}
 
 interpret! {
     /// The swing, of whose records some values are strays.
@@ -86,6 +99,31 @@ fn a_blow_is_a_force() {
     };
     let solution = answer(struck);
     assert!(solution.verdict.failed().all(|check| check.check != "jolt"), "{:?}", solution.verdict);
+}
+
+/// A vessel's heights leap where its gauge changes its range, and the inflow would be a peak between two rows. Heights behind that row are off,
+/// and the inflow with them. An inflow that is switched bends the heights.
+#[test]
+fn a_first_order_record_that_leaps_is_named() {
+    let times: Vec<f64> = (0..300).map(|row| 0.3 * f64::from(row)).collect();
+    let heights = |inflow: fn(f64) -> f64| simulated(&times, [0.4], |t, [h]| [(inflow(t) - 0.8 * h) / 12.0]);
+    let filled = |inflow: fn(f64) -> f64, read: fn(usize, f64) -> f64| {
+        let mut normal = normals(5);
+        let rows = heights(inflow).into_iter().enumerate();
+        let measured = rows.map(|(row, [h])| read(row, h) + 0.002 * normal()).collect();
+        let mut problem = Problem::new(vessel::scene("filling"));
+        problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+        problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
+        solve(&problem, Carrier::Splines)
+    };
+    let wave = |t: f64| 0.5 + 0.3 * (0.13 * t).sin();
+    assert_eq!(filled(wave, |_, h| h).status, Status::Converged);
+    let rescaled = filled(wave, |row, h| if row < 150 { h } else { 1.2 * h });
+    assert_named(&rescaled, "jolt", "`h` leaps from t = 44.7");
+    let moved = filled(wave, |row, h| if row < 70 { h } else { h - 0.1 });
+    assert_named(&moved, "jolt", "`q` makes up for it there alone");
+    let switched = filled(|t| if t < 40.0 { 0.3 } else { 0.9 }, |_, h| h);
+    assert!(switched.verdict.failed().all(|check| check.check != "jolt"), "{:?}", switched.verdict);
 }
 
 /// Strays of eighty deviations, one of 25 rows: under Huber's loss each pulls as a row of three deviations does.

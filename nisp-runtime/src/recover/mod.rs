@@ -10,6 +10,7 @@ mod choice;
 mod compared;
 mod course;
 mod edges;
+mod jolts;
 mod layers;
 mod misfits;
 mod network;

@@ -3,11 +3,8 @@
 use super::Solution;
 use crate::carrier::Estimate;
 use crate::facts::Answer;
-use crate::noise::median;
 use crate::reads::where_read;
-use crate::schema::{Head, TermKind};
 use crate::units::Number;
-use crate::verdict::{Check, jolts};
 
 /// Points of a group that say how large a head is, at most.
 const MOST: usize = 2000;
@@ -23,29 +20,6 @@ pub(super) fn some(points: &[f64], inputs: usize) -> impl Iterator<Item = &[f64]
 }
 
 impl Solution {
-    /// Checks of sources that jolt in a record.
-    pub(super) fn jolts(&self) -> Vec<Check> {
-        let [coordinate] = self.scene().coordinates else { return Vec::new() };
-        if !self.scene().heads.iter().any(|head| head.source) {
-            return Vec::new();
-        }
-        let groups = self.scene().groups.iter().zip(&self.bound.coordinates);
-        let observed = groups.filter(|(group, _)| group.terms.iter().any(|term| term.kind == TermKind::Observation));
-        let Some(mut rows) = observed.map(|(_, rows)| rows.clone()).max_by_key(Vec::len) else { return Vec::new() };
-        rows.sort_by(f64::total_cmp);
-        let Some(spacing) = median(rows.windows(2).map(|pair| pair[1] - pair[0]).collect()) else { return Vec::new() };
-        let between = rows.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]);
-        let places: Vec<f64> = between.chain(rows.last().copied()).collect();
-        let outward = self.bound.system.outward(&coordinate.unit);
-        let declared: Vec<f64> = places.iter().map(|&x| outward.of(Number::engine(x)).as_declared()).collect();
-        let sources = self.evaluate(&declared).into_iter().zip(self.scene().heads).filter(|(_, head)| head.source);
-        let check = |(estimate, head): (Estimate, &Head)| {
-            let course: Vec<(f64, f64)> = places.iter().copied().zip(estimate.values).collect();
-            jolts::check(head.name, (&course, spacing), |place| self.bound.place(&[place]))
-        };
-        sources.filter_map(check).collect()
-    }
-
     /// Values of all heads at points of all groups, `[head][point]` in the engine's units.
     pub(super) fn values_over_domain(&self) -> Vec<Vec<f64>> {
         let inputs = self.scene().coordinates.len();

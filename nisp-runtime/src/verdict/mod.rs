@@ -18,6 +18,7 @@ mod interpolated;
 pub(crate) mod jolts;
 pub(crate) mod known;
 pub(crate) mod leaning;
+pub(crate) mod leaps;
 mod learned;
 mod misfits;
 mod moving;

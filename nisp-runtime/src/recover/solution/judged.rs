@@ -33,7 +33,7 @@ impl Solution {
                 self.verdict.checks.push(patches(head.name, &values[at], prior.least(&self.bound, at)));
             }
         }
-        self.verdict.checks.extend(self.jolts().into_iter().chain(edges));
+        self.verdict.checks.extend(self.jolts(&noise).into_iter().chain(edges));
         self.verdict.checks.extend(self.left_open());
         match (self.status, self.verdict.passed()) {
             (Status::Budget, true) if self.is_met_exactly && self.has_room() => self.status = Status::Converged,
