@@ -71,7 +71,7 @@ fn a_session_keeps_its_scaling() {
 }
 
 /// A session with the pressed drumhead, its first cloud as noisy as this.
-fn pressed_session(noise: f64) -> Session {
+pub(crate) fn pressed_session(noise: f64) -> Session {
     let mut problem = Problem::new(scene::<drum::pressed::Scene>());
     problem.set_parameter("T", T).unwrap();
     bind(&mut problem, 12_000.0, 12.0, noise);

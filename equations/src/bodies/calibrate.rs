@@ -7,7 +7,8 @@ use nisp_data::{Cloud, DataError};
 use super::given::Given;
 use crate::PrepareError;
 use crate::contact::{
-    CALIBRATES, Calibration, Contact, Deviation, Membrane, Off, Pose, Quality, References, Values, length, minus,
+    CALIBRATES, Calibration, Contact, Deviation, Learned, Membrane, OPEN, Off, Pose, Quality, References, Values,
+    length, minus,
 };
 use crate::entry::Entry;
 use crate::request::Request;
@@ -51,8 +52,7 @@ impl References {
         Ok(Self { frames: request.data.len(), cloud, given: known })
     }
 
-    /// What a solution says of the sensor: `values` are those of its heads, `learned` its learned scalars in declared units, and
-    /// `young_deviation` the standard deviation of Young's modulus in pascals, where there is one.
+    /// What a solution says of the sensor: `values` are those of its heads.
     ///
     /// # Errors
     /// A scene that does not move its surface, or that learned no pose.
@@ -62,11 +62,10 @@ impl References {
         scene: &str,
         contact: &Contact,
         values: &Values<'_>,
-        learned: &dyn Fn(&str) -> Option<f64>,
-        young_deviation: Option<f64>,
+        learned: Learned<'_>,
     ) -> Result<Calibration, PrepareError> {
         let missing = |what: &str| PrepareError::Data(DataError::Invalid(format!("the scene `{scene}` has no {what}")));
-        let of = |name: &str| learned(name).ok_or_else(|| missing(&format!("learned `{name}`")));
+        let of = |name: &str| (learned.value)(name).ok_or_else(|| missing(&format!("learned `{name}`")));
         let all = |names: [&str; 3]| -> Result<[f64; 3], PrepareError> {
             let [x, y, z] = names.map(of);
             Ok([x?, y?, z?])
@@ -100,13 +99,24 @@ impl References {
             pressure,
             misfit_m: spread(offs.iter().map(|off| off.distance)),
             noise_m: spread(left),
-            young_deviation,
+            young_deviation: learned.young_deviation,
         };
         let held = format!(
             "free frames tell E * t over the pressure, not both: the gauge pressure was held at {pressure} Pa and the thickness \
              at the given one; a pressure that is off by one per cent makes E, and every force found with it, off by one per cent"
         );
-        Ok(Calibration { equation: entry.name.into(), scene: scene.into(), held, found, membrane, pose, deviation })
+        let open = learned.together.unwrap_or_default().into_iter();
+        let open = open.map(|shares| OPEN.map(String::from).into_iter().zip(shares).collect()).collect();
+        Ok(Calibration {
+            equation: entry.name.into(),
+            scene: scene.into(),
+            held,
+            found,
+            membrane,
+            pose,
+            open,
+            deviation,
+        })
     }
 
     /// How far all points are from the surface of a solution; nothing where it has no displacements.

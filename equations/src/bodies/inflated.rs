@@ -143,6 +143,11 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         Some(calibration) => {
             let tolerance = Tolerance { size: calibration.found.misfit_m, region: region(a, b) };
             problem.set_tolerance("surface", "cloud", tolerance)?;
+            for shares in &calibration.open {
+                let is_said = |name: &str| request.parameters.iter().any(|(own, _)| own == name);
+                let shares = shares.iter().filter(|(name, _)| !is_said(name));
+                problem.set_uncertain(&shares.map(|(name, share)| (name.as_str(), *share)).collect::<Vec<_>>())?;
+            }
         }
         // The camera looks up.
         None if local.is_some() && !calibrates => problem.set_view("surface", "cloud", [0.0, 0.0, 1.0])?,

@@ -1,5 +1,6 @@
 //! What free frames told of a sensor: a file that is written once and read with every frame.
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use nisp_data::Cloud;
@@ -12,6 +13,19 @@ use crate::PrepareError;
 
 /// What the scenes that calibrate are called; the rest of their names is that of the law that they take.
 pub(crate) const CALIBRATES: &str = "calibrate";
+
+/// Material numbers that free frames hardly tell from each other.
+pub const OPEN: [&str; 2] = ["E", "stretch"];
+
+/// What a solution of free frames learned of a sensor.
+pub struct Learned<'a> {
+    /// Values of learned scalars by their names, in declared units.
+    pub value: &'a dyn Fn(&str) -> Option<f64>,
+    /// The standard deviation of Young's modulus in pascals, where there is one.
+    pub young_deviation: Option<f64>,
+    /// Along which shares of their values numbers of [`OPEN`] may be off, as [`nisp::Solution::learned_together`] has them.
+    pub together: Option<Vec<Vec<f64>>>,
+}
 
 /// A sensor as its free frames show it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,6 +42,10 @@ pub struct Calibration {
     pub membrane: Membrane,
     /// Where the rim is in the cloud's frame.
     pub pose: Pose,
+    /// Along which shares of their values material numbers may be off together, each of one standard deviation and independent of the
+    /// others.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub open: Vec<BTreeMap<String, f64>>,
     /// What the theory does not explain.
     pub deviation: Deviation,
 }
@@ -109,8 +127,7 @@ impl Calibration {
         Ok(format!("{about}{}", toml::to_string(self)?))
     }
 
-    /// A warning where Young's modulus is hardly known: forces may then be off by more than their deviations. A softer membrane that is
-    /// stretched more at rest has about the same free shape.
+    /// A warning where Young's modulus is hardly known. A softer membrane that is stretched more at rest has about the same free shape.
     pub fn doubt(&self) -> Option<String> {
         /// Deviation of the modulus, as a share of it, up to which clouds leave more of a force open than the modulus does.
         const KNOWN: f64 = 0.05;
@@ -118,7 +135,7 @@ impl Calibration {
         (share > KNOWN).then(|| {
             format!(
                 "free frames tell `E` to {:.0} % only, since a stretch at rest makes up for it: forces found with this calibration may be off \
-                 by up to half of that share, which their deviations do not hold",
+                 by about half of that share, and their deviations say so",
                 100.0 * share
             )
         })

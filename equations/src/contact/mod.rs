@@ -12,7 +12,7 @@ mod pose;
 mod score;
 
 pub(crate) use calibration::CALIBRATES;
-pub use calibration::{Calibration, Membrane, Quality, References};
+pub use calibration::{Calibration, Learned, Membrane, OPEN, Quality, References};
 pub use deviation::Deviation;
 pub(crate) use deviation::Off;
 pub use face::{Face, Load};

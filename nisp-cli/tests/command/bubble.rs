@@ -104,7 +104,16 @@ fn a_calibrated_sensor_finds_the_force() {
     let pressed =
         answer(&place, "solve bubble --calibration sensor/calibration.toml --data pressed.csv --set p=5636.3");
     let force = pressed["errors"]["force_N"].as_f64().unwrap();
-    assert!((force - 8.2856).abs() < 0.25, "{force}");
+    let deviation = pressed["force_sd"].as_f64().unwrap();
+    assert!((force - 8.2856).abs() < 0.25 && (force - 8.2856).abs() < 3.0 * deviation, "{force} {deviation}");
+    let learned = |name: &str| {
+        let all = sensor["learned"].as_array().unwrap();
+        all.iter().find(|learned| learned["name"] == name).unwrap()["value"].as_f64().unwrap()
+    };
+    let said = format!("--set E={} --set stretch={}", learned("E"), learned("stretch"));
+    let solve = "solve bubble --calibration sensor/calibration.toml --data pressed.csv --set p=5636.3";
+    let known = answer(&place, &format!("{solve} {said}"))["force_sd"].as_f64().unwrap();
+    assert!(known < deviation, "what is said is known: {known} {deviation}");
     assert_eq!(pressed["patches"].as_array().unwrap().len(), 1, "{}", pressed["patches"]);
     let free = answer(&place, "solve bubble --calibration sensor/calibration.toml --data free.csv --set p=5400");
     assert!(free["errors"]["force_N"].as_f64().unwrap() < 0.3, "{}", free["errors"]);

@@ -3,10 +3,11 @@
 use super::normal::factor::Factor;
 use super::phase::{CONVEX_STEPS, Phase, WARM_STEPS};
 use super::place::{Place, State};
+use super::scored::Asked;
 use super::solver::{LEAST_DAMPING, Solver};
 use super::{LocalError, Stage};
 use crate::carrier::Progress;
-use crate::facts::{Known, Score};
+use crate::facts::Known;
 use crate::solve::driver::{Flow, Status, Warning, WarningKind};
 use crate::solve::fault::Fault;
 use crate::solve::method::FAULTS_IN_A_ROW;
@@ -177,7 +178,7 @@ impl Solver {
 
     /// One step; also what it found on its way. Steps are damped, as Levenberg and Marquardt have it, so that coefficients that
     /// hardly any row sees stay where they are. A step that leads far uphill is shortened, then taken again with more damping.
-    /// Some of what is known is asked for its scores on the way.
+    /// Some of what is known is asked about on the way.
     pub(super) fn step(
         &mut self,
         state: &State,
@@ -199,7 +200,7 @@ impl Solver {
         let to_rest = |(free, at): (&bool, &f64)| if *free { 0.0 } else { -at };
         let held: Vec<f64> = state.free.iter().zip(&state.theta).map(to_rest).collect();
         let (mut damping, mut wanted) = (0.0, state.damping);
-        let (next, after, factor, scores) = loop {
+        let (next, after, factor, told) = loop {
             fields.iter().for_each(|&at| self.normal.add_stiffness(at, wanted - damping));
             damping = wanted;
             let factor = self.normal.factor().ok_or(LocalError::Factorisation)?;
@@ -212,7 +213,7 @@ impl Solver {
             let boldest = shared[..state.learned.len()].iter().fold(0.0f64, |most, x| most.max(x.abs()));
             let all = if regress { 1.0 } else { (FARTHEST / largest).min(BOLDEST / boldest).min(1.0) };
             let calmer = (damping / STRONGER).max(LEAST_DAMPING);
-            let scores = self.scores_of(asked, &State { noise, ..state.clone() }, &factor);
+            let told = self.asked_of(asked, &State { noise, ..state.clone() }, &factor);
             let from = State { noise, used, damping: calmer, lowest, ..state.clone() };
             let most = if regress { f64::INFINITY } else { UPHILL * lowest };
             let (mut next, after) = self.shortened(&from, (&step, &shared), all, (phase, most));
@@ -221,11 +222,11 @@ impl Solver {
                 if !regress {
                     next.free = self.free_after(&next, &self.normal.slopes_after(&step, &shared));
                 }
-                break (next, after, factor, scores);
+                break (next, after, factor, told);
             }
             wanted *= STRONGER;
         };
-        Ok((next, Found { loss, gain: before - after, rows, factor, damping, scores }))
+        Ok((next, Found { loss, gain: before - after, rows, factor, damping, told }))
     }
 
     /// The state after the longest share of a step that leaves no more than `most` as the sum of squares, or after the shortest;
@@ -262,7 +263,7 @@ impl Solver {
     }
 }
 
-/// The loss before a step, from so many rows, what the step gained, the factorised matrix, and the scores that were asked for.
+/// The loss before a step, from so many rows, what the step gained, the factorised matrix, and what was asked about.
 pub(super) struct Found {
     pub(super) loss: f64,
     gain: f64,
@@ -270,7 +271,7 @@ pub(super) struct Found {
     pub(super) factor: Factor,
     /// Stiffness against the step.
     damping: f64,
-    pub(super) scores: Vec<Option<Score>>,
+    pub(super) told: Vec<Asked>,
 }
 
 fn mean(values: &[f64]) -> f64 {

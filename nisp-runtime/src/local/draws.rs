@@ -8,6 +8,7 @@ use rand::rngs::StdRng;
 
 use super::block::Block;
 use super::integrals::Integral;
+use super::together::Together;
 use crate::network::normal;
 
 /// Draws: a standard deviation is known to within `1 / sqrt(2 * 64)`, 9 %.
@@ -37,6 +38,18 @@ impl Deviations {
         let mut random = StdRng::seed_from_u64(1);
         for draw in &mut self.coefficients {
             draw.iter_mut().zip(deviations).for_each(|(x, deviation)| *x += deviation * normal(&mut random));
+        }
+    }
+
+    /// Adds to every draw what follows numbers that are off by normal ones of their standard deviations.
+    pub(super) fn follow(&mut self, all: &[Together]) {
+        let mut random = StdRng::seed_from_u64(2);
+        for (draw, learned) in self.coefficients.iter_mut().zip(&mut self.learned) {
+            for own in all {
+                let times = normal(&mut random);
+                draw.iter_mut().zip(&own.coefficients).for_each(|(x, moved)| *x += times * moved);
+                learned.iter_mut().zip(&own.learned).for_each(|(x, moved)| *x += times * moved);
+            }
         }
     }
 }

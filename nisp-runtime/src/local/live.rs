@@ -5,6 +5,7 @@ use super::kept::KeptLattices;
 use super::phase::CONVEX_STEPS;
 use super::place::State;
 use super::solver::Solver;
+use super::together::{together, uncertain};
 use super::{LocalError, LocalSolution};
 use crate::facts::{Known, Score};
 use crate::problem::Bound;
@@ -42,10 +43,14 @@ impl Live {
         };
         let (convex, _) = self.solver.step(&self.state, CONVEX_STEPS, false, &[])?;
         let place = self.solver.place(&convex, 1);
-        let (state, found) = self.solver.step(&convex, CONVEX_STEPS + 1, false, &self.known[turns.clone()])?;
+        let problem = &self.solver.bound.problem;
+        let asked = [&self.known[turns.clone()], &uncertain(problem)].concat();
+        let (state, found) = self.solver.step(&convex, CONVEX_STEPS + 1, false, &asked)?;
         self.state = state;
         self.scores.resize(self.known.len(), None);
-        self.scores[turns.clone()].copy_from_slice(&found.scores);
+        let told = self.scores[turns.clone()].iter_mut().zip(&found.told);
+        told.for_each(|(score, told)| *score = told.score);
+        let together = together(&self.solver.bound.problem, &asked, &found.told, self.state.learned.len());
         self.turn = turns.end % self.known.len().max(1);
         let mut warnings = self.solver.doubts(found.loss, found.rows, CONVEX_STEPS);
         let status = if warnings.is_empty() { Status::Converged } else { Status::NotConverged };
@@ -67,6 +72,7 @@ impl Live {
             loss: found.loss,
             warnings,
             factor,
+            together,
             checkpoint: place.save(0, 1),
             answer,
             misfits: self.solver.misfits(&self.state),

@@ -52,6 +52,7 @@ mod surface;
 mod tabled;
 mod taken;
 mod testing;
+mod together;
 mod unseen;
 
 use std::time::{Duration, Instant};
@@ -59,7 +60,7 @@ use std::time::{Duration, Instant};
 use thiserror::Error;
 
 use crate::carrier::Progress;
-use crate::facts::Answer;
+use crate::facts::{Answer, Score};
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status, Warning};
 use crate::solve::fault::Fault;
@@ -72,6 +73,7 @@ pub use prior::Patches;
 use course::End;
 use normal::factor::Factor;
 use solver::Solver;
+use together::Together;
 
 /// How fine the local functions are, and what is known of the sources.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,6 +128,8 @@ pub(crate) struct LocalSolution {
     pub(crate) loss: f64,
     pub(crate) warnings: Vec<Warning>,
     factor: Option<Factor>,
+    /// What follows given numbers that may be off.
+    together: Vec<Together>,
     /// Where the solver stopped.
     pub(crate) checkpoint: State,
     /// What the verdict is made from.
@@ -175,22 +179,26 @@ pub(crate) fn solve(
     let solved = matches!(end.status, Status::Converged | Status::Budget);
     let has_time_for = |steps: f64| end.status == Status::Converged || stage.has_time(steps * end.longest);
     // What an answer rests on matters more than its error bars.
-    let scores = if solved && has_time_for(course::ASKED) { solver.scores(&end) } else { None }.unwrap_or_default();
+    let told = if solved && has_time_for(course::ASKED) { solver.asked(&end) } else { None }.unwrap_or_default();
     let has_time = has_time_for(course::BARS);
     let heads = solver.heads.clone();
     let is_resolvable = end.status == Status::Converged && stage.has_time(resolved::COST * end.longest);
     let bars = || (solved && has_time).then(|| solver.deviations(&end.state)).flatten().unwrap_or_default();
     let resolve = || is_resolvable.then(|| resolved::unresolved(bound, settings, &heads, &end.state)).flatten();
-    let (deviations, unresolved) = rayon::join(bars, resolve);
+    let (mut deviations, unresolved) = rayon::join(bars, resolve);
+    let together = together::together(&bound.problem, &solver.known(), &told, end.state.learned.len());
+    deviations.follow(&together);
     end.warnings.extend(unresolved);
     end.warnings.extend(solver.rests_on_the_prior());
     let mut answer = solver.answer(&end.state);
     answer.moved = (end.status != Status::Converged).then_some(end.moved);
+    let scores: Vec<Option<Score>> = told.into_iter().map(|told| told.score).collect();
     answer.scores = scores.iter().copied().flatten().collect();
     let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     let kept = KeptLattices { heads, theta: state.theta.clone(), learned: state.learned.clone(), draws: deviations };
-    let solution = LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits };
+    let solution =
+        LocalSolution { kept, status, iterations, loss, warnings, factor, together, checkpoint, answer, misfits };
     Ok((solution, Live::new(solver, state, scores)))
 }
 
@@ -224,12 +232,17 @@ impl LocalSolution {
         self.factor.as_ref()?.learned_variance(at).map(|variance| variance.max(0.0).sqrt())
     }
 
+    /// Covariance of some learned scalars' parameters where the others are as they are, row by row.
+    pub(crate) fn covariance_of(&self, learned: &[usize]) -> Option<Vec<f64>> {
+        self.factor.as_ref()?.covariance_of(learned)
+    }
+
     /// Standard deviation of a weighted sum of a head's values at points in the engine's units, flat.
     pub(crate) fn deviation_of_sum(&self, head: usize, points: &[f64], weights: &[f64]) -> Option<f64> {
         let weights = self.kept.weights_of_sum(head, points, weights);
         self.kept.deviation_of_sum(&weights).or_else(|| {
-            let variance = self.factor.as_ref()?.variance_of_sum(&weights)?;
-            Some(variance.max(0.0).sqrt())
+            let variance = self.factor.as_ref()?.variance_of_sum(&weights)?.max(0.0);
+            Some((variance + together::variance_of_sum(&self.together, &weights)).sqrt())
         })
     }
 }

@@ -57,20 +57,31 @@ impl Scored {
     }
 }
 
-/// Scores beside what rows say of the unknowns, `J^T r`, to which a prior may belong; nothing of what rows do not tell from these.
-pub(super) fn scores(
+/// What an answer tells of a number.
+#[derive(Clone, Default)]
+pub(super) struct Asked {
+    /// Its score; nothing of what rows do not tell from the unknowns.
+    pub(super) score: Option<Score>,
+    /// How the coefficients and the unknowns of the border follow a change of the number, in shares of it.
+    pub(super) follow: [Vec<f64>; 2],
+}
+
+/// What is told beside what rows say of the unknowns, `J^T r`, to which a prior may belong; nothing where the matrix leaves unknowns open.
+pub(super) fn asked(
     scored: &[Scored],
     factor: &Factor,
     (gradient, below): (&[f64], &[f64]),
     by_prior: bool,
-) -> Vec<Option<Score>> {
+) -> Vec<Asked> {
     let right: Vec<&[f64]> = scored.iter().map(|own| own.right.as_slice()).collect();
     let on_border: Vec<&[f64]> = scored.iter().map(|own| own.below.as_slice()).collect();
-    let Some(solutions) = factor.solve_all(&right, &on_border) else { return vec![None; scored.len()] };
-    let score = |(own, (step, shared)): (&Scored, &(Vec<f64>, Vec<f64>))| {
-        own.score((step, shared), (gradient, below), by_prior)
+    let Some(solutions) = factor.solve_all(&right, &on_border) else { return vec![Asked::default(); scored.len()] };
+    let told = |(own, (step, shared)): (&Scored, (Vec<f64>, Vec<f64>))| {
+        let score = own.score((&step, &shared), (gradient, below), by_prior);
+        // Rows with the number moved are met by a step that takes that back.
+        Asked { score, follow: [step, shared].map(|own| own.into_iter().map(|x| -x).collect()) }
     };
-    scored.iter().zip(&solutions).map(score).collect()
+    scored.iter().zip(solutions).map(told).collect()
 }
 
 /// Adds to sums over the coefficients and over the learned scalars the slopes of a block's rows, each times a number.

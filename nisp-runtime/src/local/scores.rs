@@ -7,32 +7,32 @@ use super::course::End;
 use super::normal::factor::Factor;
 use super::phase::Phase;
 use super::place::State;
-use super::scored::{Scored, scores};
+use super::scored::{Asked, Scored, asked};
 use super::solver::Solver;
 use super::surface::Surface;
-use crate::facts::{Known, Score};
+use crate::facts::Known;
 use crate::given::{SMALL, given, slope};
 
 impl Solver {
-    /// Scores of all that is [known](Solver::known), from the last step's equations if they are those of the answer; none where the matrix
-    /// cannot be factorised.
-    pub(super) fn scores(&mut self, end: &End) -> Option<Vec<Option<Score>>> {
+    /// What an answer tells of all that is [known](Solver::known), from the last step's equations if they are those of the answer; nothing
+    /// where the matrix cannot be factorised.
+    pub(super) fn asked(&mut self, end: &End) -> Option<Vec<Asked>> {
         let known = self.known();
         if let (Some(linearised), Some(factor)) = (&end.linearised, &end.factor) {
             self.find_feet(linearised);
-            return Some(self.scores_of(&known, linearised, factor));
+            return Some(self.asked_of(&known, linearised, factor));
         }
         let state = &end.state;
         self.find_feet(state);
         self.assemble(state, state.noise, Phase::Concave).ok()?;
         self.normal.set_free(Some(&state.free))?;
         let factor = self.normal.factor()?;
-        Some(self.scores_of(&known, state, &factor))
+        Some(self.asked_of(&known, state, &factor))
     }
 
-    /// Scores of some of what is known, from the normal equations as they are assembled about a state and factorised: they are
-    /// those of where a step leads, as far as rows are linear. Nothing of what rows do not tell from the unknowns.
-    pub(super) fn scores_of(&mut self, known: &[Known], state: &State, factor: &Factor) -> Vec<Option<Score>> {
+    /// What is told of some of what is known, from the normal equations as they are assembled about a state and factorised: scores are
+    /// those of where a step leads, as far as rows are linear.
+    pub(super) fn asked_of(&mut self, known: &[Known], state: &State, factor: &Factor) -> Vec<Asked> {
         if known.is_empty() {
             return Vec::new();
         }
@@ -46,7 +46,7 @@ impl Solver {
         for surface in &self.surfaces {
             self.add_surface(surface, state, &learned, &mut all);
         }
-        scores(&all, factor, (&self.normal.gradient, &self.normal.border_gradient), true)
+        asked(&all, factor, (&self.normal.gradient, &self.normal.border_gradient), true)
     }
 
     /// What the problem takes for known: given numbers, and the place, the direction and the size of every cloud that has a

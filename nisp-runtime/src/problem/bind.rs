@@ -135,7 +135,10 @@ impl Bound {
         let (schema, bindings) = (problem.scene.schema, problem.bindings()?);
         let is_same = |(new, old): (&&Binding, &Option<Binding>)| old.as_ref().is_some_and(|old| new.is_alike(old));
         let is_counted_alike = problem.robust == self.problem.robust;
-        if !is_counted_alike || !bindings.iter().zip(&self.problem.groups).all(is_same) {
+        if !is_counted_alike
+            || problem.uncertain != self.problem.uncertain
+            || !bindings.iter().zip(&self.problem.groups).all(is_same)
+        {
             return Ok(None);
         }
         let clouds = bindings.iter().zip(schema.groups);

@@ -37,6 +37,8 @@ pub struct Problem {
     groups: Vec<Option<Binding>>,
     /// Whether observations with a squared loss get a robust one.
     robust: bool,
+    /// Given parameters that may be off together: their slots, and the share of each by which it is off at one standard deviation.
+    pub(crate) uncertain: Vec<Vec<(usize, f64)>>,
 }
 
 /// Points of a group, flat and point by point, with what belongs to each.
@@ -126,7 +128,8 @@ impl Problem {
             Origin::Literal(value) => Some(value),
             Origin::HeadScale(_) | Origin::SideScale { .. } => None,
         });
-        Self { scene, scalars: scalars.collect(), groups: vec![None; scene.schema.groups.len()], robust: false }
+        let groups = vec![None; scene.schema.groups.len()];
+        Self { scene, scalars: scalars.collect(), groups, robust: false, uncertain: Vec::new() }
     }
 
     /// The scene.
@@ -160,15 +163,36 @@ impl Problem {
     /// No such parameter, or a value that is not finite or outside of its declared range.
     pub fn set_parameter(&mut self, name: &str, value: f64) -> Result<(), BindError> {
         let scalars = self.scene.schema.scalars;
-        let at = scalars.iter().position(|s| !name.is_empty() && s.name == name).ok_or_else(|| {
-            BindError::unknown("parameter", name, scalars.iter().map(|s| s.name).filter(|n| !n.is_empty()))
-        })?;
+        let at = self.slot(name)?;
         if !value.is_finite() {
             return Err(BindError::Parameter { name: name.into(), value });
         }
         let value = scalars[at].unit.factor.of(Number::declared(value));
         error::within(&scalars[at], value)?;
         self.scalars[at] = Some(value);
+        Ok(())
+    }
+
+    /// The slot of a parameter.
+    fn slot(&self, name: &str) -> Result<usize, BindError> {
+        let scalars = self.scene.schema.scalars;
+        scalars.iter().position(|s| !name.is_empty() && s.name == name).ok_or_else(|| {
+            BindError::unknown("parameter", name, scalars.iter().map(|s| s.name).filter(|n| !n.is_empty()))
+        })
+    }
+
+    /// Says that given parameters may be off together: by these shares of their values at one standard deviation, with signs. What is said
+    /// in several calls is independent. Error bars of local functions that find contacts on surfaces hold it; other carriers do not.
+    ///
+    /// # Errors
+    /// No such parameter, or a share that is not finite.
+    pub fn set_uncertain(&mut self, shares: &[(&str, f64)]) -> Result<(), BindError> {
+        let share = |&(name, value): &(&str, f64)| {
+            let slot = self.slot(name)?;
+            if value.is_finite() { Ok((slot, value)) } else { Err(BindError::Parameter { name: name.into(), value }) }
+        };
+        let own = shares.iter().map(share).collect::<Result<_, _>>()?;
+        self.uncertain.push(own);
         Ok(())
     }
 

@@ -63,6 +63,10 @@ pub(super) trait Carried: Send {
     }
     /// Learned scalars and their standard deviations.
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)>;
+    /// Along which shares of their values some learned scalars may be off together, as [`super::Solution::learned_together`] has them.
+    fn together(&self, _bound: &Bound, _learned: &[usize]) -> Option<Vec<Vec<f64>>> {
+        None
+    }
     /// How far the rows of a term are off, and what they count as known to.
     fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>);
     /// What the verdict is made from.

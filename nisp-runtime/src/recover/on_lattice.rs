@@ -1,5 +1,7 @@
 //! Local functions as a carrier.
 
+use nalgebra::{Cholesky, DMatrix};
+
 use super::carried::{Carried, Carrier, Solved, Values, heads, learned};
 use super::course::Course;
 use super::{Optimizer, RecoverError, Settings, Width, undetermined};
@@ -83,6 +85,20 @@ impl Carried for LocalSolution {
 
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)> {
         learned(bound, self.kept.learned.iter().enumerate().map(|(at, &x)| (x, self.learned_deviation(at))))
+    }
+
+    fn together(&self, bound: &Bound, learned: &[usize]) -> Option<Vec<Vec<f64>>> {
+        let covariance = DMatrix::from_row_slice(learned.len(), learned.len(), &self.covariance_of(learned)?);
+        let mut root = Cholesky::new(covariance)?.unpack();
+        // All of what the first may be off by, and not only where the rest stays as it is.
+        let first = self.learned_deviation(*learned.first()?)? / root[(0, 0)];
+        root.column_mut(0).scale_mut(first);
+        let share = |(row, &at): (usize, &usize), direction: usize| {
+            let (value, slope) = bound.learned[at].map.at(self.kept.learned[at]);
+            root[(row, direction)] * slope / value
+        };
+        let direction = |direction: usize| learned.iter().enumerate().map(|at| share(at, direction)).collect();
+        Some((0..learned.len()).map(direction).collect())
     }
 
     fn misfits(&mut self, group: usize, term: usize) -> (Vec<f64>, Option<f64>) {

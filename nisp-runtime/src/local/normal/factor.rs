@@ -94,6 +94,13 @@ impl Factor {
         self.schur.clone().lu().solve(&unit).map(|column| column[at])
     }
 
+    /// Covariance of some learned scalars' parameters where the others are as they are, row by row.
+    pub(in super::super) fn covariance_of(&self, learned: &[usize]) -> Option<Vec<f64>> {
+        let of = |row: usize, column: usize| self.schur[(learned[row], learned[column])];
+        let covariance = DMatrix::from_fn(learned.len(), learned.len(), of).try_inverse()?;
+        Some(covariance.transpose().as_slice().to_vec())
+    }
+
     /// Solutions without the border, for several right-hand sides: the factors are read once for some of them.
     pub(super) fn solve_free(&self, right: &[impl AsRef<[f64]>]) -> Option<Vec<Vec<f64>>> {
         match &self.part {

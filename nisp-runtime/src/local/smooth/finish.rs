@@ -90,5 +90,6 @@ pub(super) fn finish(
     }
     kept.draws.widen(&beyond);
     let factor = Some(factor).filter(|_| wants_bars);
-    Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, checkpoint, answer, misfits })
+    let together = Vec::new();
+    Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, together, checkpoint, answer, misfits })
 }

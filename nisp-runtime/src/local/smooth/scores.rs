@@ -14,7 +14,7 @@ use crate::facts::{Known, LARGER, Score};
 use crate::given::{SMALL, given, slope};
 use crate::local::block::Block;
 use crate::local::rows::Evaluated;
-use crate::local::scored::{Scored, add, scores};
+use crate::local::scored::{Scored, add, asked};
 use crate::local::surface::Surface;
 
 /// Steps that all scores take, about, and that each number adds.
@@ -75,7 +75,7 @@ impl Solver<'_> {
         }
         // The border holds the misfits of integrals.
         below[slopes.len()..].copy_from_slice(&self.normal.border_gradient[slopes.len()..]);
-        Some(scores(&scored, &factor, (&gradient, &below), false).into_iter().flatten().collect())
+        Some(asked(&scored, &factor, (&gradient, &below), false).into_iter().filter_map(|told| told.score).collect())
     }
 
     /// The scalars with a little more and a little less of one of them.

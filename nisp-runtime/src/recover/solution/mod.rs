@@ -215,6 +215,19 @@ impl Solution {
             .collect()
     }
 
+    /// Along which shares of their values learned scalars may be off together: a row for each of as many independent directions as there
+    /// are names, of one standard deviation. In the first, the first scalar is off by all of its deviation, and the rest follow it where
+    /// everything else is as it was found; the others are what is left then. What
+    /// [`Problem::set_uncertain`](crate::Problem::set_uncertain) takes. None for names that were not learned, where
+    /// [`Solution::learned`] has no deviations, and for carriers other than local functions.
+    pub fn learned_together(&self, names: &[&str]) -> Option<Vec<Vec<f64>>> {
+        let slot = |name: &&str| {
+            self.bound.learned.iter().position(|learned| self.scene().scalars[learned.slot].name == *name)
+        };
+        let slots: Vec<usize> = names.iter().map(slot).collect::<Option<_>>()?;
+        self.carried.together(&self.bound, &slots).filter(|_| self.has_bars())
+    }
+
     /// How well every term is met.
     pub fn terms(&mut self) -> Vec<TermReport> {
         let mut reports = Vec::new();

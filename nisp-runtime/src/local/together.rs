@@ -1,0 +1,47 @@
+//! Given numbers that may be off together, and what of an answer follows them.
+
+use super::scored::Asked;
+use crate::facts::Known;
+use crate::problem::Problem;
+use crate::solve::vector;
+
+/// How an answer moves where given numbers are off together by one standard deviation: its coefficients, and the parameters of its learned
+/// scalars.
+#[derive(Clone, Debug)]
+pub(super) struct Together {
+    pub(super) coefficients: Vec<f64>,
+    pub(super) learned: Vec<f64>,
+}
+
+/// Every number that may be off, once.
+pub(super) fn uncertain(problem: &Problem) -> Vec<Known> {
+    let mut slots: Vec<usize> = problem.uncertain.iter().flatten().map(|(slot, _)| *slot).collect();
+    slots.sort_unstable();
+    slots.dedup();
+    slots.into_iter().map(Known::Scalar).collect()
+}
+
+/// What follows all that may be off, where this was told of what is known, of which so many scalars are learned.
+pub(super) fn together(problem: &Problem, known: &[Known], told: &[Asked], learned: usize) -> Vec<Together> {
+    let moved = |shares: &Vec<(usize, f64)>| {
+        let mut sums = [Vec::new(), Vec::new()];
+        for &(slot, share) in shares {
+            let own = known.iter().position(|known| *known == Known::Scalar(slot)).and_then(|at| told.get(at));
+            let Some(Asked { follow, .. }) = own.filter(|own| !own.follow[0].is_empty()) else { continue };
+            for (sum, follow) in sums.iter_mut().zip(follow) {
+                sum.resize(follow.len(), 0.0);
+                sum.iter_mut().zip(follow).for_each(|(sum, x)| *sum += share * x);
+            }
+        }
+        let [coefficients, mut border] = sums;
+        border.truncate(learned);
+        Together { coefficients, learned: border }
+    };
+    let all = problem.uncertain.iter().map(moved);
+    all.filter(|moved| !moved.coefficients.is_empty()).collect()
+}
+
+/// Variance of a sum of coefficients, each times its weight, by what follows numbers that may be off.
+pub(super) fn variance_of_sum(all: &[Together], weights: &[f64]) -> f64 {
+    all.iter().map(|own| vector::dot(&own.coefficients, weights).powi(2)).sum()
+}
