@@ -110,6 +110,21 @@ fn a_state_that_leaps_to_nothing_is_no_state() {
     assert!(found[..400].iter().all(|found| !found.is_held));
 }
 
+/// Behind the leap of a sensor that was moved, every answer is about another level.
+#[test]
+fn a_record_that_leaps_is_doubted_from_there_on() {
+    for (seed, moved) in [(6, 1.0), (7, -0.5), (8, 0.3)] {
+        let mut rows = measured(seed, 600);
+        rows[300..].iter_mut().for_each(|row| *row += moved);
+        let found = answers(Problem::new(fed::scene("recover")), &rows);
+        let sound = |part: &[Smoothed]| part.iter().filter(|found| found.is_sound()).count();
+        assert_eq!(sound(&found[300..]), 0, "{moved}");
+        let doubt = found[500].doubt.as_deref().unwrap_or_default();
+        assert!(doubt.starts_with("`y` leaps from t = 29."), "{moved}: {doubt}");
+        assert!(sound(&found[..250]) > 225, "{moved}: {}", sound(&found[..250]));
+    }
+}
+
 #[test]
 fn answers_are_where_rows_are_to_the_last_digit() {
     let found = answers(Problem::new(fed::scene("recover")), &measured(5, 400));

@@ -10,7 +10,6 @@ mod choice;
 mod compared;
 mod course;
 mod edges;
-mod jolts;
 mod layers;
 mod misfits;
 mod network;

@@ -11,6 +11,8 @@ const ALONE: f64 = 4.0;
 /// A leap over what others change by, all but one of fifty, at most.
 const LARGEST: f64 = 3.0;
 const OTHERS: f64 = 0.98;
+/// How far the two rows of a leap are apart, at most, in the rows' usual distance: one between them may lack.
+const LACKING: f64 = 2.5;
 /// What happens more often is of the system.
 const OFTEN: usize = 2;
 /// A source at a leap over what it is elsewhere around there, beside what it is at most of these places, at least.
@@ -36,7 +38,7 @@ pub(crate) fn leaps(rows: &[(f64, f64)], noise: f64) -> Vec<Leap> {
     let Some(spacing) = median(rows.windows(2).map(|pair| pair[1].0 - pair[0].0).collect()) else { return Vec::new() };
     let is_leap = |at: &usize| {
         let beside = change(at - 1).max(change(at + 1));
-        change(*at) > FAR * noise && change(*at) > ALONE * beside && rows[at + 1].0 - rows[*at].0 <= 1.5 * spacing
+        change(*at) > FAR * noise && change(*at) > ALONE * beside && rows[at + 1].0 - rows[*at].0 <= LACKING * spacing
     };
     let all = (1..rows.len().saturating_sub(2)).filter(is_leap);
     let leap = |at: usize| Leap { rows: [rows[at].0, rows[at + 1].0], size: change(at) / others };

@@ -4,7 +4,7 @@ use super::Solution;
 use crate::facts::Told;
 use crate::noise::{self, Noise};
 use crate::solve::driver::{Status, WarningKind};
-use crate::verdict::{Check, determined, judge, patches};
+use crate::verdict::{Check, determined, judge, jumps, patches};
 
 impl Solution {
     /// Judges the answer by what is left of the problem, and calls it by its name.
@@ -33,7 +33,8 @@ impl Solution {
                 self.verdict.checks.push(patches(head.name, &values[at], prior.least(&self.bound, at)));
             }
         }
-        self.verdict.checks.extend(self.jolts(&noise).into_iter().chain(edges));
+        let of_head = |head: usize, places: &[f64]| self.carried.values(&self.bound, places).swap_remove(head).values;
+        self.verdict.checks.extend(jumps::checks(&self.bound, &noise, &of_head).into_iter().chain(edges));
         self.verdict.checks.extend(self.left_open());
         match (self.status, self.verdict.passed()) {
             (Status::Budget, true) if self.is_met_exactly && self.has_room() => self.status = Status::Converged,

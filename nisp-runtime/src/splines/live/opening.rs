@@ -11,10 +11,10 @@ use crate::noise;
 use crate::noise::Noise;
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status};
-use crate::verdict::{Verdict, judge};
+use crate::verdict::{Verdict, judge, jumps};
 
 /// Checks of a whole record that rows behind the first ones cannot mend: what they are about holds all along.
-const LASTING: [&str; 3] = ["determined", "filtered", "polled"];
+const LASTING: [&str; 4] = ["determined", "filtered", "polled", "jolt"];
 /// Checks that say nothing of the beginning of a record: a source may be at rest there.
 const LATER: [&str; 1] = ["told"];
 
@@ -100,7 +100,9 @@ fn judged(bound: &Bound, found: &SplineSolution, noise: &Noise) -> Verdict {
     let points = bound.coordinates.concat();
     let heads = 0..bound.problem.scene().schema.heads.len();
     let values: Vec<Vec<f64>> = heads.map(|head| found.kept.evaluate(head, &points)).collect();
-    judge(bound, &Answer { finer: BY_A_SOLVE, ..found.answer.clone() }, &values, noise)
+    let mut verdict = judge(bound, &Answer { finer: BY_A_SOLVE, ..found.answer.clone() }, &values, noise);
+    verdict.checks.extend(jumps::checks(bound, noise, &|head, places| found.kept.evaluate(head, places)));
+    verdict
 }
 
 /// What the first failed check of some says.
