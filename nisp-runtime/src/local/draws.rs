@@ -8,7 +8,6 @@ use rand::rngs::StdRng;
 
 use super::block::Block;
 use super::integrals::Integral;
-use super::together::Together;
 use crate::network::normal;
 
 /// Draws: a standard deviation is known to within `1 / sqrt(2 * 64)`, 9 %.
@@ -30,6 +29,14 @@ pub(super) struct Deviations {
     pub(super) coefficients: Vec<Vec<f64>>,
     /// Right-hand sides of the parameters of learned scalars.
     pub(super) learned: Vec<Vec<f64>>,
+}
+
+/// How an answer moves where given numbers are off together by one standard deviation: its coefficients, and the parameters of its learned
+/// scalars.
+#[derive(Clone, Debug)]
+pub(super) struct Together {
+    pub(super) coefficients: Vec<f64>,
+    pub(super) learned: Vec<f64>,
 }
 
 impl Deviations {

@@ -71,9 +71,9 @@ pub(crate) use live::Live;
 pub use prior::Patches;
 
 use course::End;
+use draws::Together;
 use normal::factor::Factor;
 use solver::Solver;
-use together::Together;
 
 /// How fine the local functions are, and what is known of the sources.
 #[derive(Clone, Copy, Debug, PartialEq)]

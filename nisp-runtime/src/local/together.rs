@@ -1,17 +1,10 @@
 //! Given numbers that may be off together, and what of an answer follows them.
 
+use super::draws::Together;
 use super::scored::Asked;
 use crate::facts::Known;
 use crate::problem::Problem;
 use crate::solve::vector;
-
-/// How an answer moves where given numbers are off together by one standard deviation: its coefficients, and the parameters of its learned
-/// scalars.
-#[derive(Clone, Debug)]
-pub(super) struct Together {
-    pub(super) coefficients: Vec<f64>,
-    pub(super) learned: Vec<f64>,
-}
 
 /// Every number that may be off, once.
 pub(super) fn uncertain(problem: &Problem) -> Vec<Known> {
