@@ -26,7 +26,8 @@ pub(crate) fn checks(bound: &Bound, noise: &Noise, values: &dyn Fn(usize, &[f64]
         let course: Vec<(f64, f64)> = places.iter().copied().zip(values(at, &places)).collect();
         let course = (&course[..], spacing);
         let leap = |(column, leap): &(_, Leap)| leaping::check((head.name, *column), *leap, course, words);
-        jolts::check(head.name, course, words).or_else(|| leaps.iter().find_map(leap))
+        let jolt = jolts::check(head.name, course, words).filter(|jolt| !jolt.passed);
+        jolt.or_else(|| leaps.iter().find_map(leap))
     };
     sources().filter_map(check).collect()
 }

@@ -1,6 +1,6 @@
-//! Records that leap from one row to the next where a source makes up for it within these two rows alone. Something that is added at once does
-//! that, and so does a sensor that was moved or changed its range or unit, whose rows behind are then of something else. The record does not
-//! tell one from the other.
+//! Records that leap from one row to the next where a source makes up for it within a few rows. Something that is added at once does that, and
+//! so does a sensor that was moved or changed its range or unit, whose rows behind are then of something else. The record does not tell one from
+//! the other.
 
 use super::Check;
 use crate::noise::median;

@@ -218,7 +218,7 @@ impl Solution {
     /// Along which shares of their values learned scalars may be off together: a row for each of as many independent directions as there
     /// are names, of one standard deviation. In the first, the first scalar is off by all of its deviation, and the rest follow it where
     /// everything else is as it was found; the others are what is left then. What
-    /// [`Problem::set_uncertain`](crate::Problem::set_uncertain) takes. None for names that were not learned, where
+    /// [`Problem::set_uncertain`](crate::problem::Problem::set_uncertain) takes. None for names that were not learned, where
     /// [`Solution::learned`] has no deviations, and for carriers other than local functions.
     pub fn learned_together(&self, names: &[&str]) -> Option<Vec<Vec<f64>>> {
         let slot = |name: &&str| {
