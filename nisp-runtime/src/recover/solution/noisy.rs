@@ -11,9 +11,13 @@ use crate::solve::vector::root_mean_square;
 use crate::units::Number;
 
 impl Solution {
-    /// The problem with measurements that count by how noisy they are; nothing where the answer misses small values as far as large ones.
+    /// The problem with measurements that count by how noisy they are; nothing where the answer misses small values as far as large ones, or
+    /// follows values that stand alone.
     pub(in crate::recover) fn with_noisiness(&mut self) -> Option<Bound> {
         if !matches!(self.status, Status::Converged | Status::Inconsistent) {
+            return None;
+        }
+        if self.verdict.failed().any(|check| check.check == "outliers") {
             return None;
         }
         let (answer, noise) = (self.carried.answer(&self.bound), noise::estimate(&self.bound));
