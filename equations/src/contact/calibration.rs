@@ -132,10 +132,12 @@ impl Calibration {
         /// Deviation of the modulus, as a share of it, up to which clouds leave more of a force open than the modulus does.
         const KNOWN: f64 = 0.05;
         let share = self.found.young_deviation? / self.membrane.young?;
+        let held =
+            if self.open.is_empty() { "which their deviations do not hold" } else { "and their deviations say so" };
         (share > KNOWN).then(|| {
             format!(
                 "free frames tell `E` to {:.0} % only, since a stretch at rest makes up for it: forces found with this calibration may be off \
-                 by about half of that share, and their deviations say so",
+                 by about half of that share, {held}",
                 100.0 * share
             )
         })

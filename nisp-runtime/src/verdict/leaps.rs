@@ -73,7 +73,7 @@ pub(crate) fn check(
     Some(Check::new("jolt", ("", name), (leap.size, LARGEST), said))
 }
 
-/// True where a course has a peak between two rows.
+/// True where a course has a peak at a leap between two rows, or jolts there.
 fn is_peak(course: &[(f64, f64)], [from, to]: [f64; 2], spacing: f64) -> bool {
     let apart = |x: f64| (from - x).max(x - to) / spacing;
     let around = course.iter().filter(|(x, _)| (AT..=AROUND).contains(&apart(*x)));
