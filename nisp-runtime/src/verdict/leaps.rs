@@ -65,9 +65,9 @@ pub(crate) fn check(
     }
     let [from, to] = leap.rows.map(words);
     let said = format!(
-        "`{column}` leaps from {from} to {to}, {:.0} times as far as other rows are from the next, and `{name}` makes up for it there alone: so \
-         it does where a sensor was moved, or changed its range or unit, and then all behind it is off: solve the parts by themselves; where \
-         something was added at once, rows that are closer there show it",
+        "`{column}` leaps from {from} to {to}, {:.0} times as far as it changes between other rows, and `{name}` makes up for it there alone. If a \
+         sensor was moved, or changed its range or unit, all values behind it are off: solve the parts by themselves. If something was added at \
+         once, rows that are closer there show it",
         leap.size
     );
     Some(Check::new("jolt", ("", name), (leap.size, LARGEST), said))
