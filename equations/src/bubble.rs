@@ -113,42 +113,41 @@ nisp::pde! {
                 + (p - f) * n_z == 0;
         }
         on surface {
-            cloud: chamfer [alpha + u, beta + v, w];
-            // The same in the cloud's frame.
+            // The place on the surface, in the cloud's frame.
             let x = widen_a * alpha + u;
             let y = widen_b * beta + v;
             let y_x = y * cos(turn_x) - w * sin(turn_x);
             let z_x = y * sin(turn_x) + w * cos(turn_x);
             let x_y = x * cos(turn_y) + z_x * sin(turn_y);
             let z_y = z_x * cos(turn_y) - x * sin(turn_y);
-            posed: chamfer [
-                x_y * cos(turn_z) - y_x * sin(turn_z) + shift_x,
-                x_y * sin(turn_z) + y_x * cos(turn_z) + shift_y,
-                z_y + shift_z
-            ] within 1 [mm];
+            let x_c = x_y * cos(turn_z) - y_x * sin(turn_z) + shift_x;
+            let y_c = x_y * sin(turn_z) + y_x * cos(turn_z) + shift_y;
+            let z_c = z_y + shift_z;
+            cloud: chamfer [x_c, y_c, z_c];
+            free: chamfer [x_c, y_c, z_c] within 1 [mm];
         }
         on rim { clamp: u == 0, v == 0, w == 0; no_contact: f == 0; }
 
         /// The contact pressure, from a cloud of the pressed bubble.
         scene contact {
-            without interior.rubber_x; without interior.rubber_y; without interior.rubber_z; without surface.posed;
+            without interior.rubber_x; without interior.rubber_y; without interior.rubber_z; without surface.free;
         }
         /// Young's modulus, from a cloud of the inflated bubble that nothing touches.
         scene identify {
             f = 0;
             learn E;
-            without interior.rubber_x; without interior.rubber_y; without interior.rubber_z; without surface.posed;
+            without interior.rubber_x; without interior.rubber_y; without interior.rubber_z; without surface.free;
             without rim.no_contact;
         }
         /// The contact pressure on rubber (neo-Hookean, incompressible).
         scene contact_rubber {
-            without interior.balance_x; without interior.balance_y; without interior.balance_z; without surface.posed;
+            without interior.balance_x; without interior.balance_y; without interior.balance_z; without surface.free;
         }
         /// Young's modulus of rubber (neo-Hookean, incompressible).
         scene identify_rubber {
             f = 0;
             learn E;
-            without interior.balance_x; without interior.balance_y; without interior.balance_z; without surface.posed;
+            without interior.balance_x; without interior.balance_y; without interior.balance_z; without surface.free;
             without rim.no_contact;
         }
         /// Modulus, stretch at rest, semi-axes and pose of the rim, from clouds of the inflated bubble that nothing touches.

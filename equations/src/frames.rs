@@ -8,7 +8,7 @@ use nisp::{BindError, Problem};
 use nisp_data::{Cloud, DataError};
 
 use crate::PrepareError;
-use crate::contact::Calibration;
+use crate::contact::{Calibration, Pose};
 
 /// How far beyond its box, in parts of its size, a body may bulge and noise may throw a point.
 const MARGIN: f64 = 0.25;
@@ -28,6 +28,8 @@ pub(crate) const POINTS_OF_A_CELL: usize = 4;
 pub struct Frames {
     /// Of the sensor that saw them.
     pub(crate) calibration: Option<Calibration>,
+    /// Where the body is in their frame, unless that is its own.
+    pub(crate) pose: Option<Pose>,
     /// What was observed, in words.
     pub(crate) body: &'static str,
     /// The box that it is in, in metres.
@@ -42,8 +44,11 @@ impl Frames {
     /// # Errors
     /// A cloud that cannot be one of the body.
     pub(crate) fn take(&self, source: &Path, cloud: &mut Cloud) -> Result<(), PrepareError> {
+        if let Some(pose) = &self.pose {
+            cloud.points.iter_mut().for_each(|point| *point = pose.inward(*point));
+        }
         if let Some(calibration) = &self.calibration {
-            calibration.correct(cloud);
+            calibration.deviation.correct(cloud);
         }
         self.require(source, cloud)?;
         cloud.thin(self.cell, POINTS_OF_A_CELL);

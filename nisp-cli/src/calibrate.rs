@@ -12,7 +12,7 @@ use nisp::{LearnedValue, Report, Settings, Solution, recover};
 use nisp_data::colour::ColourScale;
 use nisp_data::picture::{FieldMap, Grid, MapPanel, Quantity, field_map};
 use nisp_data::{DataError, OutDir};
-use nisp_equations::contact::{Calibration, Learned, OPEN};
+use nisp_equations::contact::{Calibration, LEARNED, Learned};
 use nisp_equations::{Entry, PrepareError, Request};
 use serde_json::json;
 
@@ -119,7 +119,7 @@ fn fit(entry: &Entry, law: &'static str, options: &Frames) -> Result<Result<Fit,
     };
     let value = |name: &str| learned.iter().find(|learned| learned.name == name).map(|learned| learned.value);
     let young_deviation = learned.iter().find(|learned| learned.name == "E").and_then(|learned| learned.deviation);
-    let found = Learned { value: &value, young_deviation, together: solution.learned_together(&OPEN) };
+    let found = Learned { value: &value, young_deviation, together: solution.learned_together(&LEARNED) };
     let calibration = references.calibration(entry, law, contact, &values, found)?;
     Ok(Ok(Fit { calibration, learned, solution }))
 }

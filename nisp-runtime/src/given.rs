@@ -12,7 +12,12 @@ pub(crate) fn given(schema: &Scene, scalars: &[f64]) -> Vec<usize> {
     given.map(|(slot, _)| slot).collect()
 }
 
-/// A derivative by a number from what is found with so much more and with so much less of it.
+/// What shares of a number are shares of: its value, or the engine's unit where that is zero.
+pub(crate) fn size(value: f64) -> f64 {
+    if value == 0.0 { 1.0 } else { value }
+}
+
+/// A derivative by a number, in shares of its [`size`], from what is found with [`SMALL`] more and with as much less of it.
 pub(crate) fn slope((more, less): (f64, f64)) -> f64 {
     (more - less) / (2.0 * SMALL)
 }

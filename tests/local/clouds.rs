@@ -85,7 +85,7 @@ fn noise_may_be_along_the_view_or_in_all_directions() {
 /// points do not say the same anew.
 #[test]
 fn points_that_are_off_alike_count_as_one() {
-    let pressed = |region: f64| {
+    let pressed = |region: f64, common: f64| {
         let mut problem = Problem::new(scene::<drum::pressed::Scene>());
         problem.set_parameter("T", T).unwrap();
         bind(&mut problem, 0.0, 1.0, 0.0);
@@ -94,14 +94,15 @@ fn points_that_are_off_alike_count_as_one() {
         set_cloud(&mut problem, cloud);
         let unit = problem.scene().schema.groups[1].terms[0].unit;
         let declared = |metres| unit.factor.back(Number::si(metres)).as_declared();
-        let tolerance = Tolerance { size: declared(0.5e-3), region: declared(1e-3 * region) };
+        let tolerance = Tolerance { size: declared(0.5e-3), region: declared(1e-3 * region), common };
         problem.set_tolerance("surface", "cloud", tolerance).unwrap();
         let solution = solve(&problem, Some(PATCHES), 2);
         force(&solution)
     };
     // Regions of which none has two points.
-    let (each, together) = (pressed(0.1), pressed(10.0));
+    let (each, together) = (pressed(0.1, 1.0), pressed(10.0, 1.0));
     assert!(together < 0.02 && each > 0.1, "{together} N, and {each} N if every point counts");
+    assert_eq!(pressed(10.0, 0.0), each, "what has nothing in common counts by itself");
 }
 
 /// One point of six is 8 mm too high. Huber's loss counts each as three deviations; Tukey's leaves it out.

@@ -33,9 +33,11 @@ nisp::pde! {
             /// tension
             T [N/m] in 1 .. 1000 = 20,
             /// pressure from below
-            p [Pa];
+            p [Pa],
+            /// what a gauge that stands at zero may hide of it
+            hidden [Pa] = 0;
 
-        on interior { balance: -T * laplacian(w) == p - f; }
+        on interior { balance: -T * laplacian(w) == p + hidden - f; }
         on surface { cloud: chamfer [x, y, w]; }
         on rim { held: w == 0; }
 

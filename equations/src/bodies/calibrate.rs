@@ -7,8 +7,8 @@ use nisp_data::{Cloud, DataError};
 use super::given::Given;
 use crate::PrepareError;
 use crate::contact::{
-    CALIBRATES, Calibration, Contact, Deviation, Learned, Membrane, OPEN, Off, Pose, Quality, References, Values,
-    length, minus,
+    CALIBRATES, Calibration, Contact, Deviation, LEARNED, Learned, Membrane, Off, Pose, Quality, References, SHIFT,
+    TURN, Values, WIDEN, length, minus,
 };
 use crate::entry::Entry;
 use crate::request::Request;
@@ -70,11 +70,10 @@ impl References {
             let [x, y, z] = names.map(of);
             Ok([x?, y?, z?])
         };
-        let widen = [of("widen_a")?, of("widen_b")?];
+        let widen = [of(WIDEN[0])?, of(WIDEN[1])?];
         let pose = Pose {
-            turn_rad: all(["turn_x", "turn_y", "turn_z"])?,
-            shift_m: all(["shift_x", "shift_y", "shift_z"])?
-                .map(|shift| contact.unit.of(Number::declared(shift)).as_si()),
+            turn_rad: all(TURN)?,
+            shift_m: all(SHIFT)?.map(|shift| contact.unit.of(Number::declared(shift)).as_si()),
         };
         let known = |value: Option<f64>, what| value.ok_or_else(|| missing(what));
         let (a, b) = (known(self.given.a_m, "semi-axis a")?, known(self.given.b_m, "semi-axis b")?);
@@ -105,8 +104,12 @@ impl References {
             "free frames tell E * t over the pressure, not both: the gauge pressure was held at {pressure} Pa and the thickness \
              at the given one; a pressure that is off by one per cent makes E, and every force found with it, off by one per cent"
         );
-        let open = learned.together.unwrap_or_default().into_iter();
-        let open = open.map(|shares| OPEN.map(String::from).into_iter().zip(shares).collect()).collect();
+        let widths: [f64; LEARNED.len()] =
+            LEARNED.map(|name| WIDEN.iter().position(|own| *own == name).map_or(1.0, |at| widen[at]));
+        let amounts = |own: Vec<f64>| {
+            LEARNED.iter().zip(own).zip(widths).map(|((name, x), width)| (name.to_string(), x / width)).collect()
+        };
+        let posterior = learned.together.unwrap_or_default().into_iter().map(amounts).collect();
         Ok(Calibration {
             equation: entry.name.into(),
             scene: scene.into(),
@@ -114,7 +117,7 @@ impl References {
             found,
             membrane,
             pose,
-            open,
+            posterior,
             deviation,
         })
     }

@@ -1,8 +1,9 @@
 //! Binds the scenes of an inflated membrane over an elliptic rim to a cloud of its surface.
 
-use nisp::Tolerance;
 use nisp::local::{Local, Patches};
+use nisp::schema::Origin;
 use nisp::units::{Number, Scale};
+use nisp::{Problem, Tolerance};
 use nisp_data::DataError;
 use nisp_data::domain::{Domain, Sampling};
 use serde::Deserialize;
@@ -11,7 +12,10 @@ use super::calibrate::region;
 use super::given::{Given, Positive, Sampled};
 use super::observed::{Example, Observed, Sample};
 use crate::PrepareError;
-use crate::contact::{CALIBRATES, Calibration, Contact, ContactRival, Face, Load, Membrane, References, Rule, Surface};
+use crate::contact::{
+    CALIBRATES, Calibration, Contact, ContactRival, Face, LEARNED, Load, Membrane, References, Rule, SHIFT, Surface,
+    TURN, WIDEN,
+};
 use crate::entry::{Entry, Size};
 use crate::frames::{Frames, bind_cloud};
 use crate::prepared::Prepared;
@@ -94,8 +98,24 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: entry.sizes };
     let mut problem = given.problem(POSITIVE)?;
-    let assumed = given.assumed()?;
-    let (a, b) = (given.size("a")?, given.size("b")?);
+    let mut assumed = given.assumed()?;
+    let (mut a, mut b) = (given.size("a")?, given.size("b")?);
+    let mut pose = calibration.as_ref().map(|calibration| calibration.pose);
+    if !calibrates {
+        for (size, name) in [&mut a, &mut b].into_iter().zip(WIDEN) {
+            *size *= taken(&mut problem, &given, name)?.unwrap_or(1.0);
+        }
+        for axis in 0..3 {
+            if let Some(turn) = taken(&mut problem, &given, TURN[axis])? {
+                pose.get_or_insert_default().turn_rad[axis] = turn;
+            }
+            if let Some(shift) = taken(&mut problem, &given, SHIFT[axis])? {
+                pose.get_or_insert_default().shift_m[axis] = shift;
+            }
+        }
+        // The calibration knows them.
+        assumed.retain(|own| calibration.is_none() || !LEARNED.contains(&own.name));
+    }
     let references = calibrates.then(|| References::new(&mut observed.cloud, request, &given)).transpose()?;
     if calibrates && given.says("E").is_none() {
         problem.set_parameter("E", stiff(&given)?)?;
@@ -132,6 +152,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     }
     let frames = Frames {
         calibration,
+        pose,
         body: "membrane",
         within: ([-a, -b, 0.0], [a, b, b]),
         cell: 2.0 * a.max(b) / cells as f64,
@@ -141,12 +162,16 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     match &frames.calibration {
         // What was taken off a point may be off by as much as it is where the surface is pressed into another shape.
         Some(calibration) => {
-            let tolerance = Tolerance { size: calibration.found.misfit_m, region: region(a, b) };
+            let tolerance = Tolerance {
+                size: calibration.found.misfit_m,
+                region: region(a, b),
+                common: calibration.found.common(),
+            };
             problem.set_tolerance("surface", "cloud", tolerance)?;
-            for shares in &calibration.open {
+            for amounts in &calibration.posterior {
                 let is_said = |name: &str| request.parameters.iter().any(|(own, _)| own == name);
-                let shares = shares.iter().filter(|(name, _)| !is_said(name));
-                problem.set_uncertain(&shares.map(|(name, share)| (name.as_str(), *share)).collect::<Vec<_>>())?;
+                let amounts = amounts.iter().filter(|(name, _)| !is_said(name));
+                problem.set_uncertain(&amounts.map(|(name, amount)| (name.as_str(), *amount)).collect::<Vec<_>>())?;
             }
         }
         // The camera looks up.
@@ -189,6 +214,17 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         references,
         frames: Some(frames).filter(|_| !calibrates),
     })
+}
+
+/// What is said of the rim's size or pose, in SI units: sizes and clouds take it, and the problem knows nothing of it then.
+fn taken(problem: &mut Problem, given: &Given<'_>, name: &'static str) -> Result<Option<f64>, PrepareError> {
+    let Some(said) = given.says(name) else { return Ok(None) };
+    for scalar in given.scene.schema.scalars.iter().filter(|scalar| scalar.name == name) {
+        if let Origin::Given(Some(usual)) = scalar.origin {
+            problem.set_parameter(name, scalar.unit.factor.back(usual).as_declared())?;
+        }
+    }
+    Ok(Some(said.as_si()))
 }
 
 /// A modulus in pascals at which the gas stretches the membrane by a twentieth: steps towards a softer one that bulges as the

@@ -111,7 +111,8 @@ pub(crate) fn prepare(entry: &Entry, request: &Request) -> Result<Prepared, Prep
     let assumed = given.assumed()?;
     let side = given.size("side")?;
     let (low, high) = ([-0.5 * side, -0.5 * side, -side], [0.5 * side, 0.5 * side, 0.0]);
-    let frames = Frames { calibration: None, body: "sponge", within: (low, high), cell: side / LOCAL.cells as f64 };
+    let frames =
+        Frames { calibration: None, pose: None, body: "sponge", within: (low, high), cell: side / LOCAL.cells as f64 };
     frames.take(&observed.source, &mut observed.cloud)?;
 
     let vector = |names: [&'static str; 3]| -> Result<[f64; 3], PrepareError> {

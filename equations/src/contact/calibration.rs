@@ -14,8 +14,15 @@ use crate::PrepareError;
 /// What the scenes that calibrate are called; the rest of their names is that of the law that they take.
 pub(crate) const CALIBRATES: &str = "calibrate";
 
-/// Material numbers that free frames hardly tell from each other.
-pub const OPEN: [&str; 2] = ["E", "stretch"];
+/// What free frames tell of a sensor, all of it together.
+pub const LEARNED: [&str; 10] =
+    ["E", "stretch", WIDEN[0], WIDEN[1], SHIFT[0], SHIFT[1], SHIFT[2], TURN[0], TURN[1], TURN[2]];
+/// How much wider the rim is than its semi-axes.
+pub(crate) const WIDEN: [&str; 2] = ["widen_a", "widen_b"];
+/// Where the rim's middle is in the cloud's frame.
+pub(crate) const SHIFT: [&str; 3] = ["shift_x", "shift_y", "shift_z"];
+/// How the rim is turned in the cloud's frame.
+pub(crate) const TURN: [&str; 3] = ["turn_x", "turn_y", "turn_z"];
 
 /// What a solution of free frames learned of a sensor.
 pub struct Learned<'a> {
@@ -23,7 +30,7 @@ pub struct Learned<'a> {
     pub value: &'a dyn Fn(&str) -> Option<f64>,
     /// The standard deviation of Young's modulus in pascals, where there is one.
     pub young_deviation: Option<f64>,
-    /// Along which shares of their values numbers of [`OPEN`] may be off, as [`nisp::Solution::learned_together`] has them.
+    /// By how much the numbers of [`LEARNED`] may be off, as [`nisp::Solution::learned_together`] has it.
     pub together: Option<Vec<Vec<f64>>>,
 }
 
@@ -42,10 +49,10 @@ pub struct Calibration {
     pub membrane: Membrane,
     /// Where the rim is in the cloud's frame.
     pub pose: Pose,
-    /// Along which shares of their values material numbers may be off together, each of one standard deviation and independent of the
-    /// others.
+    /// By how much the numbers of [`LEARNED`] may be off together, in declared units: each by one standard deviation and independent of
+    /// the others. Widths are shares of the semi-axes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub open: Vec<BTreeMap<String, f64>>,
+    pub posterior: Vec<BTreeMap<String, f64>>,
     /// What the theory does not explain.
     pub deviation: Deviation,
 }
@@ -67,6 +74,14 @@ pub struct Quality {
     /// The standard deviation of Young's modulus in pascals, where there is one.
     #[serde(rename = "young_sd_Pa", default, skip_serializing_if = "Option::is_none")]
     pub young_deviation: Option<f64>,
+}
+
+impl Quality {
+    /// Share of what points are off the theory's surface, as a variance, that the smooth deviation explains.
+    pub(crate) fn common(&self) -> f64 {
+        let own = (self.noise_m / self.misfit_m).powi(2);
+        if own.is_finite() { (1.0 - own).clamp(0.0, 1.0) } else { 1.0 }
+    }
 }
 
 /// Material and size of a membrane, in the keys of samples and calibrations and in SI units.
@@ -132,8 +147,11 @@ impl Calibration {
         /// Deviation of the modulus, as a share of it, up to which clouds leave more of a force open than the modulus does.
         const KNOWN: f64 = 0.05;
         let share = self.found.young_deviation? / self.membrane.young?;
-        let held =
-            if self.open.is_empty() { "which their deviations do not hold" } else { "and their deviations say so" };
+        let held = if self.posterior.is_empty() {
+            "which their deviations do not hold"
+        } else {
+            "and their deviations say so"
+        };
         (share > KNOWN).then(|| {
             format!(
                 "free frames tell `E` to {:.0} % only, since a stretch at rest makes up for it: forces found with this calibration may be off \
@@ -147,14 +165,5 @@ impl Calibration {
     pub(crate) fn scene_for(&self, scene: &str) -> String {
         let law = self.scene.strip_prefix(CALIBRATES).unwrap_or_default();
         if scene.ends_with(law) { scene.into() } else { format!("{scene}{law}") }
-    }
-
-    /// Takes a cloud into the frame of the rim, and the deviation off.
-    pub(crate) fn correct(&self, cloud: &mut Cloud) {
-        for point in &mut cloud.points {
-            let inside = self.pose.inward(*point);
-            let off = self.deviation.at([inside[0], inside[1]]);
-            *point = std::array::from_fn(|axis| inside[axis] - off[axis]);
-        }
     }
 }

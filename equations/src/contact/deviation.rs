@@ -3,7 +3,7 @@
 use std::num::NonZero;
 
 use nisp::nearest::Nearest;
-use nisp_data::DataError;
+use nisp_data::{Cloud, DataError};
 use serde::{Deserialize, Serialize};
 
 /// Nodes along the longer axis: on a bubble of twelve centimetres every two millimetres.
@@ -75,6 +75,14 @@ impl Deviation {
         let corner = |down: usize, right: usize| self.vectors_m[row + down][column + right];
         let [a, b, c, d] = [corner(0, 0), corner(0, 1), corner(1, 0), corner(1, 1)];
         std::array::from_fn(|i| (1.0 - t) * ((1.0 - s) * a[i] + s * b[i]) + t * ((1.0 - s) * c[i] + s * d[i]))
+    }
+
+    /// Takes the deviation off a cloud in the frame of the rim.
+    pub(crate) fn correct(&self, cloud: &mut Cloud) {
+        for point in &mut cloud.points {
+            let off = self.at([point[0], point[1]]);
+            *point = std::array::from_fn(|axis| point[axis] - off[axis]);
+        }
     }
 
     /// Places of all nodes over the plane of the rim, and the deviation's length at each: above zero where the surface was seen

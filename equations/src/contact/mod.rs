@@ -11,8 +11,8 @@ mod patches;
 mod pose;
 mod score;
 
-pub(crate) use calibration::CALIBRATES;
-pub use calibration::{Calibration, Learned, Membrane, OPEN, Quality, References};
+pub(crate) use calibration::{CALIBRATES, SHIFT, TURN, WIDEN};
+pub use calibration::{Calibration, LEARNED, Learned, Membrane, Quality, References};
 pub use deviation::Deviation;
 pub(crate) use deviation::Off;
 pub use face::{Face, Load};

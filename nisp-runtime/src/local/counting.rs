@@ -18,9 +18,9 @@ pub(super) struct Counting {
     loss: Loss,
     /// The standard deviation of a point, or of all points of a region, where it is declared.
     within: Option<f64>,
-    /// Length over which points are off alike, where it is declared.
-    region: Option<f64>,
-    /// Points that are off alike, in the mean over the cloud.
+    /// What is declared of points that are off alike.
+    tolerance: Option<EngineTolerance>,
+    /// Points that count as one, in the mean over the cloud.
     alike: f64,
     /// What the loss is multiplied by.
     weight: f64,
@@ -38,8 +38,7 @@ impl Counting {
             declared => (declared.convex(), declared),
         };
         let within = tolerance.map(|tolerance| tolerance.size).or(term.within.map(|_| size));
-        let region = tolerance.map(|tolerance| tolerance.region);
-        Self { far, near, loss: far, within, region, alike: 1.0, weight: term.weight }
+        Self { far, near, loss: far, within, tolerance, alike: 1.0, weight: term.weight }
     }
 
     /// Whether the surface is near. Before, a loss that leaves out what is far off would leave out what is right.
@@ -49,7 +48,7 @@ impl Counting {
 
     /// Takes over the points of a cloud.
     pub(super) fn see(&mut self, cloud: &[Vector3<f64>]) {
-        self.alike = alike(cloud, self.region);
+        self.alike = self.tolerance.map_or(1.0, |tolerance| alike(cloud, tolerance));
     }
 
     /// The standard deviation that points count with, where it is declared: larger where several are worth one together.
@@ -69,12 +68,12 @@ impl Counting {
     }
 }
 
-/// Points of a cloud in a cube of this size, the mean over all cubes that have any; one if there is no size.
-fn alike(cloud: &[Vector3<f64>], region: Option<f64>) -> f64 {
-    let Some(region) = region else { return 1.0 };
-    let cubes: HashSet<[i64; 3]> =
-        cloud.iter().map(|point| point.map(|x| (x / region).floor() as i64).into()).collect();
-    (cloud.len() as f64 / cubes.len() as f64).max(1.0)
+/// How many points count as one where those of a region have a share of their variance in common: Kish's design effect (1965), by the
+/// mean number of points in cubes of the region's size that have any.
+fn alike(cloud: &[Vector3<f64>], tolerance: EngineTolerance) -> f64 {
+    let cube = |point: &Vector3<f64>| point.map(|x| (x / tolerance.region).floor() as i64).into();
+    let cubes: HashSet<[i64; 3]> = cloud.iter().map(cube).collect();
+    1.0 + tolerance.common * (cloud.len() as f64 / cubes.len() as f64 - 1.0).max(0.0)
 }
 
 #[cfg(test)]
@@ -86,9 +85,12 @@ mod tests {
     fn points_of_a_region_are_counted() {
         let at = |i: i32| 2.0 * f64::from(i) - 9.0;
         let cloud: Vec<Vector3<f64>> = (0..100).map(|i| Vector3::new(at(i % 10), at(i / 10), 1.0)).collect();
-        assert_eq!(alike(&cloud, Some(5.0)), 100.0 / 16.0);
-        assert_eq!(alike(&cloud, Some(1.0)), 1.0);
-        assert_eq!(alike(&cloud, None), 1.0);
-        assert_eq!(alike(&[], Some(1.0)), 1.0);
+        let alike =
+            |cloud: &[Vector3<f64>], region, common| alike(cloud, EngineTolerance { size: 1.0, region, common });
+        assert_eq!(alike(&cloud, 5.0, 1.0), 100.0 / 16.0);
+        assert_eq!(alike(&cloud, 5.0, 0.5), 0.5 * (1.0 + 100.0 / 16.0));
+        assert_eq!(alike(&cloud, 5.0, 0.0), 1.0);
+        assert_eq!(alike(&cloud, 1.0, 1.0), 1.0);
+        assert_eq!(alike(&[], 1.0, 1.0), 1.0);
     }
 }

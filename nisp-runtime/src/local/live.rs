@@ -43,20 +43,22 @@ impl Live {
         };
         let (convex, _) = self.solver.step(&self.state, CONVEX_STEPS, false, &[])?;
         let place = self.solver.place(&convex, 1);
-        let problem = &self.solver.bound.problem;
-        let asked = [&self.known[turns.clone()], &uncertain(problem)].concat();
+        // The matrix holds sources at zero where no cloud saw the surface, so that its deviations say too little.
+        let on_prior = self.solver.rests_on_the_prior();
+        let mut asked = self.known[turns.clone()].to_vec();
+        if on_prior.is_empty() {
+            asked.extend(uncertain(&self.solver.bound.problem, &asked));
+        }
         let (state, found) = self.solver.step(&convex, CONVEX_STEPS + 1, false, &asked)?;
         self.state = state;
         self.scores.resize(self.known.len(), None);
         let told = self.scores[turns.clone()].iter_mut().zip(&found.told);
         told.for_each(|(score, told)| *score = told.score);
-        let together = together(&self.solver.bound.problem, &asked, &found.told, self.state.learned.len());
+        let together = together(&self.solver.bound, &asked, &found.told, self.state.learned.len());
         self.turn = turns.end % self.known.len().max(1);
         let mut warnings = self.solver.doubts(found.loss, found.rows, CONVEX_STEPS);
         let status = if warnings.is_empty() { Status::Converged } else { Status::NotConverged };
         let mut answer = self.solver.answer(&self.state);
-        // The matrix holds sources at zero where no cloud saw the surface, so that its deviations say too little.
-        let on_prior = self.solver.rests_on_the_prior();
         let factor = Some(found.factor).filter(|_| on_prior.is_empty());
         warnings.extend(on_prior);
         answer.scores = self.scores.iter().copied().flatten().collect();

@@ -179,15 +179,20 @@ pub(crate) fn solve(
     let solved = matches!(end.status, Status::Converged | Status::Budget);
     let has_time_for = |steps: f64| end.status == Status::Converged || stage.has_time(steps * end.longest);
     // What an answer rests on matters more than its error bars.
-    let told = if solved && has_time_for(course::ASKED) { solver.asked(&end) } else { None }.unwrap_or_default();
+    let mut asked = solver.known();
+    let known = asked.len();
+    asked.extend(together::uncertain(&bound.problem, &asked));
+    let has_time_to_ask = solved && has_time_for(course::ASKED);
+    let mut told = has_time_to_ask.then(|| solver.asked(&asked, &end)).flatten().unwrap_or_default();
     let has_time = has_time_for(course::BARS);
     let heads = solver.heads.clone();
     let is_resolvable = end.status == Status::Converged && stage.has_time(resolved::COST * end.longest);
     let bars = || (solved && has_time).then(|| solver.deviations(&end.state)).flatten().unwrap_or_default();
     let resolve = || is_resolvable.then(|| resolved::unresolved(bound, settings, &heads, &end.state)).flatten();
     let (mut deviations, unresolved) = rayon::join(bars, resolve);
-    let together = together::together(&bound.problem, &solver.known(), &told, end.state.learned.len());
+    let together = together::together(bound, &asked, &told, end.state.learned.len());
     deviations.follow(&together);
+    told.truncate(known);
     end.warnings.extend(unresolved);
     end.warnings.extend(solver.rests_on_the_prior());
     let mut answer = solver.answer(&end.state);
@@ -232,7 +237,7 @@ impl LocalSolution {
         self.factor.as_ref()?.learned_variance(at).map(|variance| variance.max(0.0).sqrt())
     }
 
-    /// Covariance of some learned scalars' parameters where the others are as they are, row by row.
+    /// Covariance of some learned scalars' parameters, row by row.
     pub(crate) fn covariance_of(&self, learned: &[usize]) -> Option<Vec<f64>> {
         self.factor.as_ref()?.covariance_of(learned)
     }

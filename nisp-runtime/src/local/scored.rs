@@ -62,7 +62,7 @@ impl Scored {
 pub(super) struct Asked {
     /// Its score; nothing of what rows do not tell from the unknowns.
     pub(super) score: Option<Score>,
-    /// How the coefficients and the unknowns of the border follow a change of the number, in shares of it.
+    /// How the coefficients and the unknowns of the border follow a change of the number, in shares of its size.
     pub(super) follow: [Vec<f64>; 2],
 }
 

@@ -11,23 +11,22 @@ use super::scored::{Asked, Scored, asked};
 use super::solver::Solver;
 use super::surface::Surface;
 use crate::facts::Known;
-use crate::given::{SMALL, given, slope};
+use crate::given::{SMALL, given, size, slope};
 
 impl Solver {
-    /// What an answer tells of all that is [known](Solver::known), from the last step's equations if they are those of the answer; nothing
-    /// where the matrix cannot be factorised.
-    pub(super) fn asked(&mut self, end: &End) -> Option<Vec<Asked>> {
-        let known = self.known();
+    /// What an answer tells of what is known, from the last step's equations if they are those of the answer; nothing where the matrix
+    /// cannot be factorised.
+    pub(super) fn asked(&mut self, known: &[Known], end: &End) -> Option<Vec<Asked>> {
         if let (Some(linearised), Some(factor)) = (&end.linearised, &end.factor) {
             self.find_feet(linearised);
-            return Some(self.asked_of(&known, linearised, factor));
+            return Some(self.asked_of(known, linearised, factor));
         }
         let state = &end.state;
         self.find_feet(state);
         self.assemble(state, state.noise, Phase::Concave).ok()?;
         self.normal.set_free(Some(&state.free))?;
         let factor = self.normal.factor()?;
-        Some(self.asked_of(&known, state, &factor))
+        Some(self.asked_of(known, state, &factor))
     }
 
     /// What is told of some of what is known, from the normal equations as they are assembled about a state and factorised: scores are
@@ -74,7 +73,7 @@ impl Solver {
             let Known::Scalar(slot) = sums.known else { return };
             let with = |share: f64| {
                 let mut scalars = self.scalars.clone();
-                scalars[slot] *= 1.0 + share;
+                scalars[slot] += share * size(scalars[slot]);
                 let evaluated = group.evaluate(&self.heads, &state.theta, &scalars, false);
                 let integrals: Vec<f64> = group.sums(&evaluated, &scalars).into_iter().map(|(_, sum)| sum).collect();
                 (group.over_tolerances(&evaluated), integrals)
@@ -104,7 +103,7 @@ impl Solver {
                 Known::Scalar(slot) => {
                     let with = |share: f64| {
                         let mut scalars = self.scalars.clone();
-                        scalars[slot] *= 1.0 + share;
+                        scalars[slot] += share * size(scalars[slot]);
                         surface.images(group, &self.heads, &state.theta, &scalars)
                     };
                     let pairs = with(SMALL).into_iter().zip(with(-SMALL));

@@ -38,6 +38,7 @@ pub(crate) struct Bound {
 pub(crate) struct EngineTolerance {
     pub(crate) size: f64,
     pub(crate) region: f64,
+    pub(crate) common: f64,
 }
 
 impl Bound {
@@ -152,7 +153,11 @@ impl Bound {
         let declared = self.problem.groups[group].as_ref()?.tolerance(term.name)?;
         let [size, region] = [declared.size, declared.region].map(Number::declared);
         let inward = self.system.inward(&term.unit);
-        Some(EngineTolerance { size: inward.of(size).as_engine(), region: inward.of(region).as_engine() })
+        Some(EngineTolerance {
+            size: inward.of(size).as_engine(),
+            region: inward.of(region).as_engine(),
+            common: declared.common,
+        })
     }
 
     /// Points given in declared units, in the engine's.

@@ -37,8 +37,8 @@ pub struct Problem {
     groups: Vec<Option<Binding>>,
     /// Whether observations with a squared loss get a robust one.
     robust: bool,
-    /// Given parameters that may be off together: their slots, and the share of each by which it is off at one standard deviation.
-    pub(crate) uncertain: Vec<Vec<(usize, f64)>>,
+    /// Given parameters that may be off together: their slots, and by how much each is off at one standard deviation.
+    pub(crate) uncertain: Vec<Vec<(usize, Number<Si>)>>,
 }
 
 /// Points of a group, flat and point by point, with what belongs to each.
@@ -65,13 +65,15 @@ impl From<&[f64]> for Points {
     }
 }
 
-/// How far a cloud may be off over whole regions, in the declared unit of its term.
+/// How far a cloud may be off over whole regions. Lengths are in the declared unit of its term.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Standard deviation.
+    /// Standard deviation of a point.
     pub size: f64,
     /// Length over which the cloud is off by about the same.
     pub region: f64,
+    /// Share of a point's variance that all points of a region have in common, from 0 to 1; the rest is each point's own.
+    pub common: f64,
 }
 
 /// What is bound to a group.
@@ -181,17 +183,18 @@ impl Problem {
         })
     }
 
-    /// Says that given parameters may be off together: by these shares of their values at one standard deviation, with signs. What is said
-    /// in several calls is independent. Error bars of local functions that find contacts on surfaces hold it; other carriers do not.
+    /// Says that given parameters may be off together: by so much at one standard deviation, in declared units and with signs. What is
+    /// said in several calls is independent. Error bars of local functions that find contacts on surfaces hold it; other carriers do not.
     ///
     /// # Errors
-    /// No such parameter, or a share that is not finite.
-    pub fn set_uncertain(&mut self, shares: &[(&str, f64)]) -> Result<(), BindError> {
-        let share = |&(name, value): &(&str, f64)| {
+    /// No such parameter, or a number that is not finite.
+    pub fn set_uncertain(&mut self, amounts: &[(&str, f64)]) -> Result<(), BindError> {
+        let amount = |&(name, value): &(&str, f64)| {
             let slot = self.slot(name)?;
-            if value.is_finite() { Ok((slot, value)) } else { Err(BindError::Parameter { name: name.into(), value }) }
+            let inward = self.scene.schema.scalars[slot].unit.factor.of(Number::declared(value));
+            if value.is_finite() { Ok((slot, inward)) } else { Err(BindError::Parameter { name: name.into(), value }) }
         };
-        let own = shares.iter().map(share).collect::<Result<_, _>>()?;
+        let own = amounts.iter().map(amount).collect::<Result<_, _>>()?;
         self.uncertain.push(own);
         Ok(())
     }

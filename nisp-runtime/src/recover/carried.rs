@@ -63,7 +63,7 @@ pub(super) trait Carried: Send {
     }
     /// Learned scalars and their standard deviations.
     fn learned(&mut self, bound: &Bound) -> Vec<(f64, Option<f64>)>;
-    /// Along which shares of their values some learned scalars may be off together, as [`super::Solution::learned_together`] has them.
+    /// By how much some learned scalars may be off together, in the engine's units, as [`super::Solution::learned_together`] has it.
     fn together(&self, _bound: &Bound, _learned: &[usize]) -> Option<Vec<Vec<f64>>> {
         None
     }

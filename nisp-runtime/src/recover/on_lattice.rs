@@ -89,15 +89,11 @@ impl Carried for LocalSolution {
 
     fn together(&self, bound: &Bound, learned: &[usize]) -> Option<Vec<Vec<f64>>> {
         let covariance = DMatrix::from_row_slice(learned.len(), learned.len(), &self.covariance_of(learned)?);
-        let mut root = Cholesky::new(covariance)?.unpack();
-        // All of what the first may be off by, and not only where the rest stays as it is.
-        let first = self.learned_deviation(*learned.first()?)? / root[(0, 0)];
-        root.column_mut(0).scale_mut(first);
-        let share = |(row, &at): (usize, &usize), direction: usize| {
-            let (value, slope) = bound.learned[at].map.at(self.kept.learned[at]);
-            root[(row, direction)] * slope / value
+        let root = Cholesky::new(covariance)?.unpack();
+        let amount = |(row, &at): (usize, &usize), direction: usize| {
+            root[(row, direction)] * bound.learned[at].map.at(self.kept.learned[at]).1
         };
-        let direction = |direction: usize| learned.iter().enumerate().map(|at| share(at, direction)).collect();
+        let direction = |direction: usize| learned.iter().enumerate().map(|at| amount(at, direction)).collect();
         Some((0..learned.len()).map(direction).collect())
     }
 

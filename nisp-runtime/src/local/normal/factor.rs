@@ -94,11 +94,16 @@ impl Factor {
         self.schur.clone().lu().solve(&unit).map(|column| column[at])
     }
 
-    /// Covariance of some learned scalars' parameters where the others are as they are, row by row.
+    /// Covariance of some learned scalars' parameters, row by row.
     pub(in super::super) fn covariance_of(&self, learned: &[usize]) -> Option<Vec<f64>> {
-        let of = |row: usize, column: usize| self.schur[(learned[row], learned[column])];
-        let covariance = DMatrix::from_fn(learned.len(), learned.len(), of).try_inverse()?;
-        Some(covariance.transpose().as_slice().to_vec())
+        let all = self.schur.clone().try_inverse()?;
+        Some(
+            learned
+                .iter()
+                .flat_map(|&row| learned.iter().map(move |&column| (row, column)))
+                .map(|at| all[at])
+                .collect(),
+        )
     }
 
     /// Solutions without the border, for several right-hand sides: the factors are read once for some of them.

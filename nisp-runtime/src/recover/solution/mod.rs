@@ -215,17 +215,21 @@ impl Solution {
             .collect()
     }
 
-    /// Along which shares of their values learned scalars may be off together: a row for each of as many independent directions as there
-    /// are names, of one standard deviation. In the first, the first scalar is off by all of its deviation, and the rest follow it where
-    /// everything else is as it was found; the others are what is left then. What
-    /// [`Problem::set_uncertain`](crate::problem::Problem::set_uncertain) takes. None for names that were not learned, where
-    /// [`Solution::learned`] has no deviations, and for carriers other than local functions.
+    /// By how much learned scalars may be off together, in declared units and with signs: a row for each of as many independent
+    /// directions as there are names, of one standard deviation. In the first, the first scalar is off by all of its deviation, and the
+    /// rest follow it; the others are what is left then. What [`Problem::set_uncertain`](crate::problem::Problem::set_uncertain) takes.
+    /// None for names that were not learned, where [`Solution::learned`] has no deviations, and for carriers other than local functions.
     pub fn learned_together(&self, names: &[&str]) -> Option<Vec<Vec<f64>>> {
         let slot = |name: &&str| {
             self.bound.learned.iter().position(|learned| self.scene().scalars[learned.slot].name == *name)
         };
         let slots: Vec<usize> = names.iter().map(slot).collect::<Option<_>>()?;
-        self.carried.together(&self.bound, &slots).filter(|_| self.has_bars())
+        let all = self.carried.together(&self.bound, &slots).filter(|_| self.has_bars())?;
+        let outward = |(at, x): (usize, f64)| {
+            let unit = &self.scene().scalars[self.bound.learned[slots[at]].slot].unit;
+            self.bound.system.outward(unit).of(Number::engine(x)).as_declared()
+        };
+        Some(all.into_iter().map(|own| own.into_iter().enumerate().map(outward).collect()).collect())
     }
 
     /// How well every term is met.
