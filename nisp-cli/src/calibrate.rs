@@ -199,6 +199,7 @@ fn object(best: &Fit, fits: &[Fit], warnings: &[String], options: &Frames) -> St
         "points": found.points,
         "misfit_m": found.misfit_m,
         "noise_m": found.noise_m,
+        "camera_m": found.camera,
         "warnings": warnings,
         "file": options.out.join(FILE).display().to_string(),
     });

@@ -1,5 +1,7 @@
 //! Calibration of a bubble from frames in which nothing touches it.
 
+use std::num::NonZero;
+
 use nisp::nearest::Nearest;
 use nisp::units::Number;
 use nisp_data::{Cloud, DataError};
@@ -11,7 +13,6 @@ use crate::contact::{
     TURN, Values, WIDEN, length, minus,
 };
 use crate::entry::Entry;
-use crate::request::Request;
 
 /// Size of the regions over which a theory's error is about the same, for a rim of these semi-axes: a twelfth of the longer axis.
 pub(super) fn region(a: f64, b: f64) -> f64 {
@@ -34,7 +35,7 @@ impl Entry {
 impl References {
     /// Keeps all points that were seen and what was known before, and thins what is solved: a theory is off by about the same
     /// over whole regions, so that points nearer to each other say nothing new of it.
-    pub(super) fn new(cloud: &mut Cloud, request: &Request, given: &Given<'_>) -> Result<Self, PrepareError> {
+    pub(super) fn new(cloud: &mut Cloud, points: Vec<usize>, given: &Given<'_>) -> Result<Self, PrepareError> {
         let (a, b) = (given.size("a")?, given.size("b")?);
         let known = Membrane {
             a_m: Some(a),
@@ -49,7 +50,7 @@ impl References {
         let least = (STRAYS * cloud.points.len() as f64 / regions) as usize;
         let thinned = cloud.one_of_each_cube(region(a, b), least);
         let cloud = std::mem::replace(cloud, thinned);
-        Ok(Self { frames: request.data.len(), cloud, given: known })
+        Ok(Self { cloud, points, given: known })
     }
 
     /// What a solution says of the sensor: `values` are those of its heads.
@@ -88,16 +89,18 @@ impl References {
         };
         let offs = self.offs(contact, values, widen, &pose).ok_or_else(|| missing("surface"))??;
         let deviation = Deviation::fit(&offs, [widen[0] * a, widen[1] * b])?;
-        let left = offs.iter().map(|off| {
+        let left = |off: &Off| {
             let taken = deviation.at(off.place);
             off.distance - taken.iter().zip(off.normal).map(|(x, n)| x * n).sum::<f64>()
-        });
+        };
+        let left: Vec<f64> = offs.iter().map(left).collect();
         let found = Quality {
-            frames: self.frames,
+            frames: self.points.len(),
             points: self.cloud.points.len(),
             pressure,
             misfit_m: spread(offs.iter().map(|off| off.distance)),
-            noise_m: spread(left),
+            camera: self.between_neighbours(&offs, &left),
+            noise_m: spread(left.into_iter()),
             young_deviation: learned.young_deviation,
         };
         let held = format!(
@@ -120,6 +123,24 @@ impl References {
             posterior,
             deviation,
         })
+    }
+
+    /// The standard deviation of what points have left that neighbours in the same frame do not share; nothing of single points.
+    fn between_neighbours(&self, offs: &[Off], left: &[f64]) -> Option<f64> {
+        const PAIR: NonZero<usize> = NonZero::new(2).unwrap();
+        let (mut from, mut differences) = (0, Vec::new());
+        for count in &self.points {
+            let frame = from..from + count;
+            let places: Vec<[f64; 2]> = offs[frame.clone()].iter().map(|off| off.place).collect();
+            let (tree, left) = (Nearest::of(&places)?, &left[frame]);
+            let next = |(at, place): (usize, &[f64; 2])| {
+                let other = tree.some(place, PAIR).into_iter().map(|near| near.index).find(|index| *index != at)?;
+                Some(left[at] - left[other])
+            };
+            differences.extend(places.iter().enumerate().filter_map(next));
+            from += count;
+        }
+        (!differences.is_empty()).then(|| spread(differences.into_iter()) / 2f64.sqrt())
     }
 
     /// How far all points are from the surface of a solution; nothing where it has no displacements.

@@ -93,7 +93,10 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     let source = schema.heads.iter().find(|head| head.source);
     let pressure = source.map(|head| head.name);
     let example = if pressure.is_some() { &theory.pressed } else { &theory.inflated };
-    let mut observed = if calibrates { Observed::all(request)? } else { Observed::read(entry, request, example)? };
+    let (mut observed, points) = match calibrates {
+        true => Observed::all(request)?,
+        false => (Observed::read(entry, request, example)?, Vec::new()),
+    };
     let sample =
         observed.sample.as_ref().map(|sample| Ok::<_, PrepareError>((sample.path.as_path(), numbers(sample)?)));
     let given = Given { scene, request, sample: sample.transpose()?, sizes: entry.sizes };
@@ -116,7 +119,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
         // The calibration knows them.
         assumed.retain(|own| calibration.is_none() || !LEARNED.contains(&own.name));
     }
-    let references = calibrates.then(|| References::new(&mut observed.cloud, request, &given)).transpose()?;
+    let references = calibrates.then(|| References::new(&mut observed.cloud, points, &given)).transpose()?;
     if calibrates && given.says("E").is_none() {
         problem.set_parameter("E", stiff(&given)?)?;
     }

@@ -86,16 +86,17 @@ impl Sample {
 }
 
 impl Observed {
-    /// Reads all files of data as one cloud.
-    pub(super) fn all(request: &Request) -> Result<Self, PrepareError> {
-        let mut cloud = Cloud::default();
+    /// Reads all files of data as one cloud, and says how many points each has.
+    pub(super) fn all(request: &Request) -> Result<(Self, Vec<usize>), PrepareError> {
+        let (mut cloud, mut points) = (Cloud::default(), Vec::new());
         for (_, path) in &request.data {
             let mut one = request.view.read(path)?;
+            points.push(one.points.len());
             cloud.points.append(&mut one.points);
             cloud.warnings.append(&mut one.warnings);
         }
         let source = request.data.first().map(|(_, path)| path.clone()).unwrap_or_default();
-        Ok(Self { sample: None, cloud, source, truth: None })
+        Ok((Self { sample: None, cloud, source, truth: None }, points))
     }
 
     /// Reads what is asked for; without data and sample, the example.

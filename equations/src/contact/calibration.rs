@@ -71,6 +71,9 @@ pub struct Quality {
     pub misfit_m: f64,
     /// The same after the smooth deviation is taken off.
     pub noise_m: f64,
+    /// What neighbouring points of a frame are off each other then: the noise of the camera alone. Nothing in files that do not say it.
+    #[serde(rename = "camera_m", default, skip_serializing_if = "Option::is_none")]
+    pub camera: Option<f64>,
     /// The standard deviation of Young's modulus in pascals, where there is one.
     #[serde(rename = "young_sd_Pa", default, skip_serializing_if = "Option::is_none")]
     pub young_deviation: Option<f64>,
@@ -108,10 +111,10 @@ pub struct Membrane {
 /// Frames of a sensor that nothing touches, and what they were bound with.
 #[derive(Clone, Debug)]
 pub struct References {
-    /// How many frames.
-    pub frames: usize,
-    /// All their points, in metres.
+    /// All their points, in metres, frame by frame.
     pub cloud: Cloud,
+    /// How many points each frame has.
+    pub points: Vec<usize>,
     /// What was known before.
     pub given: Membrane,
 }

@@ -23,7 +23,7 @@ pub struct TrueContact {
 pub struct ContactScore {
     /// The net force on the body, in newtons.
     pub force: [f64; 3],
-    /// By how many newtons the net force grows with each pascal at each point of the contact's face.
+    /// By how many newtons the net force grows with each pascal at each point of the contact's face, along its direction.
     pub per_pascal: Vec<f64>,
     /// The connected parts that are touched, the largest first.
     pub patches: Vec<Patch>,
@@ -94,10 +94,11 @@ impl Contact {
         };
         let forces = self.face.forces(load, &moved);
         let force = weighted_sum(&pressures, &forces);
-        let size = length(force);
-        let along = |own: &[f64; 3]| (0..3).map(|axis| own[axis] * force[axis]).sum::<f64>() / size;
-        // Without any force there is no direction along which it grows.
-        let per_pascal = if size > 0.0 { forces.iter().map(along).collect() } else { Vec::new() };
+        // Without any force, along that of the same pressure everywhere.
+        let direction = if length(force) > 0.0 { force } else { weighted_sum(&vec![1.0; forces.len()], &forces) };
+        let size = length(direction);
+        let along = |own: &[f64; 3]| (0..3).map(|axis| own[axis] * direction[axis]).sum::<f64>() / size;
+        let per_pascal = forces.iter().map(along).collect();
         let known = truth.zip(self.truth.as_ref());
         Some(ContactScore {
             force,

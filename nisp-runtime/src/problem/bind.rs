@@ -31,7 +31,7 @@ impl Problem {
     }
 
     /// How the misfits of a term count.
-    fn loss(&self, term: &schema::Term) -> Loss {
+    pub(crate) fn loss(&self, term: &schema::Term) -> Loss {
         let is_square = term.kind == schema::TermKind::Observation && term.loss == Loss::Square;
         if self.robust && is_square { ROBUST } else { term.loss }
     }

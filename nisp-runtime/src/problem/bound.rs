@@ -33,6 +33,9 @@ pub(crate) struct Bound {
     pub(crate) noisiness: Vec<Vec<Vec<f64>>>,
 }
 
+/// How noisy a value counts as that is left out.
+pub(crate) const LEFT_OUT: f64 = 1e6;
+
 /// A [`super::Tolerance`] in the engine's units.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct EngineTolerance {

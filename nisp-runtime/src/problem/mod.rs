@@ -18,7 +18,7 @@ mod system;
 mod uniform;
 mod units;
 
-pub(crate) use bound::{Bound, EngineTolerance};
+pub(crate) use bound::{Bound, EngineTolerance, LEFT_OUT};
 pub use error::BindError;
 pub(crate) use frame::Frame;
 pub(crate) use place::place;

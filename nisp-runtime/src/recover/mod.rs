@@ -209,6 +209,12 @@ fn solve(
             {
                 solution = with_noise(solution, solve(&bound, None)?);
             }
+            if has_time_for_noise(settings, start)
+                && let Some(bound) = solution.without_strays()
+            {
+                let other = solve(&bound, None)?;
+                solution = if other.is_sound() || other.status == Status::Interrupted { other } else { solution };
+            }
             let solution = solution.compared(first.as_ref());
             let contradicts = is_witness && solution.verdict.contradicts();
             let is_over = solution.is_clear() || contradicts || solution.status == Status::Interrupted;

@@ -108,6 +108,15 @@ impl Warning {
         Self { kind: WarningKind::UnevenNoise, message }
     }
 
+    /// Values that are left out, since they stand alone, in place of what a robust loss left out together.
+    pub(crate) fn left_out(name: &str, count: usize) -> Self {
+        let message = format!(
+            "a robust loss left out neighbouring values of `{name}` together, as none that are outliers: only values that stand alone \
+             were left out instead, {count} of them"
+        );
+        Self { kind: WarningKind::LeftOut, message }
+    }
+
     /// Conditions of groups that contradict each other where they meet.
     pub(crate) fn clash(groups: &str) -> Self {
         let message = format!(
@@ -152,6 +161,8 @@ pub enum WarningKind {
     SharedNoise,
     /// Noise of an observation that is larger where more is measured.
     UnevenNoise,
+    /// Values that stand alone, left out in place of what a robust loss left out.
+    LeftOut,
     /// Conditions that contradict each other where they meet.
     Clash,
     /// A direction of the answer that neither equations nor data determine.

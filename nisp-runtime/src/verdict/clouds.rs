@@ -47,16 +47,19 @@ pub(super) fn checks(bound: &Bound, cloud: &CloudFacts) -> Vec<Check> {
     let tolerance = bound.tolerance(cloud.group, term).map(|tolerance| tolerance.size);
     let within = tolerance.or(term.within.map(|within| bound.system.size(&term.unit).back(within).as_engine()));
     let own = found.iter().filter(|(.., misfit)| !is_stray(*misfit)).map(|(point, place, _)| (*point, *place));
-    let rough = within
-        .or_else(|| {
-            let (points, places): (Vec<_>, Vec<_>) = own.unzip();
-            let directions = directions(bound.problem.scene().schema.coordinates.len(), term.rows)?;
-            roughness(&points, &places, directions)
-        })
-        .unwrap_or(0.0)
-        .max(cloud.resolution);
+    let shown = || {
+        let (points, places): (Vec<_>, Vec<_>) = own.unzip();
+        let directions = directions(bound.problem.scene().schema.coordinates.len(), term.rows)?;
+        roughness(&points, &places, directions)
+    };
+    // A cloud may be noisier than those that its tolerance was found from.
+    let rough = match (within, tolerance) {
+        (Some(within), None) => within,
+        (_, tolerance) => shown().into_iter().chain(tolerance).fold(0.0, f64::max),
+    };
+    let rough = rough.max(cloud.resolution);
     let said = format!(
-        "the surface misses `{}` by {:.2e}{unit} (rms), while the cloud's own roughness is {:.2e}{unit}: check the pose, the \
+        "the surface misses `{}` by {:.2e}{unit} (rms), while the cloud's own roughness is {:.2e}{unit}: check the pressure, the pose, the \
          unit and the parameters; if they are right, the equations do not describe this body",
         term.name,
         outward(rms),

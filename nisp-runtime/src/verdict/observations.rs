@@ -2,7 +2,7 @@
 
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
-use super::{Check, filtered, outliers, parts, patterns, repeated, root_mean_square, scaled, taken};
+use super::{Check, filtered, left_out, outliers, parts, patterns, repeated, root_mean_square, scaled, taken};
 use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
@@ -22,8 +22,6 @@ const HELD: f64 = 0.02;
 const POLLED: f64 = 1.5;
 /// Misfit over its size by the median beyond which few values make most of it.
 const HEAVY: f64 = 2.0;
-/// Share of the values that may be outliers.
-const LEFT: f64 = 0.25;
 /// Values up to which noise may be a source that changes faster than they come, where nothing else is measured, and the share of
 /// their spread that it may be. All simulated answers with so few values and so much noise had taken a source for it.
 const FEW: usize = 100;
@@ -60,7 +58,8 @@ fn of(left: &Misfits, answer: &Answer) -> Vec<Check> {
         checks.extend((0..left.term.columns.len()).map(|number| lonely(left, number, noise)));
     }
     if left.is_robust {
-        checks.push(left_out(left));
+        checks.push(left_out::share(left));
+        checks.extend(left_out::together(left));
     }
     checks.extend(noisy(left));
     checks.extend(patterns::checks(left, answer));
@@ -158,18 +157,6 @@ fn cause(left: &Misfits, finer: &str) -> String {
             left.bound.place(point(at))
         ),
     }
-}
-
-/// The share of values that a robust loss leaves out.
-fn left_out(left: &Misfits) -> Check {
-    let out = left.rows.iter().flatten().filter(|x| x.abs() > TAIL * left.size).count();
-    let said = format!(
-        "{out} of {} values of `{}` are left out as outliers: so many are none, and the equations, a parameter or the carrier do not \
-         fit them",
-        left.count(),
-        left.term.name
-    );
-    Check::new("left", left.name(), (out as f64 / left.count().max(1) as f64, LEFT), said)
 }
 
 /// Misfit of values as a share of each, over the noise as a share of each; nothing where that cannot be told.

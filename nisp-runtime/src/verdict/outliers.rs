@@ -14,7 +14,7 @@ const AROUND: usize = 12;
 
 /// The places of outliers among values in the order of their coordinate, and the sum of the squares of their distances over that
 /// of noise of this deviation in all values.
-pub(super) fn weight(places: &[f64], values: &[f64], deviation: f64) -> (Vec<usize>, f64) {
+pub(crate) fn weight(places: &[f64], values: &[f64], deviation: f64) -> (Vec<usize>, f64) {
     let mut courses = Vec::new();
     for at in SIDE..values.len().saturating_sub(SIDE) {
         let near: Vec<usize> = (at - SIDE..=at + SIDE).filter(|&other| other != at).collect();

@@ -3,6 +3,7 @@
 mod judged;
 mod kept;
 mod noisy;
+mod strays;
 
 use std::time::Instant;
 

@@ -4,7 +4,7 @@ use super::Solution;
 use crate::ends::ends;
 use crate::facts::Answer;
 use crate::noise::{self, Noise};
-use crate::problem::Bound;
+use crate::problem::{Bound, LEFT_OUT};
 use crate::schema::TermKind;
 use crate::solve::driver::{Status, Warning};
 use crate::solve::vector::root_mean_square;
@@ -35,13 +35,17 @@ impl Solution {
         bound
     }
 
-    /// What the user should know of observations whose values count by how noisy they are.
+    /// What the user should know of observations whose values count by how noisy they are, or are left out by themselves.
     pub(super) fn uneven_noise(&self, noise: &Noise) -> Vec<Warning> {
         let groups = self.scene().groups.iter().enumerate();
         let terms =
             groups.flat_map(|(group, own)| own.terms.iter().enumerate().map(move |(at, term)| (group, at, term)));
         let of = |(group, at, term): (usize, usize, &crate::schema::Term)| {
             let rows = &self.bound.noisiness[group][term.first..][..term.rows];
+            let out = rows.iter().flatten().filter(|own| **own == LEFT_OUT).count();
+            if !rows.iter().all(Vec::is_empty) && self.bound.problem.loss(term).is_robust() {
+                return Some(Warning::left_out(term.name, out));
+            }
             let (least, largest) = ends(rows.iter().flatten().copied());
             let deviation = noise.of(group, at)?.deviation;
             let words = |value: f64| {
