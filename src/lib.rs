@@ -30,7 +30,7 @@ macro_rules! main {
 
 pub use nisp_runtime::kernel::{Precision, Scene, SceneRef, scene, scene_in_both_precisions};
 pub use nisp_runtime::live::{FixedLagSmoother, LagSettings, LiveError, RowColumn, Smoothed};
-pub use nisp_runtime::problem::{BindError, Points, Problem, Rest, Tolerance};
+pub use nisp_runtime::problem::{BindError, Doubt, Points, Problem, Rest, Tolerance};
 pub use nisp_runtime::recover::{
     Carrier, Checkpoint, CheckpointError, LearnedValue, Misfits, Optimizer, RecoverError, Report, Session, Settings,
     Solution, TermReport, Width, beyond_splines, recover, resume,

@@ -63,6 +63,10 @@ pub(crate) fn calibrate(program: &Program, options: &Frames) -> Result<ExitCode,
         format!("{law}: the budget was spent before the fit had settled; give more --budget")
     }));
     warnings.extend(best.solution.verdict.failed().map(|check| check.message.clone()));
+    let doubts: Vec<String> =
+        best.calibration.doubts().into_iter().filter(|own| own.value > own.limit).map(|own| own.message).collect();
+    let is_settled = best.solution.status != Status::Budget && doubts.is_empty();
+    warnings.extend(doubts);
     warnings.extend(best.calibration.doubt());
     match picture(&best.calibration) {
         Ok(bytes) => files.push((PLOT, bytes)),
@@ -79,7 +83,6 @@ pub(crate) fn calibrate(program: &Program, options: &Frames) -> Result<ExitCode,
     } else {
         table(best, &fits, &warnings, options)
     })?;
-    let is_settled = best.solution.status != Status::Budget;
     Ok(if is_settled { ExitCode::SUCCESS } else { ExitCode::from(NOT_CONVERGED) })
 }
 

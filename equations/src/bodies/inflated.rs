@@ -171,6 +171,7 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
                 common: calibration.found.common(),
             };
             problem.set_tolerance("surface", "cloud", tolerance)?;
+            calibration.doubts().into_iter().for_each(|doubt| problem.add_doubt(doubt));
             for amounts in &calibration.posterior {
                 let is_said = |name: &str| request.parameters.iter().any(|(own, _)| own == name);
                 let amounts = amounts.iter().filter(|(name, _)| !is_said(name));

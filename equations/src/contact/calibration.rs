@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
+use nisp::Doubt;
 use nisp_data::Cloud;
 use nisp_data::input::read_text;
 use serde::{Deserialize, Serialize};
@@ -143,6 +144,37 @@ impl Calibration {
         let about =
             "# What free frames told of a sensor, for --calibration. Lengths are in metres, angles in radians.\n";
         Ok(format!("{about}{}", toml::to_string(self)?))
+    }
+
+    /// What every answer rests on: how well the theory and the smooth deviation describe the free frames.
+    pub fn doubts(&self) -> Vec<Doubt> {
+        /// What a theory may miss free frames by, as a share of the longer semi-axis: a real bubble is .3 hundredths off.
+        const MISSED: f64 = 0.01;
+        /// What may be left of free frames, over the camera's own noise: 1.8 times on a real bubble.
+        const LEFT: f64 = 2.5;
+        /// Noise of a camera that matters, as a share of the longer semi-axis.
+        const LEAST: f64 = 5e-4;
+        let Quality { misfit_m, noise_m, camera, .. } = self.found;
+        let size = [self.membrane.a_m, self.membrane.b_m].into_iter().flatten().fold(0.0, f64::max);
+        let causes = "did something touch the bubble in a free frame, were frames of several pressures or sensors given as one, or are \
+                      pressure, sizes or unit wrong? calibrate anew";
+        let missed = format!(
+            "the theory misses the calibration's free frames by {:.2} mm, {:.1} % of the rim's semi-axis: {causes}",
+            1e3 * misfit_m,
+            100.0 * misfit_m / size
+        );
+        let doubt = |value, limit, message| Doubt { of: "calibration", value, limit, message };
+        let mut all = vec![doubt(misfit_m / size, MISSED, missed)];
+        all.extend(camera.map(|camera| {
+            let left = format!(
+                "the calibration's free frames are {:.2} mm off beside the smooth deviation, and neighbouring points {:.2} mm: {causes}",
+                1e3 * noise_m,
+                1e3 * camera
+            );
+            doubt(noise_m / camera.max(LEAST * size), LEFT, left)
+        }));
+        all.retain(|own| own.value.is_finite());
+        all
     }
 
     /// A warning where Young's modulus is hardly known. A softer membrane that is stretched more at rest has about the same free shape.

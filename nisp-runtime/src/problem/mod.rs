@@ -39,6 +39,21 @@ pub struct Problem {
     robust: bool,
     /// Given parameters that may be off together: their slots, and by how much each is off at one standard deviation.
     pub(crate) uncertain: Vec<Vec<(usize, Number<Si>)>>,
+    /// What is known of the data from elsewhere, for the verdict.
+    pub(crate) doubts: Vec<Doubt>,
+}
+
+/// Something that data rest on, and how well it stands: a verdict fails where the value is above its limit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Doubt {
+    /// What they rest on, in a word.
+    pub of: &'static str,
+    /// What was found, without unit.
+    pub value: f64,
+    /// Up to where it stands.
+    pub limit: f64,
+    /// What is wrong where it does not, and what to do.
+    pub message: String,
 }
 
 /// Points of a group, flat and point by point, with what belongs to each.
@@ -131,7 +146,7 @@ impl Problem {
             Origin::HeadScale(_) | Origin::SideScale { .. } => None,
         });
         let groups = vec![None; scene.schema.groups.len()];
-        Self { scene, scalars: scalars.collect(), groups, robust: false, uncertain: Vec::new() }
+        Self { scene, scalars: scalars.collect(), groups, robust: false, uncertain: Vec::new(), doubts: Vec::new() }
     }
 
     /// The scene.
@@ -197,6 +212,11 @@ impl Problem {
         let own = amounts.iter().map(amount).collect::<Result<_, _>>()?;
         self.uncertain.push(own);
         Ok(())
+    }
+
+    /// Says how well something stands that the data rest on; the verdict's check `given` takes it over.
+    pub fn add_doubt(&mut self, doubt: Doubt) {
+        self.doubts.push(doubt);
     }
 
     /// Whether measured values that are far off count for little: observations whose loss is the square get Welsch's instead,

@@ -99,6 +99,9 @@ fn said(bound: &Bound, known: Values<'_>, score: &Score) -> String {
         Known::Direction { cloud, axis: at } => {
             format!("`{}` turned by {:.1} degrees about {}", term(cloud).0, score.change.to_degrees(), axis(at))
         }
-        Known::Size { cloud } => format!("`{}` larger by {:.1} %", term(cloud).0, 100.0 * score.change),
+        Known::Size { cloud } => {
+            let how = if score.change > 0.0 { "larger" } else { "smaller" };
+            format!("`{}` {how} by {:.1} %", term(cloud).0, 100.0 * score.change.abs())
+        }
     }
 }

@@ -18,6 +18,7 @@ mod interpolated;
 mod jolts;
 pub(crate) mod jumps;
 pub(crate) mod known;
+mod lasting;
 pub(crate) mod leaning;
 mod leaps;
 mod learned;
@@ -130,6 +131,8 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
     // What is given wrongly leaves its traces everywhere: the likely cause comes first.
     let taken = known::Values { scalars: &answer.scalars, clouds: &answer.clouds };
     let mut checks: Vec<Check> = known::check(bound, &answer.scores, taken).into_iter().collect();
+    let doubts = bound.problem.doubts.iter();
+    checks.extend(doubts.map(|own| Check::new("given", ("", own.of), (own.value, own.limit), own.message.clone())));
     for (at, (group, facts)) in schema.groups.iter().zip(&answer.facts).enumerate() {
         let programs = kernels[at].programs;
         let rows = facts.rows(programs, group, &answer.scalars);

@@ -2,7 +2,7 @@
 
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
-use super::{Check, filtered, left_out, outliers, parts, patterns, repeated, root_mean_square, scaled, taken};
+use super::{Check, filtered, lasting, left_out, outliers, parts, patterns, repeated, root_mean_square, scaled, taken};
 use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
@@ -41,6 +41,7 @@ pub(super) fn checks(bound: &Bound, group: usize, (rows, noise): (&[Vec<f64>], &
         let is_polled = own.iter().any(|check| check.check == "polled" && !check.passed);
         let mut checks = if is_polled { Vec::new() } else { filtered::checks(&left, shared) };
         checks.extend(own);
+        checks.extend(lasting::check(&left, shared));
         Some(checks)
     };
     observations.filter_map(of).flatten().collect()
