@@ -33,7 +33,9 @@ impl Record {
         let record = Self { scene, request: request.clone(), columns: Vec::new(), unlabelled: Vec::new() };
         let smoother = FixedLagSmoother::new(record.problem(0.0)?, LagSettings::default())?;
         let is_there = |column: &RowColumn| {
-            !column.may_lack || header(request, column.name, table).is_some() || !table.lacks(column.name)
+            !column.may_lack
+                || header(request, column.name, table).is_some()
+                || !table.lacks(column.name, smoother.columns().iter().map(|own| own.name))
         };
         let mut columns: Vec<_> = smoother.columns().iter().map(|column| (*column, is_there(column))).collect();
         if columns.iter().all(|(_, is_there)| !is_there) {

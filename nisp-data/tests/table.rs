@@ -408,5 +408,9 @@ fn cells_that_were_not_measured_are_gaps_where_gaps_may_be() {
     assert!(table.measured("r", "1").unwrap_err().to_string().contains("not a finite number"));
     let chosen = table.chosen_measured("x", "p", "1").unwrap();
     assert!(chosen[0].is_nan() && chosen[1..] == [2.0, 3.0]);
-    assert!(table.lacks("x") && !table.lacks("q") && !table.lacks("p"));
+    let lacks = |name: &str| table.lacks(name, ["t", "q"].into_iter());
+    assert!(lacks("x") && !lacks("q") && !lacks("p"));
+    // What is meant by another name is not meant by a longer or shorter one.
+    let short = parse("t [s],q [deg]\n0,1\n1,1\n");
+    assert!(short.lacks("th", ["t", "q"].into_iter()) && !short.lacks("th", std::iter::empty()));
 }

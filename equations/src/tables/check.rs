@@ -53,7 +53,7 @@ pub(super) fn normals(schema: &Scene, tables: &Tables<'_>) -> Result<(), Prepare
     let [axis, ..] = schema.coordinates else { return Ok(()) };
     let edges = schema.groups.iter().filter(|group| group.place.is_some_and(|at| at.portion == Portion::Boundary));
     for group in edges {
-        let lacks = |name: &str| tables.of(group).is_none_or(|table| table.lacks(name));
+        let lacks = |name: &str| tables.of(group).is_none_or(|table| table.lacks(name, std::iter::empty()));
         let vectors = group.columns.iter().filter_map(|column| {
             let base = column.name.strip_suffix(&format!("_{}", axis.name))?;
             let is_whole = |other: &Coordinate| {

@@ -28,7 +28,7 @@ pub(super) fn rows(
     found: &mut Found,
 ) -> Result<Rows, PrepareError> {
     let points = places(schema, table, request);
-    let columns = columns(group, table, request, found);
+    let columns = columns((schema, group), table, request, found);
     let (points, columns) = match (points, columns) {
         (Ok(points), Ok(columns)) => (points, columns),
         (points, columns) => {
@@ -68,7 +68,8 @@ pub(super) fn places(schema: &Scene, table: &Table, request: &Request) -> Result
 
 /// What is said where a table has some of the coordinates: it may have a column for each gauge.
 fn gauges(schema: &Scene, table: &Table, fault: PrepareError) -> PrepareError {
-    let lacking: Vec<&str> = schema.coordinates.iter().map(|axis| axis.name).filter(|axis| table.lacks(axis)).collect();
+    let lacking: Vec<&str> =
+        schema.coordinates.iter().map(|axis| axis.name).filter(|axis| table.lacks(axis, std::iter::empty())).collect();
     let many = schema.coordinates.len() + 1;
     match &lacking[..] {
         [axis, ..] if lacking.len() < schema.coordinates.len() && table.headers().count() > many => {
@@ -79,9 +80,17 @@ fn gauges(schema: &Scene, table: &Table, fault: PrepareError) -> PrepareError {
 }
 
 /// The columns of a group, and what is to be said of them.
-fn columns(group: &Group, table: &Table, request: &Request, found: &mut Found) -> Result<Vec<Vec<f64>>, PrepareError> {
+fn columns(
+    (schema, group): (&Scene, &Group),
+    table: &Table,
+    request: &Request,
+    found: &mut Found,
+) -> Result<Vec<Vec<f64>>, PrepareError> {
     // A quantity without a column of its own is not measured, as long as another one is.
-    let is_lacking = |name: &str| group.may_lack(name) && header(request, name, table).is_none() && table.lacks(name);
+    let names =
+        || schema.coordinates.iter().map(|axis| axis.name).chain(group.columns.iter().map(|column| column.name));
+    let is_lacking =
+        |name: &str| group.may_lack(name) && header(request, name, table).is_none() && table.lacks(name, names());
     let is_any = group.columns.iter().any(|column| !is_lacking(column.name));
     let columns = gathered(group.columns.iter().map(|c| {
         if is_any && is_lacking(c.name) {

@@ -71,11 +71,16 @@ impl Table {
         chosen.is_some_and(says) || own()
     }
 
-    /// True if no header is, or may be meant to be, that of a quantity.
-    pub fn lacks(&self, name: &str) -> bool {
+    /// True if no header is, or may be meant to be, that of a quantity. Those of other quantities are not meant.
+    pub fn lacks<'a>(&self, name: &str, others: impl Iterator<Item = &'a str>) -> bool {
+        let taken: Vec<&str> = others
+            .filter(|own| *own != name)
+            .flat_map(|own| self.answering(own, None))
+            .map(|c| c.header.as_str())
+            .collect();
         self.answering(name, None).is_empty()
             && self.matching(|header| starts_with_name(header, name)).is_empty()
-            && self.nearest(name, &|_| true).is_none()
+            && self.nearest(name, &|header| !taken.contains(&header)).is_none()
     }
 
     fn converted<'a>(
