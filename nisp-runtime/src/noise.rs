@@ -1,5 +1,6 @@
 //! How noisy the data are, before anything is fitted to them.
 
+mod course;
 mod differences;
 mod fits;
 mod given;
@@ -7,6 +8,7 @@ mod level;
 
 use rayon::prelude::*;
 
+pub(crate) use self::course::along;
 pub(crate) use self::differences::{EIGHT, by_differences, differences, of_differences};
 pub(crate) use self::given::of_given;
 pub(crate) use self::level::of_answer;

@@ -15,6 +15,8 @@ const SHIFTED: [(&str, &str); 2] = [("degC", "Celsius"), ("degF", "Fahrenheit")]
 const NEARER: f64 = 0.35;
 /// What is on such a scale is this share of the other at most: an oven of 600 K stands in air of 293 K, not of 293 degrees.
 const LOWER: f64 = 0.35;
+/// How near the least measurement of a record is to where it rests in the right unit, as a share, where the rest goes past that in the wrong one.
+const BEGINS: f64 = 0.03;
 /// Factors between units, and those between units that have a time in them.
 const FACTORS: [f64; 6] = [1e3, 1e-3, 1e2, 1e-2, 1e6, 1e-6];
 const FACTORS_OF_TIME: [f64; 4] = [60.0, 1.0 / 60.0, 3600.0, 1.0 / 3600.0];
@@ -57,7 +59,9 @@ fn question(rest: &Rest) -> Option<String> {
         let ends = if low == high { format!("{low}") } else { format!("{low} to {high}") };
         format!("{ends} {unit}").trim_end().to_string()
     };
-    let measured = format!("`{name}` is measured at {}", range(rest.measured));
+    let [low, high] = rest.measured;
+    let low = if gap(rest.measured, rest.at) > 0.0 { low } else { rest.least };
+    let measured = format!("`{name}` is measured at {}", range([low, high]));
     Some(match rest.by {
         Some((group, term)) => {
             format!("{measured}, and `{group}.{term}` would hold it at {} where nothing acts: {other}", range(rest.at))
@@ -74,10 +78,13 @@ fn shifted(rest: &Rest) -> Option<String> {
         let moved = |range: Range| range.map(|x| conversion.of(Number::file(x)).as_declared());
         let is_low = |one: Range, other: Range| one[0] <= LOWER * other[1];
         let is_near = |one: Range, other: Range| is_low(one, other) && gap(moved(one), other) <= NEARER * apart;
-        let is_measured = is_near(rest.measured, rest.at);
-        (is_measured || is_near(rest.at, rest.measured)).then_some((*header, *words, is_measured))
+        // A record that begins at rest may go far from there: to where it is said to rest, in the wrong unit.
+        let [least, resting] = [[rest.least; 2], [rest.at[0]; 2]];
+        let begins = || is_low(least, resting) && gap(moved(least), resting) <= BEGINS * rest.at[0];
+        let is_measured = if apart > 0.0 { is_near(rest.measured, rest.at) } else { begins() };
+        (is_measured || apart > 0.0 && is_near(rest.at, rest.measured)).then_some((*header, *words, is_measured))
     };
-    let found: Vec<_> = SHIFTED.iter().filter(|_| apart > 0.0).filter_map(nearer).collect();
+    let found: Vec<_> = SHIFTED.iter().filter_map(nearer).collect();
     let &(header, _, is_measured) = found.first()?;
     let words: Vec<&str> = found.iter().map(|(_, words, _)| *words).collect();
     let (name, words) = (rest.column.name, words.join(" or "));

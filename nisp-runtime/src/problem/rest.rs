@@ -11,6 +11,8 @@ pub struct Rest {
     pub column: &'static Column,
     /// Least and greatest value of the middle four fifths of what was measured, in the column's unit.
     pub measured: [f64; 2],
+    /// The least value that was measured, in the column's unit.
+    pub least: f64,
     /// Least and greatest value that would be measured, in the column's unit.
     pub at: [f64; 2],
 }

@@ -60,6 +60,7 @@ struct Reading {
     column: &'static Column,
     /// In the column's unit.
     measured: [f64; 2],
+    least: f64,
     /// The mean of all measurements, in the engine's units.
     mean: f64,
 }
@@ -76,9 +77,9 @@ fn readings(bound: &Bound, group: usize, term: &'static Term) -> Option<Vec<Read
         let last = values.len().checked_sub(1)?;
         let tail = (TAIL * values.len() as f64) as usize;
         let outward = bound.system.outward(&column.unit);
-        let measured = [tail, last - tail].map(|at| outward.of(Number::engine(values[at])).as_declared());
+        let [low, high, least] = [tail, last - tail, 0].map(|at| outward.of(Number::engine(values[at])).as_declared());
         let mean = values.iter().sum::<f64>() / values.len() as f64;
-        Some(Reading { group, row, head: jet.head, column, measured, mean })
+        Some(Reading { group, row, head: jet.head, column, measured: [low, high], least, mean })
     };
     term.columns.iter().zip(term.first..).map(reading).collect()
 }
@@ -91,7 +92,7 @@ fn bounds(bound: &Bound, reading: &Reading) -> Option<Rest> {
     }
     let declared = |end: Number<Si>| reading.column.unit.factor.back(end).as_declared();
     let at = [head.lower.map_or(f64::NEG_INFINITY, declared), head.upper.map_or(f64::INFINITY, declared)];
-    Some(Rest { by: None, column: reading.column, measured: reading.measured, at })
+    Some(Rest { by: None, column: reading.column, measured: reading.measured, least: reading.least, at })
 }
 
 /// A reading of a head's value.
@@ -134,7 +135,7 @@ impl Place<'_> {
         let values: Vec<f64> = (0..scene.heads.len()).map(still).collect();
         let bars = self.probe.sensitivities(row, &jets(self.probe, &values, None), &self.bound.scalars);
         let is_read = |at: usize| self.probe.rms(&bars[at * self.probe.stride..]) > 0.0;
-        let Reading { row: observed, head: own, column, measured, .. } = gauge.reading;
+        let Reading { row: observed, head: own, column, measured, least, .. } = gauge.reading;
         let is_like = |unit: &schema::Unit| unit.exponents == column.unit.exponents;
         let is_open = |(at, jet): (usize, &Jet)| {
             let head = &scene.heads[jet.head];
@@ -156,7 +157,7 @@ impl Place<'_> {
             Some(outward.of(Number::engine(*rows.get(observed * gauge.probe.stride)?)).as_declared())
         });
         let at: [f64; 2] = ends(at).into();
-        let rest = Rest { by: Some((group.name, term.name)), column, measured, at };
+        let rest = Rest { by: Some((group.name, term.name)), column, measured, least, at };
         at.iter().all(|x| x.is_finite()).then_some(rest)
     }
 }

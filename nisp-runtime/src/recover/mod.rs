@@ -256,7 +256,7 @@ fn limits(settings: &Settings) -> Limits {
 /// Of an answer and another one in which values count by their noise, the one that stands. A law of noise under which a sound answer
 /// contradicts its data is none: a few large values may be off for other reasons. A run that is stopped goes on from where it was.
 fn with_noise(before: Solution, after: Solution) -> Solution {
-    let is_worse = before.is_sound() && !after.is_sound();
+    let is_worse = !after.is_sound() && (before.is_sound() || before.verdict.worst() <= after.verdict.worst());
     match after.status {
         Status::Interrupted => after,
         Status::Budget => before,

@@ -100,10 +100,10 @@ impl Warning {
         Self { kind: WarningKind::SharedNoise, message }
     }
 
-    /// Noise of an observation that goes with its level: so much of it at its least and largest.
+    /// Noise of an observation that goes with its level, or is larger in a part of a record: so much of it at its least and largest.
     pub(crate) fn uneven_noise(name: &str, [least, largest]: [&str; 2]) -> Self {
         let message = format!(
-            "the noise of `{name}` goes with its level, from {least} to {largest}: each value counts by how noisy it is"
+            "the noise of `{name}` is not alike everywhere, from {least} to {largest}: each value counts by how noisy it is"
         );
         Self { kind: WarningKind::UnevenNoise, message }
     }

@@ -8,7 +8,7 @@ const ORDER: usize = 3;
 const LEAST: usize = 20;
 const MOST: usize = 400;
 /// Longest running mean, and longest parabola on each side, in rows.
-const LONGEST: usize = 13;
+const LONGEST: usize = 25;
 const WIDEST: usize = 10;
 /// Rows on each side that show how large differences are about a row, at least, and the smallest that they may be there, as a share of all.
 const NEARBY: usize = 8;

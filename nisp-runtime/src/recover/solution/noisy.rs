@@ -58,7 +58,8 @@ impl Solution {
     }
 }
 
-/// Rows of an observation whose noise goes with their level, and how noisy their points are beside each other.
+/// Rows of an observation whose noise goes with their level or is larger in a part of a record, and how noisy their points are beside each
+/// other.
 fn noisy(bound: &Bound, answer: &Answer, (group, at): (usize, usize), noise: &Noise) -> Vec<(usize, Vec<f64>)> {
     let schema = bound.problem.scene().schema;
     let own = &schema.groups[group];
@@ -84,8 +85,10 @@ fn noisy(bound: &Bound, answer: &Answer, (group, at): (usize, usize), noise: &No
         if noise.is_some_and(|noise| noise.is_followed(root_mean_square(misfits.iter().copied()))) {
             return None;
         }
-        let found = noise::of_answer(&values, &misfits, is_record)?;
-        let mut noisiness = vec![1.0; measured.len()];
+        let measured: Vec<f64> = there.iter().map(|&p| measured[p]).collect();
+        let by_parts = || if is_record { noise::along(&measured, &misfits) } else { None };
+        let found = noise::of_answer(&values, &misfits, is_record).or_else(by_parts)?;
+        let mut noisiness = vec![1.0; is_there.len()];
         there.iter().zip(found).for_each(|(&p, found)| noisiness[p] = found);
         Some((row, noisiness))
     };
