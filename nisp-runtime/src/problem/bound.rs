@@ -87,6 +87,35 @@ impl Bound {
         values.iter().zip(self.measured(group, term, own)).map(|(value, noisiness)| value / noisiness).collect()
     }
 
+    /// How noisy the measured values of an observation's row are beside each other.
+    pub(crate) fn noisiness_of(&self, (group, term): (usize, &schema::Term), row: usize) -> Vec<f64> {
+        let points = self.coordinates[group].len() / self.problem.scene.schema.coordinates.len();
+        let all: Vec<f64> = (0..points).map(|p| self.noisiness_at((group, row), p)).collect();
+        self.measured(group, term, &all)
+    }
+
+    /// Takes observations of which it is known how noisy each value is as that: values that are left out were not measured, and a robust loss
+    /// has nothing more to leave out.
+    pub(crate) fn take_noisiness(&mut self) {
+        for (at, group) in self.problem.scene.schema.groups.iter().enumerate() {
+            for (number, term) in group.terms.iter().enumerate() {
+                let own = &self.noisiness[at][term.first..][..term.rows];
+                if own.iter().all(Vec::is_empty) {
+                    continue;
+                }
+                self.losses[at][number] = Loss::Square;
+                for (own, &column) in own.iter().zip(term.columns) {
+                    if group.may_lack(group.columns[column].name) {
+                        let values = self.columns[at][column].iter_mut().zip(own);
+                        values
+                            .filter(|(_, noisiness)| **noisiness == LEFT_OUT)
+                            .for_each(|(value, _)| *value = f64::NAN);
+                    }
+                }
+            }
+        }
+    }
+
     /// Keeps of a group what is said of some of its points only.
     pub(crate) fn keep_noisiness(&mut self, group: usize, points: &[usize]) {
         for own in self.noisiness[group].iter_mut().filter(|own| !own.is_empty()) {

@@ -1,6 +1,5 @@
 //! How noisy observations are beside each other, in saved states.
 
-use crate::loss::Loss;
 use crate::problem::Bound;
 use crate::solve::fault::Fault;
 use crate::solve::state::State;
@@ -19,14 +18,9 @@ pub(super) fn restored(mut bound: Bound, state: &State) -> Result<Bound, Fault> 
         let points = bound.coordinates[group].len() / bound.problem.scene().schema.coordinates.len();
         for (row, own) in rows.iter_mut().enumerate().filter(|(row, _)| state.has(&name(group, *row))) {
             *own = state.sized(&name(group, row), points)?;
-            // Where it is known how noisy values are, a robust loss has nothing to leave out.
-            let terms = bound.problem.scene().schema.groups[group].terms.iter();
-            let own = terms
-                .zip(&mut bound.losses[group])
-                .filter(|(term, _)| (term.first..term.first + term.rows).contains(&row));
-            own.for_each(|(_, loss)| *loss = Loss::Square);
         }
     }
+    bound.take_noisiness();
     Ok(bound)
 }
 

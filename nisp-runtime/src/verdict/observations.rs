@@ -219,11 +219,11 @@ fn twice(left: &Misfits, column: usize) -> Option<Check> {
 fn lonely(left: &Misfits, number: usize, noise: ObservationNoise) -> Check {
     let column = left.term.columns[number];
     let values = left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]);
-    let values = left.bound.evened((left.group, left.term), left.term.first + number, values);
-    let places = in_order(&left.places, &left.places);
-    let values = in_order(&left.places, &values);
+    let noisiness: Vec<f64> = left.bound.noisiness_of((left.group, left.term), left.term.first + number);
+    let [places, values, noisiness] = [&left.places, &values, &noisiness].map(|own| in_order(&left.places, own));
     let deviation = noise.deviation.max(ROUNDING * noise.spread);
-    let (found, weight) = outliers::weight(&places, &values, deviation);
+    let deviations: Vec<f64> = noisiness.into_iter().map(|own| deviation * own).collect();
+    let (found, weight) = outliers::weight(&places, &values, &deviations);
     let (stand, them) = if found.len() == 1 { ("value stands", "it") } else { ("values stand", "them") };
     let said = format!(
         "{} {stand} alone in `{}`, more than ten times the noise of {} off the neighbours: the answer follows {them}; remove {them}, or \

@@ -13,8 +13,8 @@ const FAR: f64 = 10.0;
 const AROUND: usize = 12;
 
 /// The places of outliers among values in the order of their coordinate, and the sum of the squares of their distances over that
-/// of noise of this deviation in all values.
-pub(crate) fn weight(places: &[f64], values: &[f64], deviation: f64) -> (Vec<usize>, f64) {
+/// of noise of these deviations.
+pub(crate) fn weight(places: &[f64], values: &[f64], deviations: &[f64]) -> (Vec<usize>, f64) {
     let mut courses = Vec::new();
     for at in SIDE..values.len().saturating_sub(SIDE) {
         let near: Vec<usize> = (at - SIDE..=at + SIDE).filter(|&other| other != at).collect();
@@ -35,12 +35,12 @@ pub(crate) fn weight(places: &[f64], values: &[f64], deviation: f64) -> (Vec<usi
         let mut around: Vec<f64> = around.iter().map(|(_, _, rough)| *rough).collect();
         around.sort_by(f64::total_cmp);
         let quiet = around[around.len() / 4];
-        if distance > FAR * rough.max(quiet).max(deviation) {
+        if distance > FAR * rough.max(quiet).max(deviations[at]) {
             found.push(at);
             sum += distance * distance;
         }
     }
-    let noise = deviation * deviation * values.len() as f64;
+    let noise: f64 = deviations.iter().map(|own| own * own).sum();
     (found, if sum > 0.0 { sum / noise } else { 0.0 })
 }
 
@@ -63,7 +63,7 @@ mod tests {
             let courses: [fn(f64) -> f64; 3] = [f64::sin, |x| (-x / 0.02).exp(), |x| if x > 5.02 { 1.0 } else { 0.0 }];
             for course in courses {
                 let (places, values) = record(noise, course);
-                assert_eq!(weight(&places, &values, noise), (vec![], 0.0));
+                assert_eq!(weight(&places, &values, &[noise; 200]), (vec![], 0.0));
             }
         }
     }
@@ -75,7 +75,7 @@ mod tests {
             let mut random = StdRng::seed_from_u64(seed);
             let places: Vec<f64> = (0..200).map(|i| 0.025 * f64::from(i)).collect();
             let values: Vec<f64> = places.iter().map(|&x| x.exp() * (1.0 + 0.05 * normal(&mut random))).collect();
-            assert_eq!(weight(&places, &values, 0.05), (vec![], 0.0), "seed {seed}");
+            assert_eq!(weight(&places, &values, &[0.05; 200]), (vec![], 0.0), "seed {seed}");
         }
     }
 
@@ -84,7 +84,7 @@ mod tests {
         let (places, mut values) = record(1e-2, f64::sin);
         values[50] += 0.5;
         values[120] -= 0.5;
-        let (found, weight) = weight(&places, &values, 1e-2);
+        let (found, weight) = weight(&places, &values, &[1e-2; 200]);
         assert_eq!(found, [50, 120]);
         // Two squares of fifty deviations over two hundred, up to the neighbours' noise.
         assert!((weight / 25.0 - 1.0).abs() < 0.2, "{weight}");

@@ -1,7 +1,6 @@
 //! Values that stand alone, where a robust loss leaves out more than those.
 
 use super::Solution;
-use crate::loss::Loss;
 use crate::noise::{self, in_order};
 use crate::problem::Bound;
 use crate::problem::LEFT_OUT;
@@ -31,14 +30,14 @@ impl Solution {
                 let [order, sorted] = [&there, &places].map(|own| in_order(&places, own));
                 for (row, &column) in (term.first..).zip(term.columns) {
                     let values = in_order(&places, &bound.measured(group, term, &bound.columns[group][column]));
-                    let (alone, _) = outliers::weight(&sorted, &values, noise.deviation);
+                    let (alone, _) = outliers::weight(&sorted, &values, &vec![noise.deviation; values.len()]);
                     let mut noisiness = vec![1.0; points];
                     alone.into_iter().for_each(|number| noisiness[order[number] as usize] = LEFT_OUT);
                     bound.noisiness[group][row] = noisiness;
                 }
-                bound.losses[group][at] = Loss::Square;
             }
         }
+        bound.take_noisiness();
         Some(bound)
     }
 }
