@@ -97,13 +97,8 @@ impl Factor {
     /// Covariance of some learned scalars' parameters, row by row.
     pub(in super::super) fn covariance_of(&self, learned: &[usize]) -> Option<Vec<f64>> {
         let all = self.schur.clone().try_inverse()?;
-        Some(
-            learned
-                .iter()
-                .flat_map(|&row| learned.iter().map(move |&column| (row, column)))
-                .map(|at| all[at])
-                .collect(),
-        )
+        let places = learned.iter().flat_map(|&row| learned.iter().map(move |&column| (row, column)));
+        Some(places.map(|at| all[at]).collect())
     }
 
     /// Solutions without the border, for several right-hand sides: the factors are read once for some of them.
