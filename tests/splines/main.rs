@@ -24,6 +24,7 @@ mod oscillator;
 mod readings;
 mod spoiled;
 mod steps;
+mod storms;
 mod told;
 
 /// Normal numbers, about: sums of twelve uniform ones.

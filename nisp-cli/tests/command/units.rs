@@ -54,6 +54,11 @@ fn degrees_under_kelvins_are_suspected() {
     assert!(said.contains(ASKED) && said.contains("Fahrenheit"), "{said}");
     let said = checked(ROOM, "T [K]", |t| 1e3 * kelvins(t));
     assert!(said.contains("is one of them in another unit, 1000 times too large or small?"), "{said}");
+    // An oven that begins in the room, and is hotter than the room in kelvins at last.
+    let said = checked(ROOM, "T [K]", |t| 4.9 + 60.0 * t);
+    assert!(said.contains("`T` is measured at 4.9 to") && said.contains(question), "{said}");
+    let said = checked(ROOM, "T [K]", |t| 278.0 + 20.0 * t);
+    assert!(!said.contains(ASKED), "{said}");
     // A minute for a second is asked of a flow, and not of a temperature.
     let said = checked(ROOM, "T [K]", |t| 60.0 * kelvins(t));
     assert!(!said.contains("another unit"), "{said}");
