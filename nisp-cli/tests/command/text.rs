@@ -296,6 +296,7 @@ fn usual_slips_have_messages_of_their_own() {
         ("d(T, t)", "dT/dt", "room.pde --data one.csv", "a derivative is written `d(T, t)`"),
         ("d(T, t)", "T'", "room.pde --data one.csv", "a derivative is written `d(u, t)`"),
         ("C * d", "C × d", "room.pde --data one.csv", "a product is written with `*`"),
+        ("observe T", "observe T - 2 [K] ~ T2", "room.pde --data one.csv", "an observed expression needs a name"),
         ("T [K]", "T [°C]", "room.pde --data one.csv", "temperatures are in `K`"),
         ("t", "t", "room.txt --data one.csv", "ends in .pde"),
         ("t", "t", "room.pde --config list.toml", "or a table [data] of GROUP = FILE pairs"),

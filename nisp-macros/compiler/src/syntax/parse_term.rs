@@ -53,7 +53,7 @@ pub(super) fn observe(
         }
         waiting.push(recover::name(stream, context, "what is observed")?);
     }
-    if stream.at("~") || stream.at("==") {
+    if ["~", "==", "-", "+", "*", "/", "^"].into_iter().any(|operator| stream.at(operator)) {
         return Err(context.errors.report(stream.place(), catalogue::unnamed_observation()));
     }
     end_statement(stream, context)?;
