@@ -10,7 +10,7 @@ use crate::{normals, of, simulated, solve};
 
 interpret! {
     /// A vessel that drains, with a gauge of its height.
-    mod vessel {
+    pub(crate) mod vessel {
         units: off;
         coordinates: t;
         fields: h;

@@ -5,20 +5,7 @@ use nisp::{Carrier, Problem, Solution};
 use nisp_interpreter::interpret;
 
 use crate::correlated::{ROWS, levels, source, times, vessel, with};
-use crate::{normals, of, simulated, solve};
-
-interpret! {
-    /// A basin that drains slowly.
-    mod basin {
-        units: off;
-        coordinates: t;
-        fields: h;
-        sources: q;
-        on motion { content: 12 * d(h, t) == q - 0.8 * h; }
-        on samples { observe h; }
-        scene filling { }
-    }
-}
+use crate::{normals, of, simulated, solve, spoiled};
 
 interpret! {
     /// A beam on two supports.
@@ -62,7 +49,7 @@ fn storms_are_no_outliers() {
         let mut normal = normals(7);
         let mut rows: Vec<f64> = heights.iter().map(|[h]| h + 0.002 * normal()).collect();
         strays.iter().for_each(|&row| rows[row] += 0.5);
-        let mut problem = Problem::new(basin::scene("filling"));
+        let mut problem = Problem::new(spoiled::vessel::scene("filling"));
         problem.set_group("motion", times.clone().into(), vec![]).unwrap();
         problem.set_group("samples", times.clone().into(), vec![rows]).unwrap();
         problem.set_robust(true);
