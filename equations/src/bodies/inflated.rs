@@ -220,7 +220,8 @@ pub(super) fn prepare(theory: &Theory, entry: &Entry, request: &Request) -> Resu
     })
 }
 
-/// What is said of the rim's size or pose, in SI units: sizes and clouds take it, and the problem knows nothing of it then.
+/// A width or a number of the pose that the user gave, in SI units. The caller changes semi-axes or clouds by it, so that the problem's own
+/// parameter goes back to what is declared.
 fn taken(problem: &mut Problem, given: &Given<'_>, name: &'static str) -> Result<Option<f64>, PrepareError> {
     let Some(said) = given.says(name) else { return Ok(None) };
     for scalar in given.scene.schema.scalars.iter().filter(|scalar| scalar.name == name) {

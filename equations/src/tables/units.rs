@@ -78,7 +78,7 @@ fn shifted(rest: &Rest) -> Option<String> {
         let moved = |range: Range| range.map(|x| conversion.of(Number::file(x)).as_declared());
         let is_low = |one: Range, other: Range| one[0] <= LOWER * other[1];
         let is_near = |one: Range, other: Range| is_low(one, other) && gap(moved(one), other) <= NEARER * apart;
-        // A record that begins at rest may go far from there: to where it is said to rest, in the wrong unit.
+        // A record in degrees Celsius that begins at rest and warms up passes the number of kelvins at which it should rest.
         let [least, resting] = [[rest.least; 2], [rest.at[0]; 2]];
         let begins = || is_low(least, resting) && gap(moved(least), resting) <= BEGINS * rest.at[0];
         let is_measured = if apart > 0.0 { is_near(rest.measured, rest.at) } else { begins() };

@@ -39,7 +39,7 @@ pub struct Problem {
     robust: bool,
     /// Given parameters that may be off together: their slots, and by how much each is off at one standard deviation.
     pub(crate) uncertain: Vec<Vec<(usize, Number<Si>)>>,
-    /// What is known of the data from elsewhere, for the verdict.
+    /// Things that the data rest on, such as a calibration, and how well each stands.
     pub(crate) doubts: Vec<Doubt>,
 }
 
