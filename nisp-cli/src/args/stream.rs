@@ -131,6 +131,7 @@ Answers to rows, one JSON object a line:
   lag         how much farther the record had come
   sources     by name: value and sd, its standard deviation (null where rows are inconsistent, or exact but for rounding)
   state       the same of what is described, measured or not
+  learned     the same of learned parameters, as the rows that were last solved together say
   misfit      what observations are off, over the noise that neighbouring rows show; about 1 where the equation is right
   nearby      the same of a dozen values about the row
   bend        how far sources bend about the row, over what their smoothness makes likely: far beside a step

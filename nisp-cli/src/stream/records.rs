@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use crate::interrupt;
 use crate::terminal::{NOT_CONVERGED, note};
-use nisp::schema::{Head, Scene};
+use nisp::schema::{Head, Origin, Scene};
 use nisp::{FixedLagSmoother, LagSettings, Smoothed};
 use nisp_data::Rows;
 use nisp_equations::{Entry, Record, Request};
@@ -204,6 +204,17 @@ impl Answers {
             "nearby": found.nearby,
             "bend": found.bend,
         });
+        let learned = self.scene.scalars.iter().filter(|scalar| matches!(scalar.origin, Origin::Learned { .. }));
+        let learned: Map<String, Value> = learned
+            .zip(&found.learned)
+            .map(|(scalar, (value, sd))| {
+                let sd = found.is_sound().then_some(sd);
+                (scalar.name.into(), json!({ "value": value, "sd": sd }))
+            })
+            .collect();
+        if !learned.is_empty() {
+            line["learned"] = learned.into();
+        }
         if found.is_stray {
             line["stray"] = json!(true);
         }

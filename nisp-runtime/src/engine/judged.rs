@@ -6,7 +6,9 @@ use std::num::NonZero;
 use super::Engine;
 use super::buffers::POINT_LANES;
 use crate::facts::{Answer, CloudFacts, Facts};
+use crate::given::{SMALL, size};
 use crate::schema::TermKind;
+use crate::solve::vector::root_mean_square;
 
 impl Engine<f64> {
     /// What the network says, of clouds given by group and term, flat.
@@ -39,6 +41,34 @@ impl Engine<f64> {
             refined: None,
             finer: "more --budget, more --width or another --seed",
         }
+    }
+
+    /// By learned scalar, the change of its parameter that is as large as what is left of the equations: the least of all that read it.
+    pub(crate) fn left_to_learned(&mut self, theta: &[f64]) -> Vec<f64> {
+        let found = self.learned_values(theta);
+        let mut least = vec![f64::INFINITY; found.len()];
+        for at in 0..self.groups.len() {
+            let facts = self.facts(at, theta);
+            let group = &self.groups[at];
+            let rows = |scalars: &[f64]| facts.rows(group.programs, group.schema, scalars);
+            let own = rows(&self.scalars);
+            let equations = group.schema.terms.iter().filter(|term| term.kind == TermKind::Residual);
+            let equations: Vec<usize> = equations.flat_map(|term| term.first..term.first + term.rows).collect();
+            for ((least, learned), (value, slope)) in least.iter_mut().zip(&self.learned).zip(&found) {
+                let by = SMALL * size(*value);
+                let mut moved = self.scalars.clone();
+                moved[learned.slot] += by;
+                let moved = rows(&moved);
+                for &row in &equations {
+                    let change = moved[row].iter().zip(&own[row]).map(|(moved, own)| (moved - own) / by);
+                    let (left, change) = (root_mean_square(own[row].iter().copied()), root_mean_square(change));
+                    if change > 0.0 {
+                        *least = least.min(left / change / slope.abs());
+                    }
+                }
+            }
+        }
+        least.into_iter().map(|change| if change.is_finite() { change } else { 0.0 }).collect()
     }
 
     /// Values and derivatives at the points of a group.

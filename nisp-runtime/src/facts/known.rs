@@ -5,6 +5,8 @@
 pub(crate) enum Known {
     /// The value of a given scalar, by its slot.
     Scalar(usize),
+    /// That a column of a record is measured without an offset.
+    Offset { group: usize, column: usize },
     /// Where a cloud is, along an axis.
     Place { cloud: usize, axis: usize },
     /// How a cloud is turned about an axis through its middle.
@@ -24,7 +26,7 @@ pub(crate) struct Score {
     pub(crate) curvature: f64,
     /// What the loss would be less.
     pub(crate) gain: f64,
-    /// By how much it would be otherwise: a share of a value, of a cloud's size or of its radius, or an angle.
+    /// By how much it would be otherwise: a share of a value, of how much a column varies, of a cloud's size or of its radius, or an angle.
     pub(crate) change: f64,
 }
 

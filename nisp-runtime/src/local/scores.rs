@@ -109,6 +109,8 @@ impl Solver {
                     let pairs = with(SMALL).into_iter().zip(with(-SMALL));
                     pairs.map(|(more, less)| (more - less) / (2.0 * SMALL)).collect()
                 }
+                // A cloud's rows read no column.
+                Known::Offset { .. } => return,
                 Known::Place { cloud, .. } | Known::Direction { cloud, .. } | Known::Size { cloud }
                     if !std::ptr::eq(surface, &self.surfaces[cloud]) =>
                 {

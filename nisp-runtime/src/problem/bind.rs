@@ -1,5 +1,6 @@
 //! From a [`Problem`] in declared units to one in the engine's.
 
+use super::alone::without_alone;
 use super::bound::Bound;
 use super::error::BindError;
 use super::frame::inward_points;
@@ -37,12 +38,19 @@ impl Problem {
     }
 }
 
-fn inward_clouds(group: &schema::Group, system: &UnitSystem, binding: &Binding) -> Vec<Vec<f64>> {
+fn inward_clouds(
+    (scene, group): (&schema::Scene, &schema::Group),
+    system: &UnitSystem,
+    binding: &Binding,
+) -> Vec<Vec<f64>> {
     let cloud = |term: &schema::Term| match term.kind {
-        schema::TermKind::Chamfer { .. } => binding.cloud(term.name).unwrap_or_default(),
-        _ => &[],
+        schema::TermKind::Chamfer { .. } => {
+            let cloud = inward(system, &term.unit, binding.cloud(term.name).unwrap_or_default());
+            without_alone(cloud, scene, term)
+        }
+        _ => Vec::new(),
     };
-    group.terms.iter().map(|term| inward(system, &term.unit, cloud(term))).collect()
+    group.terms.iter().map(cloud).collect()
 }
 
 fn inward_columns(group: &schema::Group, system: &UnitSystem, binding: &Binding) -> Vec<Vec<f64>> {
@@ -92,7 +100,7 @@ impl Bound {
         let columns: Vec<Vec<Vec<f64>>> =
             bindings.iter().zip(schema.groups).map(|(b, group)| inward_columns(group, &system, b)).collect();
         let clouds: Vec<Vec<Vec<f64>>> =
-            bindings.iter().zip(schema.groups).map(|(b, group)| inward_clouds(group, &system, b)).collect();
+            bindings.iter().zip(schema.groups).map(|(b, group)| inward_clouds((schema, group), &system, b)).collect();
         let mut scalars: Vec<f64> = schema
             .scalars
             .iter()
@@ -142,7 +150,7 @@ impl Bound {
             return Ok(None);
         }
         let clouds = bindings.iter().zip(schema.groups);
-        let clouds = clouds.map(|(binding, group)| inward_clouds(group, &self.system, binding)).collect();
+        let clouds = clouds.map(|(binding, group)| inward_clouds((schema, group), &self.system, binding)).collect();
         let given = schema.scalars.iter().zip(&problem.scalars).zip(&self.scalars);
         let scalars = given.map(|((scalar, value), own)| {
             value.map_or(*own, |value| self.system.size(&scalar.unit).back(value).as_engine())

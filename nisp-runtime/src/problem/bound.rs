@@ -5,6 +5,7 @@ use super::{Frame, Problem, UnitSystem};
 use crate::engine::{Learned, Powers, Scaling, is_exchangeable};
 use crate::loss::Loss;
 use crate::schema::{self, Origin};
+use crate::solve::vector::deviation;
 use crate::units::{Number, Scale};
 
 /// A problem in the engine's units, whatever the precision.
@@ -49,6 +50,12 @@ impl Bound {
     pub(crate) fn filled_columns(&self, group: usize) -> Vec<Vec<f64>> {
         let filled = |column: &Vec<f64>| column.iter().map(|&x| if x.is_nan() { 0.0 } else { x }).collect();
         self.columns[group].iter().map(filled).collect()
+    }
+
+    /// How much a column of a group varies, where it was measured.
+    pub(crate) fn spread_of(&self, group: usize, column: usize) -> f64 {
+        let values = self.columns[group][column].iter().copied();
+        deviation(&values.filter(|value| !value.is_nan()).collect::<Vec<f64>>())
     }
 
     /// Where an observation was measured, point by point; nothing if everywhere.

@@ -1,5 +1,6 @@
 //! A scene bound to parameters, points and data; numbers cross this boundary in their declared units.
 
+mod alone;
 mod beliefs;
 mod bind;
 mod bound;

@@ -29,8 +29,15 @@ pub(super) struct Trained {
 }
 
 impl Trained {
-    /// Standard deviations of the learned scalars' parameters.
+    /// Standard deviations of the learned scalars' parameters. What equations are off by may be a scalar's fault, in the equation that says
+    /// most of it.
     fn deviations(&mut self) -> Vec<Option<f64>> {
+        let beside = self.engine.left_to_learned(&self.theta);
+        self.by_noise().into_iter().zip(beside).map(|(own, beside)| Some(own?.hypot(beside))).collect()
+    }
+
+    /// Standard deviations of the learned scalars' parameters, as noise makes them.
+    fn by_noise(&mut self) -> Vec<Option<f64>> {
         let learned = self.engine.layout().learned.clone();
         // The curvature takes memory for every row and parameter.
         let prior = self.prior.as_ref().filter(|_| !learned.is_empty());

@@ -117,6 +117,16 @@ impl Warning {
         Self { kind: WarningKind::LeftOut, message }
     }
 
+    /// Points of a cloud that are left out, since they stand alone.
+    pub(crate) fn alone(name: &str, count: usize) -> Self {
+        let message = format!(
+            "{count} {} of `{name}` {} far from all others: a cloud is dense where it shows a surface, so what is alone is left out",
+            if count == 1 { "point" } else { "points" },
+            if count == 1 { "is" } else { "are" }
+        );
+        Self { kind: WarningKind::LeftOut, message }
+    }
+
     /// Conditions of groups that contradict each other where they meet.
     pub(crate) fn clash(groups: &str) -> Self {
         let message = format!(
@@ -161,7 +171,7 @@ pub enum WarningKind {
     SharedNoise,
     /// Noise of an observation that is larger where more is measured.
     UnevenNoise,
-    /// Values that stand alone, left out in place of what a robust loss left out.
+    /// Values that stand alone, left out in place of what a robust loss left out, or points of a cloud that do.
     LeftOut,
     /// Conditions that contradict each other where they meet.
     Clash,

@@ -2,6 +2,7 @@
 
 use super::heads::Heads;
 use super::kept::{KeptSplines, Spread};
+use super::leaning::hedge;
 use super::place::Tried;
 use super::prior::{Course, KINDS};
 use super::solver::Solver;
@@ -45,6 +46,10 @@ impl Bars {
             }
             unresolved.push(solver.unresolved(&state, &found.covariance));
             found.covariance.forget_shared(state.learned.len());
+            if solver.is_beside_sources() {
+                let by_prior = solver.by_prior(&state, &found.covariance)?;
+                found.covariance.stretch_shared(&by_prior.iter().copied().map(hedge).collect::<Vec<f64>>());
+            }
             for ((open, mean), left) in open.iter_mut().zip(&rows[count..]).zip(&own[count..]) {
                 *open += share * left / solver.beforehand(mean, &state);
             }

@@ -50,6 +50,11 @@ pub(super) struct Evaluated {
 }
 
 impl Group {
+    /// A column, at its places and the padding.
+    pub(super) fn column(&mut self, column: usize) -> &mut [f64] {
+        &mut self.columns[column * self.stride..][..self.stride]
+    }
+
     /// A group at places, with columns `[column][place]`.
     pub(super) fn new(
         schema: &'static schema::Group,

@@ -7,11 +7,14 @@
 use super::iterate::{Phase, State};
 use super::prior::Smoothness;
 use super::solver::Solver;
+use super::triangle::covariance::Covariance;
 use crate::facts::LARGER;
 use crate::solve::fault::Fault;
 
 /// Steps with a larger source, at most.
 pub(super) const STEPS: usize = 20;
+/// What a number that the prior of a source counts is worth: no source is a process of any kind.
+const WORTH: f64 = 0.5;
 /// Change of a coefficient or parameter that no longer matters.
 const SETTLED: f64 = 1e-3;
 
@@ -27,11 +30,22 @@ impl Solver<'_> {
         for _ in 0..STEPS {
             let Some(found) = self.step(&state, Phase::Solve)? else { break };
             state = State { classes: state.classes, ..found.next };
-            if found.change < SETTLED {
+            // A short step is not the end of the way.
+            if found.change.max(found.ahead) < SETTLED {
                 break;
             }
         }
         Ok(state.learned.iter().zip(&end.learned).map(|(larger, own)| (larger - own).abs()).collect())
+    }
+
+    /// By learned scalar, the share of what is known of it about a state that the belief says that sources are as large and as rough all
+    /// along: how its variance grows with theirs.
+    pub(super) fn by_prior(&mut self, state: &State, covariance: &Covariance) -> Result<Vec<f64>, Fault> {
+        let wide = self.with_larger_sources(state);
+        let Some(found) = self.step(&wide, Phase::Solve)? else { return Ok(vec![0.0; state.learned.len()]) };
+        let [own, wide] = [covariance, &found.covariance].map(Covariance::shared_variances);
+        let share = |(own, wide): (f64, f64)| ((wide / own).ln() / (2.0 * LARGER.ln())).clamp(0.0, 1.0);
+        Ok(own.into_iter().zip(wide).take(state.learned.len()).map(share).collect())
     }
 
     /// A state where sources may be [`LARGER`] times as large and as rough.
@@ -44,4 +58,9 @@ impl Solver<'_> {
         }
         state
     }
+}
+
+/// What the deviation of a scalar is multiplied by of which the prior says such a share.
+pub(super) fn hedge(by_prior: f64) -> f64 {
+    (1.0 - by_prior + WORTH * by_prior).sqrt().recip()
 }

@@ -101,7 +101,7 @@ pub(crate) fn solve(
     let schema = bound.problem.scene().schema;
     let first = solver.first(noise);
     let asleep = solver.asleep(&first);
-    let mut place = Place::first(first, kinds(solver.has_sources(), cells::stretches(bound), noise.is_exact()));
+    let mut place = Place::first(first, kinds(&solver, cells::stretches(bound), noise.is_exact()));
     let mut run = Run { start, limits, longest: 0.0, monitor, loss: f64::INFINITY, ahead: f64::INFINITY };
     let begun = |saved: &&state::State| saved.indices("kinds").is_ok();
     match (from.filter(begun), cells::middle(bound, &breakpoints)) {
@@ -110,15 +110,15 @@ pub(crate) fn solve(
         (None, Some(middle)) => {
             let part = cells::part(bound, middle);
             let mut solver = Solver::over(&part, middle);
-            let mut trial = Place::first(solver.first(noise), kinds(solver.has_sources(), false, noise.is_exact()));
+            let mut trial = Place::first(solver.first(noise), kinds(&solver, false, noise.is_exact()));
             // A run that ends here begins anew.
             let save = |place: &Place| state::State::new(METHOD).with_counter("iterations", place.state.step);
-            let own = kinds(solver.has_sources(), false, noise.is_exact());
+            let own = kinds(&solver, false, noise.is_exact());
             let mut ended = run.go(&mut solver, &mut trial, &save)?;
             if ended == Status::Converged
                 && let Some(blurred) = solver.blurred(noise, &trial)
             {
-                trial.blur(blurred, kinds(solver.has_sources(), false, noise.is_exact()));
+                trial.blur(blurred, kinds(&solver, false, noise.is_exact()));
                 ended = run.go(&mut solver, &mut trial, &save)?;
                 trial.choose_blurred();
             }
@@ -144,7 +144,7 @@ pub(crate) fn solve(
     if status == Status::Converged
         && let Some(again) = solver.again(noise, &place)
     {
-        place.again(again, kinds(true, cells::stretches(bound), noise.is_exact()));
+        place.again(again, kinds(&solver, cells::stretches(bound), noise.is_exact()));
         // Where the second start does not end, the first has.
         let ended = run.go(&mut solver, &mut place, &Place::save)?;
         status = if ended == Status::Interrupted { ended } else { status };
@@ -152,14 +152,14 @@ pub(crate) fn solve(
     if status == Status::Converged
         && let Some(blurred) = solver.blurred(noise, &place)
     {
-        place.blur(blurred, kinds(solver.has_sources(), cells::stretches(bound), noise.is_exact()));
+        place.blur(blurred, kinds(&solver, cells::stretches(bound), noise.is_exact()));
         let ended = run.go(&mut solver, &mut place, &Place::save)?;
         status = if ended == Status::Interrupted { ended } else { status };
     }
     if status == Status::Converged {
         place.choose_blurred();
     }
-    let own = kinds(solver.has_sources(), cells::stretches(bound), noise.is_exact());
+    let own = kinds(&solver, cells::stretches(bound), noise.is_exact());
     if status == Status::Converged && run.correlate((&mut solver, noise, own), &mut place, &Place::save)? == Flow::Stop
     {
         status = Status::Interrupted;
@@ -201,16 +201,16 @@ pub(crate) fn solve(
     if let Some(best) = place.best().filter(|_| status == Status::Converged && run.has_time_for(leaning::STEPS)) {
         moved = solver.leaning(KINDS[best.kind], &best.state)?;
     }
-    let given = solver.given();
+    let known = solver.known();
     let mut scores = Vec::new();
     // Noise of a column that a number multiplies makes the number look too large.
     if status == Status::Converged
         && solver.heads.len() <= MANY
-        && !given.is_empty()
-        && run.has_time_for(1 + given.len())
+        && !known.is_empty()
+        && run.has_time_for(1 + known.len())
         && let Some(best) = place.best().filter(|best| !best.state.blurred)
     {
-        scores = solver.scores(KINDS[best.kind], &best.state, &given)?;
+        scores = solver.scores(KINDS[best.kind], &best.state, &known)?;
     }
     let mut roots = Vec::new();
     if status == Status::Converged
@@ -260,14 +260,16 @@ pub(crate) fn solve(
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })
 }
 
-/// Kinds of smoothness that are tried.
-fn kinds(has_sources: bool, stretches: bool, is_exact: bool) -> Vec<usize> {
-    if !has_sources {
+/// Kinds of smoothness that are tried. What a scalar is beside sources is told by how smooth these are, so that the smoothest is asked about
+/// there, too: of a stiffness beside smooth forces third orders know ten deviations off what fifth ones find.
+fn kinds(solver: &Solver<'_>, stretches: bool, is_exact: bool) -> Vec<usize> {
+    let is_any = is_exact || solver.is_beside_sources();
+    if !solver.has_sources() {
         return vec![0];
     }
     let is_tried = |kind: &usize| {
         let Smoothness { order, course } = KINDS[*kind];
-        (stretches || course == Course::Steady) && (is_exact || order <= HIGHEST_NOISY)
+        (stretches || course == Course::Steady) && (is_any || order <= HIGHEST_NOISY)
     };
     (0..KINDS.len()).filter(is_tried).collect()
 }

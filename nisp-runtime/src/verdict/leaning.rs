@@ -9,7 +9,7 @@ use crate::problem::Bound;
 pub(crate) const FARTHEST: f64 = 0.1;
 /// How far it may move in its own deviations, which say that it may where the whole evidence found it, and in all: what is as many
 /// times larger as the sources are is known by their size alone.
-const SURE: f64 = 3.0;
+const SURE: f64 = 0.7;
 const SCALES: f64 = 0.8;
 /// The largest deviation of a scalar that is known, as a share of itself or of its natural size. A larger one is that of a logarithm, and
 /// as a deviation of the scalar too short to one side.

@@ -9,6 +9,7 @@ mod believed;
 mod between;
 mod blurred;
 mod clouds;
+mod contradicted;
 pub(crate) mod edges;
 mod equations;
 mod filtered;
@@ -93,7 +94,9 @@ impl Verdict {
         }) {
             return true;
         }
-        let misses = |check: &Check| matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm");
+        let misses = |check: &Check| {
+            matches!(check.check, "misfit" | "pattern" | "stretch" | "rhythm" | "given" | "contradicted")
+        };
         self.failed().any(misses) && self.is_firm()
     }
 

@@ -2,7 +2,10 @@
 
 use super::gathered::{Lie, lie};
 use super::misfits::{MISFIT, Misfits, TAIL};
-use super::{Check, filtered, lasting, left_out, outliers, parts, patterns, repeated, root_mean_square, scaled, taken};
+use super::{
+    Check, contradicted, filtered, lasting, left_out, outliers, parts, patterns, repeated, root_mean_square, scaled,
+    taken,
+};
 use crate::facts::Answer;
 use crate::noise::{Noise, ObservationNoise, in_order, relative};
 use crate::problem::Bound;
@@ -63,6 +66,7 @@ fn of(left: &Misfits, answer: &Answer) -> Vec<Check> {
         checks.extend(left_out::together(left));
     }
     checks.extend(noisy(left));
+    checks.extend(contradicted::check(left));
     checks.extend(patterns::checks(left, answer));
     checks
 }

@@ -66,7 +66,9 @@ impl Surface {
             // The gap is a step along the surface and the rest along `likely` (Cramer's rule).
             let (gap, across) = (self.cloud[i] - near[0], b.cross(&likely));
             let along = Vector2::new(gap.dot(&across), a.dot(&gap.cross(&likely)));
-            self.found[i].then(|| along / a.dot(&across))
+            let along = along / a.dot(&across);
+            self.beyond[i] = (a * along.x + b * along.y).norm();
+            self.found[i].then_some(along)
         };
         moving.iter().zip(positions.chunks_exact(1 + 2 * directions)).map(way).collect()
     }

@@ -24,9 +24,12 @@ use super::shape::{Shape, padded, tangents_at};
 use crate::facts::CloudFacts;
 use crate::nearest::Nearest;
 use crate::problem::Bound;
+use crate::roughness::middle;
 use crate::schema::{self, TermKind};
 use crate::solve::vector::spread;
 
+/// Points that are off by so many times the median show nothing of the surface.
+const STRAY: f64 = 5.0;
 /// Standard deviation of misfits, over that along the view, below which the surface is seen edge on.
 pub(super) const EDGE_ON: f64 = 0.05;
 
@@ -58,6 +61,8 @@ pub(super) struct Surface {
     /// Unit normals of the surface, along which misfits are measured.
     normals: Vec<Vector3<f64>>,
     misfits: Vec<f64>,
+    /// How far points are from their feet along the surface, beyond its edge.
+    beyond: Vec<f64>,
     /// Standard deviations of the misfits over that along the view.
     spreads: Vec<f64>,
     counting: Counting,
@@ -121,6 +126,7 @@ impl Surface {
             found: vec![false; count],
             normals: vec![Vector3::zeros(); count],
             misfits: vec![0.0; count],
+            beyond: vec![0.0; count],
             spreads: vec![1.0; count],
             counting,
         }
@@ -136,6 +142,7 @@ impl Surface {
         self.found = vec![false; count];
         self.normals = vec![Vector3::zeros(); count];
         self.misfits = vec![0.0; count];
+        self.beyond = vec![0.0; count];
         self.spreads = vec![1.0; count];
     }
 
@@ -184,8 +191,14 @@ impl Surface {
 
     /// Misfits of the points whose feet were found, each as it would be along the view.
     pub(super) fn misfits(&self) -> impl Iterator<Item = f64> + '_ {
-        let all = self.misfits.iter().zip(&self.spreads).zip(&self.found);
-        all.filter(|(_, found)| **found).map(|((misfit, spread), _)| misfit / spread)
+        (0..self.cloud.len()).filter(|&i| self.found[i]).map(|i| self.distance(i))
+    }
+
+    /// The misfit of a point as it would be along the view, with how far it is beyond an edge: in the plane of a side, but beside it,
+    /// a point says nothing of where the side is.
+    fn distance(&self, i: usize) -> f64 {
+        let misfit = self.misfits[i] / self.spreads[i];
+        if self.beyond[i] > 0.0 { misfit.hypot(self.beyond[i]).copysign(misfit) } else { misfit }
     }
 
     /// Misfits across the surface of the points whose feet were found, and how much of their view is across it: the square of the
@@ -202,15 +215,17 @@ impl Surface {
         self.samples.chunks_exact(self.inputs).map(padded)
     }
 
-    /// The feet that were found.
+    /// The feet that were found, but for those of points far off.
     pub(super) fn found_places(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
-        let feet = self.feet.chunks_exact(self.inputs).zip(&self.found);
-        feet.filter(|(_, found)| **found).map(|(foot, _)| padded(foot))
+        let far = STRAY * middle(self.misfits().map(f64::abs).collect());
+        let feet = self.feet.chunks_exact(self.inputs).enumerate();
+        feet.filter(move |(i, _)| self.found[*i] && self.distance(*i).abs() <= far).map(|(_, foot)| padded(foot))
     }
 
-    /// Signed distances of all points across the surface; nothing where the foot was lost.
+    /// Signed distances of all points across the surface, with how far they are beyond its edge; nothing where the foot was lost.
     fn signed(&self) -> Vec<Option<f64>> {
-        self.misfits.iter().zip(&self.found).map(|(distance, found)| found.then_some(*distance)).collect()
+        let across = |i: usize| self.misfits[i].hypot(self.beyond[i]).copysign(self.misfits[i]);
+        (0..self.cloud.len()).map(|i| self.found[i].then(|| across(i))).collect()
     }
 
     /// Standard deviation of the points along the view: as declared, or as estimated.
@@ -253,7 +268,7 @@ impl Surface {
 
     /// What the row of a point is multiplied by: its weight's root over its standard deviation.
     fn root_weight(&self, i: usize, sigma: f64) -> f64 {
-        self.counting.precision(self.misfits[i], sigma * self.spreads[i]).sqrt()
+        self.counting.precision(self.distance(i), sigma).sqrt() / self.spreads[i]
     }
 
     /// Rows of all points with a foot, over `sigma`; those far off count less.

@@ -13,6 +13,7 @@ impl Solution {
         const PLAIN: f64 = 100.0;
         let noise = noise::estimate(&self.bound);
         self.warnings.extend(self.uneven_noise(&noise));
+        self.warnings.extend(self.bound.alone());
         let mut answer = self.carried.answer(&self.bound);
         let values = self.values_over_domain();
         let edges = self.edges(&values);

@@ -5,6 +5,7 @@ use std::time::Instant;
 use super::super::cells;
 use super::super::heads::Heads;
 use super::super::iterate::State;
+use super::super::leaning::hedge;
 use super::super::solver::Solver;
 use super::super::triangle::covariance::Covariance;
 use super::super::{KINDS, Place, Run, Tried, kinds};
@@ -54,7 +55,7 @@ impl Stretch {
         // A window has no unknowns that all of its rows share.
         let mut solver = Solver::over(bound, &breakpoints).without_lines();
         // What was the likeliest kind comes first: it knows how large its sources are.
-        let mut kinds = kinds(solver.has_sources(), false, false);
+        let mut kinds = kinds(&solver, false, false);
         if let Some(from) = from {
             kinds.sort_by_key(|kind| *kind != from.kind);
         }
@@ -82,7 +83,12 @@ impl Stretch {
                 leaning = solver.leaning(KINDS[best.kind], &best.state)?.into_iter().fold(0.0, f64::max);
                 solver.set_smoothness(KINDS[best.kind], &best.state);
                 learned.clone_from(&best.state.learned);
-                spread = solver.doubted(best.state, &[])?.map(|(_, found, _)| found.covariance.corner);
+                if let Some((state, mut found, _)) = solver.doubted(best.state, &[])? {
+                    found.covariance.forget_shared(learned.len());
+                    let by_prior = solver.by_prior(&state, &found.covariance)?;
+                    found.covariance.stretch_shared(&by_prior.into_iter().map(hedge).collect::<Vec<f64>>());
+                    spread = Some(found.covariance.corner);
+                }
             }
         }
         solver.set_smoothness(KINDS[kind], &state);

@@ -66,6 +66,9 @@ pub struct Smoothed {
     /// How far sources bend about the place, over what their smoothness and the rows make likely: far beside a step, which a source
     /// that was smooth before cannot follow. A running mean of a dozen rows or so.
     pub bend: f64,
+    /// Learned scalars in their declared units, and their standard deviations, in the order of the scene: as the last rows that were solved
+    /// together say.
+    pub learned: Vec<(f64, f64)>,
     /// How far a learned scalar moves where sources may be larger, at most, as a share of itself: little is known of one that moves far,
     /// and of the sources beside it. Zero where nothing is learned.
     pub leaning: f64,

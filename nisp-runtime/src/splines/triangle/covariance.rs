@@ -1,5 +1,7 @@
 //! Covariances of a triangle's unknowns, as far as rows see them.
 
+use nalgebra::{DMatrix, DVector};
+
 use super::Triangle;
 use super::rotation::dot;
 
@@ -112,6 +114,30 @@ impl Covariance {
         let first = |numbers: &[f64]| numbers.chunks_exact(all).flat_map(|row| &row[..but]).copied().collect();
         (self.border, self.corner) = (first(&self.border), first(&self.corner[..but * self.shared]));
         self.shared = but;
+    }
+
+    /// Variances of the shared unknowns.
+    pub(in super::super) fn shared_variances(&self) -> Vec<f64> {
+        self.corner.iter().step_by(self.shared + 1).copied().collect()
+    }
+
+    /// Multiplies the deviations of the shared unknowns, and what others are off by for their sake. The rest of the others' covariance,
+    /// which these leave where they are known, stays.
+    pub(in super::super) fn stretch_shared(&mut self, by: &[f64]) {
+        let n = self.shared;
+        let corner = DMatrix::from_row_slice(n, n, &self.corner);
+        let Some(inverse) = corner.clone().try_inverse() else { return };
+        let by = DMatrix::from_diagonal(&DVector::from_column_slice(by));
+        let stretched = &by * &corner * &by;
+        let ways = DMatrix::from_row_slice(self.border.len() / n.max(1), n, &self.border) * inverse;
+        let more = &ways * (&stretched - &corner);
+        for (first, row) in self.rows.chunks_exact_mut(self.band).enumerate() {
+            for (after, entry) in row.iter_mut().enumerate().take(ways.nrows() - first) {
+                *entry += more.row(first).dot(&ways.row(first + after));
+            }
+        }
+        self.border = (ways * &stretched).transpose().as_slice().to_vec();
+        self.corner = stretched.as_slice().to_vec();
     }
 
     /// Adds to the variances of the unknowns.

@@ -70,6 +70,7 @@ impl Live {
             misfit,
             nearby,
             bend,
+            learned: self.window.learned(),
             leaning,
             beyond,
             given: given.map_or(0.0, |check| check.value),

@@ -1,11 +1,14 @@
 //! What the window says of the heads at a place, how well it is known, and how far observations are off.
 
 use super::Window;
+use crate::engine::Learned;
 use crate::schema::{self, TermKind};
 use crate::solve::vector::dot;
 use crate::splines::group::Group;
 use crate::splines::heads::Heads;
 use crate::splines::live::event::Event;
+use crate::splines::live::evidence::Weights;
+use crate::units::Number;
 
 /// How far a head may be beyond its bounds as a share of its scale: exact data leave it no deviation.
 const SLIGHT: f64 = 1e-3;
@@ -13,6 +16,20 @@ const SLIGHT: f64 = 1e-3;
 const ROUNDING: f64 = 1e-5;
 
 impl Window {
+    /// Learned scalars in their declared units, and their standard deviations.
+    pub(in super::super) fn learned(&self) -> Vec<(f64, f64)> {
+        let Weights { scalars, spread, by_learned, .. } = &self.weights;
+        let schema = self.bound.problem.scene().schema;
+        let of = |(at, learned): (usize, &Learned)| {
+            let outward = self.bound.system.outward(&schema.scalars[learned.slot].unit);
+            let deviation = spread[at * (by_learned.len() + 1)].max(0.0).sqrt() * by_learned[at].abs();
+            let [value, deviation] =
+                [scalars[learned.slot], deviation].map(|x| outward.of(Number::engine(x)).as_declared());
+            (value, deviation)
+        };
+        self.bound.learned.iter().enumerate().map(of).collect()
+    }
+
     /// A head at a place of the window in the engine's units, and its standard deviation. What the last stretch leaves open of learned
     /// scalars is in it: their values stand in all rows, and the unknowns follow them.
     pub(in super::super) fn read(&mut self, head: usize, at: f64) -> (f64, f64) {
