@@ -94,7 +94,10 @@ fn a_surface_with_a_hole_is_no_solid() {
     assert!(Domain::ball([0.0; 3], -1.0).is_err());
     let (interval, disc) = (Domain::interval(0.0, 1.0).unwrap(), Domain::disc([0.0; 2], 1.0).unwrap());
     assert!(disc.clone().plus(interval).is_err());
-    assert!(disc.clone().minus(disc).unwrap_err().to_string().contains("nothing of the region is left"));
+    assert!(disc.clone().minus(disc.clone()).unwrap_err().to_string().contains("nothing of the region is left"));
+    // A size that is found by points is not quite none.
+    let around = Domain::ellipse([0.1, 0.2], [7.0, 5.0]).unwrap();
+    assert!(disc.minus(around).unwrap_err().to_string().contains("nothing of the region is left"));
 }
 
 #[test]

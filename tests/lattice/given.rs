@@ -42,3 +42,55 @@ fn a_diffusivity_that_is_wrong_is_named_with_what_it_should_be() {
     let check = wrong.verdict.failed().find(|check| check.check == "given").unwrap();
     assert!(check.message.contains("`a` about 9.") || check.message.contains("`a` about 1.0"), "{}", check.message);
 }
+
+interpret! {
+    /// A slab that cools in air, of which conductivity and transfer are unknown: all three numbers may be larger alike.
+    mod slab {
+        units: off;
+        coordinates: x, t: time;
+        fields: u;
+        parameters: c = 1.6, k > 0 = 1, h > 0 = 1;
+        domains: slab = 0 .. 1 times 0 .. 1;
+        on inside in slab { heat: c * d(u, t) == k * d(u, x, 2); }
+        on faces boundary of slab { columns: normal: vector; cooled: -k * normal[0] * d(u, x) == h * u; }
+        on begin start of slab { hot: u == 1; }
+        on probes { observe u; }
+        scene rates { learn k, h; }
+    }
+}
+
+/// `u = sum of A cos(m (x - 1/2)) exp(-k m^2 t / c)` with `m tan(m / 2) = h / k`. What only scales with what is learned is told by nothing,
+/// and contradicted by nothing, though cells are coarse where the cold sets in.
+#[test]
+fn a_capacity_that_only_scales_is_not_contradicted() {
+    let (k, h, c) = (0.8, 2.0, 1.6);
+    // Roots by bisection, between the poles of the tangent.
+    let root = |n: i32| {
+        let (mut low, mut high) = (2.0 * PI * f64::from(n) + 1e-9, 2.0 * PI * f64::from(n) + PI - 1e-9);
+        for _ in 0..80 {
+            let middle = 0.5 * (low + high);
+            if middle * (middle / 2.0).tan() < h / k { low = middle } else { high = middle }
+        }
+        low
+    };
+    let modes: Vec<[f64; 2]> = (0..12).map(root).map(|m| [m, 4.0 * (m / 2.0).sin() / (m + m.sin())]).collect();
+    let warm = |[x, t]: [f64; 2]| -> f64 {
+        modes.iter().map(|[m, a]| a * (m * (x - 0.5)).cos() * (-k * m * m * t / c).exp()).sum()
+    };
+    let mut noise = normals(5);
+    let probes: Vec<f64> = (0..120).flat_map(|at| [[0.1, 0.5, 0.8][at % 3], (at / 3 + 1) as f64 / 40.0]).collect();
+    let measured = pairs(&probes).map(|place| warm(place) + 0.004 * noise()).collect();
+    let mut problem = Problem::new(slab::scene("rates"));
+    let along = |count: usize| (0..count).map(move |i| i as f64 / (count - 1) as f64);
+    problem.set_group("inside", grid([32, 32], [1.0, 1.0], false).into(), Vec::new()).unwrap();
+    problem.set_group("begin", along(41).flat_map(|s| [s, 0.0]).collect::<Vec<f64>>().into(), Vec::new()).unwrap();
+    let faces: Vec<f64> = along(41).flat_map(|s| [0.0, s, 1.0, s]).collect();
+    let normal: Vec<f64> = along(41).flat_map(|_| [-1.0, 1.0]).collect();
+    problem.set_group("faces", faces.into(), vec![normal]).unwrap();
+    problem.set_group("probes", probes.into(), vec![measured]).unwrap();
+    let mut solution = solve(&problem);
+    assert_eq!(solution.status, Status::Converged, "{:?}", solution.verdict.failed().collect::<Vec<_>>());
+    for (learned, exact) in solution.learned().iter().zip([k, h]) {
+        assert!((learned.value - exact).abs() < 4.0 * learned.deviation.unwrap(), "{learned:?} is not {exact}");
+    }
+}

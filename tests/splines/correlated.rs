@@ -141,3 +141,47 @@ fn a_run_is_resumed_while_noise_may_be_shared() {
         assert_eq!(values(&resumed), values(&whole), "stopped after {stop}");
     }
 }
+
+interpret! {
+    /// A vessel that drains at an unknown rate, and what is known to flow into it.
+    mod drain {
+        units: off;
+        coordinates: t;
+        fields: h;
+        parameters: a > 0 = 1, k > 0 = 1;
+        on motion { columns: f; level: a * d(h, t) == f - k * h; }
+        on samples { observe h; }
+        scene rates { learn a, k; }
+    }
+}
+
+/// Where nothing is sought but rates, neighbours may be alike over a row or two: bars count it. A course that is wrong all along is none.
+#[test]
+fn rates_are_learned_from_rows_that_share_a_little_noise() {
+    let rates = |seed: u64, shared: f64, drift: f64| {
+        let measured = levels().into_iter().zip(noise(seed, 0.05, shared)).zip(times());
+        let measured = measured.map(|((level, noise), t)| level + noise + drift * (0.4 * t).sin()).collect();
+        let mut problem = Problem::new(drain::scene("rates"));
+        problem.set_group("motion", times().into(), vec![times().into_iter().map(source).collect()]).unwrap();
+        problem.set_group("samples", times().into(), vec![measured]).unwrap();
+        solve(&problem, Carrier::Splines)
+    };
+    for (shared, longer) in [(0.0, 1.0), (0.4, 1.3)] {
+        let mut squares = Vec::new();
+        for seed in 1..7 {
+            let mut solution = rates(seed, shared, 0.0);
+            assert_eq!(solution.status, Status::Converged, "{shared}, {seed}: {:?}", solution.verdict);
+            let learned = solution.learned();
+            assert!(learned[1].deviation.unwrap() > longer * 0.9e-3, "{shared}: {learned:?}");
+            squares.extend(
+                learned
+                    .iter()
+                    .zip([2.0, 1.0])
+                    .map(|(own, exact)| ((own.value - exact) / own.deviation.unwrap()).powi(2)),
+            );
+        }
+        let rms = (squares.iter().sum::<f64>() / squares.len() as f64).sqrt();
+        assert!((0.4..1.7).contains(&rms), "{shared}: {rms}");
+    }
+    assert_eq!(rates(1, 0.0, 0.06).status, Status::Inconsistent);
+}

@@ -4,7 +4,7 @@ use nisp::solve::driver::Status;
 use nisp::{Carrier, Problem, Solution};
 use nisp_interpreter::interpret;
 
-use crate::{normals, solve};
+use crate::{normals, simulated, solve};
 
 interpret! {
     /// A heater in a room with a wall that stores heat, a thermometer in each.
@@ -52,4 +52,86 @@ fn a_number_that_is_a_little_wrong_is_named_with_what_it_should_be() {
             check.message
         );
     }
+}
+
+interpret! {
+    /// Prey and predators, with all rates unknown.
+    mod prey {
+        units: off;
+        coordinates: t;
+        fields: u, v;
+        parameters: a > 0 = 0.8, b > 0 = 0.04, c > 0 = 0.5, e > 0 = 0.03;
+        on growth { prey: d(u, t) == a * u - b * u * v; predators: d(v, t) == e * u * v - c * v; }
+        on samples { observe u, v; }
+        scene rates { learn a, b, c, e; }
+    }
+}
+
+/// A sensor's offset is made up for by rates that are not those of the animals: the data would be likelier with another zero.
+#[test]
+fn an_offset_of_a_sensor_is_named() {
+    let times: Vec<f64> = (0..201).map(|row| 0.15 * f64::from(row)).collect();
+    let rate = |_: f64, [u, v]: [f64; 2]| [0.9 * u - 0.05 * u * v, 0.02 * u * v - 0.6 * v];
+    let course = simulated(&times, [30.0, 10.0], rate);
+    let found = |offset: f64| {
+        let mut normal = normals(6);
+        let mut measured =
+            |of: usize, by: f64| course.iter().map(|x| x[of] + by + 0.5 * normal()).collect::<Vec<f64>>();
+        let columns = vec![measured(0, 0.0), measured(1, offset)];
+        let mut problem = Problem::new(prey::scene("rates"));
+        problem.set_group("growth", times.clone().into(), Vec::new()).unwrap();
+        problem.set_group("samples", times.clone().into(), columns).unwrap();
+        solve(&problem, Carrier::Splines)
+    };
+    let mut right = found(0.0);
+    assert_eq!(right.status, Status::Converged, "{:?}", right.verdict.failed().collect::<Vec<_>>());
+    for (learned, exact) in right.learned().iter().zip([0.9, 0.05, 0.6, 0.02]) {
+        assert!((learned.value - exact).abs() < 3.5 * learned.deviation.unwrap(), "{learned:?} is not {exact}");
+    }
+    let wrong = found(4.0);
+    assert_eq!(wrong.status, Status::Inconsistent);
+    let check = wrong.verdict.failed().find(|check| check.check == "given").unwrap();
+    assert!(check.message.contains("added to `v` all along"), "{}", check.message);
+}
+
+interpret! {
+    /// A heated rod, seen by a camera and felt by a few thermocouples.
+    mod rod {
+        units: off;
+        coordinates: x;
+        fields: u;
+        sources: q;
+        domains: span = 0 .. 1;
+        on inside in span { conduction: -d(u, x, 2) == q; }
+        on ends boundary of span { cold: u == 0; }
+        on camera { observe u; }
+        on couples { observe u; }
+        scene heated { }
+    }
+}
+
+/// Five values that are all otherwise than what the others make of them are no noise, however few they are.
+#[test]
+fn few_values_that_contradict_all_others_are_no_noise() {
+    let pi = std::f64::consts::PI;
+    let found = |gain: f64| {
+        let mut normal = normals(9);
+        let grid = |count: u32| (0..count).map(move |i| (f64::from(i) + 0.5) / f64::from(count));
+        let warm = |x: f64| (pi * x).sin() + 0.3 * (3.0 * pi * x).sin();
+        let seen = grid(81).map(|x| gain * warm(x) + 0.01 * normal()).collect();
+        let felt = grid(5).map(|x| warm(x) + 0.002 * normal()).collect();
+        let mut problem = Problem::new(rod::scene("heated"));
+        let inside: Vec<f64> = (0..=80).map(|i| f64::from(i) / 80.0).collect();
+        problem.set_group("inside", inside.into(), Vec::new()).unwrap();
+        problem.set_group("ends", vec![0.0, 1.0].into(), Vec::new()).unwrap();
+        problem.set_group("camera", grid(81).collect::<Vec<f64>>().into(), vec![seen]).unwrap();
+        problem.set_group("couples", grid(5).collect::<Vec<f64>>().into(), vec![felt]).unwrap();
+        solve(&problem, Carrier::Splines)
+    };
+    let right = found(1.0);
+    assert_eq!(right.status, Status::Converged, "{:?}", right.verdict.failed().collect::<Vec<_>>());
+    let wrong = found(0.7);
+    assert_eq!(wrong.status, Status::Inconsistent, "{:?}", wrong.verdict);
+    let is_said = |check: &nisp::Check| (check.check, check.group) == ("contradicted", "couples");
+    assert!(wrong.verdict.failed().any(is_said), "{:?}", wrong.verdict.failed().collect::<Vec<_>>());
 }

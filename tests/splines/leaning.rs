@@ -20,6 +20,20 @@ interpret! {
     }
 }
 
+interpret! {
+    /// An oscillator under an unknown force, of which the spring is not known.
+    mod stiff {
+        units: off;
+        coordinates: t;
+        fields: x;
+        sources: f;
+        parameters: c = 0.6, k > 0 = 30;
+        on motion { balance: d(x, t, 2) + c * d(x, t) + k * x == f; }
+        on samples { observe x; }
+        scene unknown { learn k; }
+    }
+}
+
 const DAMPING: f64 = 0.6;
 const STIFFNESS: f64 = 16.0;
 
@@ -89,4 +103,26 @@ fn a_network_says_whether_a_spring_is_told() {
     let frequency = (STIFFNESS - DAMPING * DAMPING / 4.0).sqrt();
     assert_eq!(is_known(&|t| (-DAMPING * t / 2.0).exp() * (frequency * t).cos()), Some(true));
     assert_eq!(is_known(&|t| (0.7 * t).sin() + 0.3 * (1.1 * t).cos()), Some(false));
+}
+
+/// A stiff spring under smooth forces, whose course no third order of smoothness describes: bars that say so, or none.
+#[test]
+fn a_spring_beside_smooth_forces_is_not_called_known_wrongly() {
+    let times: Vec<f64> = (0..301).map(|i| f64::from(i) / 30.0).collect();
+    for seed in 1..5 {
+        let mut normal = normals(seed);
+        // Waves of random lengths: a process with the spectrum of a Gaussian, of length one.
+        let waves: Vec<[f64; 3]> = (0..40).map(|_| [normal(), normal(), normal()]).collect();
+        let force = |t: f64| waves.iter().map(|[pace, a, b]| a * (pace * t).sin() + b * (pace * t).cos()).sum::<f64>();
+        let course = crate::simulated(&times, [0.0, 0.0], |t, [x, v]| [v, force(t) - DAMPING * v - 20.0 * x]);
+        let measured = course.iter().map(|[x, _]| x + 2e-3 * normal()).collect();
+        let mut problem = Problem::new(stiff::scene("unknown"));
+        problem.set_group("motion", times.clone().into(), vec![]).unwrap();
+        problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
+        let mut solution = solve(&problem, Carrier::Splines);
+        let learned = solution.learned().swap_remove(0);
+        if let Some(deviation) = learned.deviation {
+            assert!((learned.value - 20.0).abs() < 4.0 * deviation, "{seed}: {learned:?}, {:?}", solution.status);
+        }
+    }
 }

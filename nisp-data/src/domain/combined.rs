@@ -1,11 +1,11 @@
 //! What is in either of two regions, or in one and not in the other.
 //!
-//! There are no closed forms: sizes come from points that fill the second region evenly, and are exact where it lies wholly inside
-//! or outside of the first.
+//! There are no closed forms: sizes come from points that fill the smaller region evenly, and are exact where it lies wholly inside
+//! or outside of the other.
 
 use super::{Domain, Points, Sampling};
 
-/// Points that tell how large what both have in common is.
+/// Points that tell how large what both have in common is. What they do not find, no others would in time.
 const PROBES: usize = 1 << 14;
 /// Points of a boundary that tell how much of it is left.
 const TRIAL: usize = 4096;
@@ -25,9 +25,10 @@ pub(super) struct Pair {
 
 impl Pair {
     pub(super) fn new(first: Domain, second: Domain, either: bool) -> Self {
-        let probes = second.interior(PROBES, Sampling::Sobol, 0);
-        let inside = probes.iter().filter(|point| first.contains(point)).count();
-        let common = second.measure() * inside as f64 / probes.len().max(1) as f64;
+        let (probed, other) = if first.measure() < second.measure() { (&first, &second) } else { (&second, &first) };
+        let probes = probed.interior(PROBES, Sampling::Sobol, 0);
+        let inside = probes.iter().filter(|point| other.contains(point)).count();
+        let common = probed.measure() * inside as f64 / probes.len().max(1) as f64;
         let only = first.measure() - common;
         let measure = if either { only + second.measure() } else { only };
         Self { first, second, either, measure }

@@ -27,6 +27,8 @@ const LEAST: f64 = 0.1;
 const LONGER: f64 = 1.5;
 /// Longest length, as a share of the record.
 const LONGEST: f64 = 0.25;
+/// The same in rows, where no source follows what neighbours share.
+const FEW_ROWS: f64 = 2.0;
 /// Length of smooth noise over that of a walk which is as alike at half of its size.
 const SMOOTHER: f64 = 1.4;
 /// Rows below which noise is not asked whether it is smooth from row to row. Of shorter simulated records whose noise is each row's own, one in
@@ -44,15 +46,28 @@ impl Solver<'_> {
         let terms = self.lengths.iter().enumerate().flat_map(|(group, terms)| {
             terms.iter().enumerate().filter_map(move |(term, class)| class.map(|_| (group, term)))
         });
-        let spacing = |(group, term): (usize, usize)| {
-            let declared = &self.groups[group].schema.terms[term];
-            spacing(&self.bound.measured(group, declared, &self.bound.coordinates[group])).unwrap_or(self.length)
-        };
         let open = |spacing: f64| {
             let guess = Guess { size: 0.0, count: 0.0, yields: false, least: LEAST * spacing };
-            Class::open(BEGINS * spacing, guess)
+            Class::open(self.begins() * spacing, guess)
         };
-        terms.map(spacing).map(open).collect()
+        terms.map(|at| open(self.spacing(at))).collect()
+    }
+
+    /// The usual distance of a term's rows.
+    fn spacing(&self, (group, term): (usize, usize)) -> f64 {
+        let declared = &self.groups[group].schema.terms[term];
+        spacing(&self.bound.measured(group, declared, &self.bound.coordinates[group])).unwrap_or(self.length)
+    }
+
+    /// The length at which the steps start, over the usual distance of rows.
+    fn begins(&self) -> f64 {
+        if self.has_sources() { BEGINS } else { 0.5 * FEW_ROWS }
+    }
+
+    /// The longest length of a term.
+    fn longest(&self, at: (usize, usize)) -> f64 {
+        let longest = LONGEST * self.length;
+        if self.has_sources() { longest } else { longest.min(FEW_ROWS * self.spacing(at)) }
     }
 
     /// The slope of the logarithm of the evidence by the logarithm of a term's length, about an iterate with its covariance, and what is
@@ -103,7 +118,7 @@ impl Solver<'_> {
                 let Some(class) = self.lengths[group][term].filter(|_| state.sharing.is_some()) else { continue };
                 let (slope, known) = self.slope(state, (group, term), covariance)?;
                 let left = 0.5 * known;
-                let is_longest = state.classes[class].size >= LONGEST * self.length && slope > 0.0;
+                let is_longest = state.classes[class].size >= self.longest((group, term)) && slope > 0.0;
                 let share = if is_longest || left == 0.0 { 1.0 } else { 1.0 + slope / left };
                 let squares = left * share.clamp((-2.0 * FARTHEST).exp(), (2.0 * FARTHEST).exp());
                 tallies[class] = Tally { squares, count: left, used: 0.0 };
@@ -119,7 +134,9 @@ impl Solver<'_> {
         let mut is_longer = false;
         for (group, terms) in self.all_shared(state).into_iter().enumerate() {
             for (term, noise) in terms.into_iter().enumerate() {
-                let Some(noise) = noise.filter(|own| LONGER * own.length <= LONGEST * self.length) else { continue };
+                let Some(noise) = noise.filter(|own| LONGER * own.length <= self.longest((group, term))) else {
+                    continue;
+                };
                 let Some(class) = self.lengths[group][term] else { continue };
                 longer.classes[class].size = LONGER * noise.length;
                 longer.classes[self.classes[group][term]].size *= LONGER.powf(noise.alike.growth());
@@ -145,25 +162,25 @@ impl Solver<'_> {
         lengths.flat_map(of).collect()
     }
 
-    /// Whether an end leaves a rhythm of a term whose noise is shared: a source that goes to and fro all along is not smooth, and such noise
-    /// is likelier than it, but makes none.
+    /// Whether an end leaves a rhythm of a term whose noise may be shared, beside what neighbours share at this end: a source that goes to
+    /// and fro all along is not smooth, and such noise is likelier than it, but makes none.
     pub(super) fn leaves_rhythm(&mut self, state: &State) -> bool {
         let misfits = self.misfits(state);
-        let leaves = |(group, term): (usize, usize), shared: SharedNoise| {
+        let leaves = |(group, term): (usize, usize), shared: Option<SharedNoise>| {
             let declared = &self.groups[group].schema.terms[term];
             let places = self.bound.measured(group, declared, &self.bound.coordinates[group]);
             let deviation = state.classes[self.classes[group][term]].size;
             let noise = ObservationNoise { group, term, deviation, spread: deviation };
             misfits[group][term].0.chunks_exact(places.len().max(1)).any(|row| {
-                let own = beside_those_before(&places, row, shared);
-                rhythm(&places, &own, noise).is_some_and(|swing| swing.amplitude > FAINT * deviation)
+                let own = shared.map(|shared| beside_those_before(&places, row, shared));
+                rhythm(&places, own.as_deref().unwrap_or(row), noise)
+                    .is_some_and(|swing| swing.amplitude > FAINT * deviation)
             })
         };
         let shared = self.all_shared(state);
-        let all =
-            shared.iter().enumerate().flat_map(|(group, terms)| terms.iter().enumerate().map(move |at| (group, at)));
-        all.filter_map(|(group, (term, shared))| Some(((group, term), (*shared)?)))
-            .any(|(at, shared)| leaves(at, shared))
+        let all = shared.iter().enumerate().flat_map(|(at, terms)| terms.iter().enumerate().map(move |own| (at, own)));
+        let may_share = |at: &(usize, (usize, _))| self.lengths[at.0][at.1.0].is_some();
+        all.filter(may_share).any(|(group, (term, shared))| leaves((group, term), *shared))
     }
 
     /// Where steps start again with noise that neighbouring rows share, as walks do; nothing where the evidence does not grow with it at the
@@ -174,6 +191,10 @@ impl Solver<'_> {
             terms.iter().enumerate().filter_map(move |(term, class)| Some(((group, term), (*class)?)))
         });
         let lengths: Vec<((usize, usize), usize)> = lengths.collect();
+        // Without a source nothing but a wrong equation leaves a rhythm.
+        if !self.has_sources() && self.leaves_rhythm(&best.state) {
+            return Ok(None);
+        }
         if lengths.is_empty() || self.goes_through(&best.state, &lengths, noise) || !self.grows(&best, &lengths)? {
             return Ok(None);
         }
@@ -183,7 +204,7 @@ impl Solver<'_> {
         let mut first = State { sharing: Some(Alike::Rough), blurred: best.state.blurred, ..first };
         for &((group, term), _) in &lengths {
             // Differences of neighbours see what they do not share.
-            let alike = (-BEGINS.recip()).exp();
+            let alike = (-self.begins().recip()).exp();
             let own = self.classes[group][term];
             let size = first.classes[own].size;
             first.classes[own].restart(size * ((1.0 + alike) / (1.0 - alike)).sqrt());
@@ -219,7 +240,7 @@ impl Solver<'_> {
     fn grows(&mut self, best: &Tried, lengths: &[((usize, usize), usize)]) -> Result<bool, Fault> {
         let mut slight = State { sharing: Some(Alike::Rough), ..best.state.clone() };
         for &(_, class) in lengths {
-            let length = slight.classes[class].size / BEGINS / -SLIGHT.ln();
+            let length = slight.classes[class].size / self.begins() / -SLIGHT.ln();
             slight.classes[class].restart(length);
         }
         self.set_smoothness(KINDS[best.kind], &best.state);

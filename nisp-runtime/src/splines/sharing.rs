@@ -2,7 +2,8 @@
 //!
 //! Only where equations and observations together are no more than fields and sources: there some source follows whatever the data show. Where
 //! they are more (two sensors, a stop that pushes only where it is met), or where a source may not be negative, what is left may come of a wrong
-//! equation, and is judged as that.
+//! equation, and is judged as that. Where nothing is sought but scalars, neighbours may be alike over few rows and no longer: what a wrong
+//! equation leaves is as slow as the fields.
 
 use super::cells::MANY;
 use crate::problem::Bound;
@@ -16,9 +17,14 @@ fn may_share(bound: &Bound) -> Vec<Vec<bool>> {
     let asked = |(group, _): (&'static schema::Group, _)| group.terms.iter().map(|term| term.rows).sum::<usize>();
     let is_bounded = |head: &schema::Head| head.source && (head.lower.is_some() || head.upper.is_some());
     let is_followed = lasting.map(asked).sum::<usize>() <= schema.heads.len() && !schema.heads.iter().any(is_bounded);
+    let has_sources = schema.heads.iter().any(|head| head.source);
     let may = |(group, at): (usize, usize), term: &schema::Term| {
         let is_alike = bound.noisiness[group][term.first..][..term.rows].iter().all(Vec::is_empty);
-        is_followed && is_data(term) && term.within.is_none() && is_alike && !bound.losses[group][at].is_robust()
+        (is_followed || !has_sources)
+            && is_data(term)
+            && term.within.is_none()
+            && is_alike
+            && !bound.losses[group][at].is_robust()
     };
     let of = |(group, own): (usize, &schema::Group)| {
         own.terms.iter().enumerate().map(|(at, term)| may((group, at), term)).collect()

@@ -58,6 +58,9 @@ fn of(left: &Misfits, answer: &Answer) -> Vec<Check> {
         checks.extend(left.term.columns.iter().filter_map(|&column| often(left, column)));
         checks.extend(left.term.columns.iter().filter_map(|&column| twice(left, column)));
     }
+    if !left.is_record() {
+        checks.extend(copied(left));
+    }
     if let Some(noise) = left.noise.filter(|_| left.is_record() && !left.is_robust) {
         checks.extend((0..left.term.columns.len()).map(|number| lonely(left, number, noise)));
     }
@@ -217,6 +220,21 @@ fn twice(left: &Misfits, column: usize) -> Option<Check> {
         left.bound.problem.scene().schema.groups[left.group].columns[column].name,
     );
     Some(Check::new("repeated", left.name(), (again.len() as f64, 0.0), said))
+}
+
+/// Whether rows over several coordinates are there twice; nothing where they are not.
+fn copied(left: &Misfits) -> Option<Check> {
+    let measured =
+        |&column: &usize| left.bound.measured(left.group, left.term, &left.bound.columns[left.group][column]);
+    let columns: Vec<Vec<f64>> = left.term.columns.iter().map(measured).collect();
+    let twice = repeated::copies(&left.places, left.axes(), &columns)?;
+    let said = format!(
+        "{twice} of {} rows of `{}` are there twice, at the same places and with the same digits, which hides their noise; leave out what \
+         was written or pasted once more",
+        left.rows[0].len(),
+        left.term.name
+    );
+    Some(Check::new("repeated", left.name(), (twice as f64, 0.0), said))
 }
 
 /// Values of a measured column that stand alone.

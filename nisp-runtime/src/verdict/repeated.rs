@@ -1,12 +1,33 @@
 //! Rows that are in a record twice: no noise comes again digit by digit.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 use std::ops::Range;
 
 /// Values of a stretch that is found again, at least; every stretch of twice as many is.
 const LONG: usize = 8;
 /// How many such stretches chance makes, at most.
 const CHANCE: f64 = 1e-6;
+
+/// Rows that are there twice, at least, and what share of all they must be.
+const FEWEST: usize = 8;
+const SHARE: f64 = 0.1;
+
+/// How many of several columns' rows are there before, at the same places and with the same digits; nothing where they are few, or where
+/// a sensor has so few steps that it shows the same now and then.
+pub(super) fn copies(places: &[f64], axes: usize, columns: &[Vec<f64>]) -> Option<usize> {
+    let bits = |values: &mut dyn Iterator<Item = f64>| values.map(f64::to_bits).collect::<Vec<u64>>();
+    let own = |at: usize| bits(&mut columns.iter().map(|column| column[at]));
+    let count = columns.first()?.len();
+    let mut rows = HashSet::new();
+    let mut values = HashSet::new();
+    for at in 0..count {
+        let place = places[at * axes..][..axes].iter().copied();
+        rows.insert(bits(&mut place.chain(columns.iter().map(|column| column[at]))));
+        values.insert(own(at));
+    }
+    let twice = count - rows.len();
+    (twice >= FEWEST && twice as f64 >= SHARE * count as f64 && 2 * values.len() > rows.len()).then_some(twice)
+}
 
 /// The longest stretch of values that an earlier one repeats, and where that begins. Values of a sensor with few steps may come again by chance;
 /// a course without noise comes again where it has a period.
@@ -64,6 +85,17 @@ fn alike(values: &[f64], step: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_table_behind_itself_is_there_twice() {
+        let places: Vec<f64> = (0..60).map(|at| f64::from(at % 30)).collect();
+        let values: Vec<f64> = (0..60).map(|at| (f64::from(at % 30) * 1.7).sin()).collect();
+        assert_eq!(copies(&places, 1, &[values.clone()]), Some(30));
+        // Measured again, a value has other digits, but where its sensor has few.
+        let again: Vec<f64> = values.iter().enumerate().map(|(at, value)| value + 1e-3 * (at as f64).cos()).collect();
+        assert_eq!(copies(&places, 1, &[again]), None);
+        assert_eq!(copies(&places, 1, &[values.iter().map(|value| (2.0 * value).round()).collect()]), None);
+    }
 
     fn noisy(at: usize) -> f64 {
         (0.05 * at as f64).sin() + 0.02 * (17.0 * (at * at) as f64).sin()
