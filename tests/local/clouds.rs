@@ -1,7 +1,7 @@
 //! How the points of a cloud count: their noise and its directions, points that are off alike, declared losses and weights.
 
 use nisp::schema::Unit;
-use nisp::solve::driver::Status;
+use nisp::solve::driver::{Status, WarningKind};
 use nisp::units::Number;
 use nisp::{Problem, SceneRef, Tolerance, scene};
 
@@ -103,6 +103,27 @@ fn points_that_are_off_alike_count_as_one() {
     let (each, together) = (pressed(0.1, 1.0), pressed(10.0, 1.0));
     assert!(together < 0.02 && each > 0.1, "{together} N, and {each} N if every point counts");
     assert_eq!(pressed(10.0, 0.0), each, "what has nothing in common counts by itself");
+}
+
+/// A camera sees half of a drum that is free, and a few strays above the other half. They are all that is known of it, and say nothing.
+#[test]
+fn points_that_stand_alone_are_left_out() {
+    let found = |strays: &[[f64; 3]]| {
+        let mut problem = Problem::new(scene::<drum::pressed::Scene>());
+        problem.set_parameter("T", T).unwrap();
+        bind(&mut problem, 0.0, 1.0, 0.0);
+        let mut cloud = seen(0.0, 1.0, ([0.0, 0.0, 0.1], 0));
+        cloud = cloud.chunks(3).filter(|c| c[0] < 0.0).flatten().copied().collect();
+        cloud.extend(strays.iter().flatten());
+        set_cloud(&mut problem, cloud);
+        solve(&problem, Some(PATCHES), 2)
+    };
+    let strays = [12.0, 18.0, 24.0].map(|x| [x, 3.0, height(x, 0.0, 1.0) - 5.0]);
+    let (clean, with) = (found(&[]), found(&strays));
+    assert!((force(&clean) - force(&with)).abs() < 1e-6, "{} N, and {} N with strays", force(&clean), force(&with));
+    let said = with.warnings.iter().find(|warning| warning.kind == WarningKind::LeftOut).unwrap();
+    assert!(said.message.contains("3 points of `cloud` are far from all others"), "{said}");
+    assert!(clean.warnings.iter().all(|warning| warning.kind != WarningKind::LeftOut), "{:?}", clean.warnings);
 }
 
 /// One point of six is 8 mm too high. Huber's loss counts each as three deviations; Tukey's leaves it out.

@@ -52,7 +52,14 @@ pub(crate) struct Leaning {
     pub(crate) moved: Option<f64>,
     /// Its deviation; nothing without error bars.
     pub(crate) deviation: Option<f64>,
-    /// Whether it was found by the whole evidence, so that its deviation says how far it may move. Where only sums of squares were,
-    /// it is the one whose sources are smallest, and more sure than it should be.
+    /// Share of what is known of it that the sources' prior says; nothing where that was not asked.
+    pub(crate) by_prior: Option<f64>,
+    /// Whether it was found by the whole evidence, that of the smoothest sources included, so that its deviation says how far it may move.
+    /// Where only sums of squares were, it is the one whose sources are smallest, and more sure than it should be.
     pub(crate) is_weighed: bool,
+}
+
+/// Share of what is known of a scalar that the prior of sources says, from its variances with sources as they are and [`LARGER`].
+pub(crate) fn by_prior(own: f64, larger: f64) -> f64 {
+    ((larger / own).ln() / (2.0 * LARGER.ln())).clamp(0.0, 1.0)
 }

@@ -5,7 +5,7 @@ mod points;
 
 use crate::shared_noise::SharedNoise;
 
-pub(crate) use known::{Known, LARGER, Leaning, Score};
+pub(crate) use known::{Known, LARGER, Leaning, Score, by_prior};
 pub(crate) use points::Facts;
 
 /// A cloud, and how far its points are off a surface, in the engine's units.

@@ -99,7 +99,7 @@ impl Carried for Trained {
         let mut answer = self.engine.answer(&self.theta, &bound.clouds);
         // How far scalars move where sources may be larger is not known of a network; how sure they are is.
         if bound.problem.scene().schema.heads.iter().any(|head| head.source) {
-            let known = |deviation| Leaning { moved: None, deviation, is_weighed: false };
+            let known = |deviation| Leaning { moved: None, deviation, by_prior: None, is_weighed: false };
             answer.leaning = self.deviations().into_iter().map(known).collect();
         }
         // Without error bars a source may follow the noise of what was measured or seen.

@@ -8,7 +8,7 @@ use super::iterate::{Phase, State};
 use super::prior::Smoothness;
 use super::solver::Solver;
 use super::triangle::covariance::Covariance;
-use crate::facts::LARGER;
+use crate::facts::{LARGER, by_prior};
 use crate::solve::fault::Fault;
 
 /// Steps with a larger source, at most.
@@ -44,8 +44,7 @@ impl Solver<'_> {
         let wide = self.with_larger_sources(state);
         let Some(found) = self.step(&wide, Phase::Solve)? else { return Ok(vec![0.0; state.learned.len()]) };
         let [own, wide] = [covariance, &found.covariance].map(Covariance::shared_variances);
-        let share = |(own, wide): (f64, f64)| ((wide / own).ln() / (2.0 * LARGER.ln())).clamp(0.0, 1.0);
-        Ok(own.into_iter().zip(wide).take(state.learned.len()).map(share).collect())
+        Ok(own.into_iter().zip(wide).take(state.learned.len()).map(|(own, wide)| by_prior(own, wide)).collect())
     }
 
     /// A state where sources may be [`LARGER`] times as large and as rough.

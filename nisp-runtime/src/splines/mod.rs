@@ -197,7 +197,7 @@ pub(crate) fn solve(
     if bars.is_open {
         status = Status::NotConverged;
     }
-    let mut moved = Vec::new();
+    let (mut moved, is_weighed) = (Vec::new(), place.is_weighed());
     if let Some(best) = place.best().filter(|_| status == Status::Converged && run.has_time_for(leaning::STEPS)) {
         moved = solver.leaning(KINDS[best.kind], &best.state)?;
     }
@@ -238,7 +238,7 @@ pub(crate) fn solve(
     let (kept, told) = bars.keep((heads, theta, learned), course);
     let own = kept.learned().into_iter().filter(|_| is_beside_sources).enumerate();
     let leaning = own
-        .map(|(at, (_, deviation))| Leaning { moved: moved.get(at).copied(), deviation, is_weighed: true })
+        .map(|(at, (_, deviation))| Leaning { moved: moved.get(at).copied(), deviation, by_prior: None, is_weighed })
         .collect();
     let answer = Answer {
         facts,

@@ -2,7 +2,7 @@
 
 use super::METHOD;
 use super::iterate::{Phase, State};
-use super::prior::{Course, KINDS, Smoothness};
+use super::prior::{Course, HIGHEST_NOISY, KINDS, Smoothness};
 use crate::shared_noise::Alike;
 use crate::solve::fault::Fault;
 use crate::solve::state;
@@ -223,6 +223,15 @@ impl Place {
     /// The kind with the largest evidence.
     pub(super) fn best(&self) -> Option<&Tried> {
         self.tried.iter().max_by(|a, b| a.evidence.total_cmp(&b.evidence))
+    }
+
+    /// Whether the smoothest kind was asked, and came to rest: only then evidence says which kind a scalar beside sources should be told by.
+    pub(super) fn is_weighed(&self) -> bool {
+        let order = |tried: &&Tried| KINDS[tried.kind].order;
+        self.tried
+            .iter()
+            .max_by_key(order)
+            .is_some_and(|smoothest| KINDS[smoothest.kind].order > HIGHEST_NOISY && smoothest.evidence > f64::MIN)
     }
 
     /// Kinds that the evidence does not rule out, with their shares of it.

@@ -53,7 +53,7 @@ const FIRM: f64 = 0.25;
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
     /// `rhythm`, `filtered`, `repeated`, `polled`, `jolt`, `edge`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
-    /// `distance`, `seen`, `patch`, `determined`, `leaning`, `refined`, `amplified`, `agreed` or `range`.
+    /// `distance`, `seen`, `patch`, `determined`, `leaning`, `believed`, `contradicted`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,
@@ -89,7 +89,7 @@ impl Verdict {
         if self.failed().any(|check| {
             matches!(
                 check.check,
-                "determined" | "leaning" | "filtered" | "repeated" | "polled" | "held" | "jolt" | "edge"
+                "determined" | "leaning" | "believed" | "filtered" | "repeated" | "polled" | "held" | "jolt" | "edge"
             )
         }) {
             return true;

@@ -4,8 +4,9 @@
 use super::run::Clock;
 use super::solver::Solver;
 use super::state::{Phase, State};
-use crate::facts::{LARGER, Leaning};
+use crate::facts::{LARGER, Leaning, by_prior};
 use crate::local::KeptLattices;
+use crate::local::normal::factor::Factor;
 use crate::solve::vector::root_mean_square;
 
 /// Steps with rougher sources, at most.
@@ -13,8 +14,16 @@ const STEPS: usize = 10;
 /// Change of a coefficient or parameter that no longer matters.
 const SETTLED: f64 = 1e-3;
 
-/// How far a scalar's parameter moves, and its deviation before.
-type Rougher = (f64, f64);
+/// What a scalar's parameter is where sources may be rougher.
+#[derive(Clone, Copy)]
+pub(super) struct Rougher {
+    /// How far it moves.
+    moved: f64,
+    /// Its deviation before.
+    deviation: f64,
+    /// Share of what is known of it that the sources' prior says: how its variance grows with theirs.
+    by_prior: f64,
+}
 
 impl Solver<'_> {
     /// By learned scalar, how far its parameter moves from an end where sources may be [`LARGER`] times as rough, and its deviation at the
@@ -24,22 +33,28 @@ impl Solver<'_> {
             return None;
         }
         let factor = self.step(end).ok()?.factor;
+        let variances = |factor: &Factor| -> Option<Vec<f64>> {
+            (0..end.learned.len()).map(|at| Some(factor.learned_variance(at)?.max(0.0))).collect()
+        };
+        let (own, mut wide) = (variances(&factor)?, None);
         let mut state = end.clone();
         for head in self.judged(Phase::Solve) {
             state.classes[self.roughness[head]].size *= LARGER;
         }
         for _ in 0..STEPS {
             let found = self.step(&state).ok()?;
+            wide = variances(&found.factor);
             state = State { classes: state.classes, ..found.next };
             if found.change < SETTLED {
                 break;
             }
         }
-        let of = |at: usize| {
-            let moved = (state.learned[at] - end.learned[at]).abs();
-            Some((moved, factor.learned_variance(at)?.max(0.0).sqrt()))
+        let of = |(at, (own, wide)): (usize, (f64, f64))| Rougher {
+            moved: (state.learned[at] - end.learned[at]).abs(),
+            deviation: own.sqrt(),
+            by_prior: by_prior(own, wide),
         };
-        (0..end.learned.len()).map(of).collect()
+        Some(own.into_iter().zip(wide?).enumerate().map(of).collect())
     }
 
     /// Whether scalars are learned beside sources.
@@ -54,8 +69,10 @@ pub(super) fn facts(kept: &KeptLattices, rougher: Option<&[Rougher]>) -> Vec<Lea
     let draws = &kept.draws.learned;
     let of = |at: usize| {
         let drawn = (!draws.is_empty()).then(|| root_mean_square(draws.iter().map(|draw| draw[at])));
-        let deviation = drawn.map(|drawn| rougher.map_or(drawn, |all| drawn.max(all[at].1)));
-        Leaning { moved: rougher.map(|all| all[at].0), deviation, is_weighed: false }
+        let rougher = rougher.map(|all| all[at]);
+        let deviation = drawn.map(|drawn| rougher.map_or(drawn, |own| drawn.max(own.deviation)));
+        let (moved, by_prior) = (rougher.map(|own| own.moved), rougher.map(|own| own.by_prior));
+        Leaning { moved, deviation, by_prior, is_weighed: false }
     };
     (0..kept.learned.len()).map(of).collect()
 }

@@ -10,9 +10,11 @@ use super::super::solver::Solver;
 use super::super::triangle::covariance::Covariance;
 use super::super::{KINDS, Place, Run, Tried, kinds};
 use super::LiveError;
+use crate::facts::Leaning;
 use crate::noise::{self, Noise};
 use crate::problem::Bound;
 use crate::solve::driver::{Flow, Limits, Status};
+use crate::verdict::leaning::{FARTHEST, limit};
 use crate::weighed::Class;
 
 /// What rows count as known to, in the engine's units.
@@ -26,7 +28,7 @@ pub(super) struct Weights {
     pub(super) sizes: Vec<Option<(f64, f64)>>,
     /// Scalars that programs read, the learned ones as they were found.
     pub(super) scalars: Vec<f64>,
-    /// How far a learned scalar moves where sources may be larger, at most, as a share of itself.
+    /// How far a learned scalar moves where sources may be larger, at most, as a share of itself; less where its deviation says that it may.
     pub(super) leaning: f64,
     /// Parameters of the learned scalars, and their covariances, row by row.
     pub(super) learned: Vec<f64>,
@@ -80,13 +82,20 @@ impl Stretch {
         if !learned.is_empty() && solver.has_sources() {
             run.vary(&mut solver, &mut place, &Place::save)?;
             if let Some(best) = place.best().cloned() {
-                leaning = solver.leaning(KINDS[best.kind], &best.state)?.into_iter().fold(0.0, f64::max);
+                let (moved, is_weighed) = (solver.leaning(KINDS[best.kind], &best.state)?, place.is_weighed());
                 solver.set_smoothness(KINDS[best.kind], &best.state);
                 learned.clone_from(&best.state.learned);
                 if let Some((state, mut found, _)) = solver.doubted(best.state, &[])? {
                     found.covariance.forget_shared(learned.len());
                     let by_prior = solver.by_prior(&state, &found.covariance)?;
                     found.covariance.stretch_shared(&by_prior.into_iter().map(hedge).collect::<Vec<f64>>());
+                    let variances = found.covariance.shared_variances();
+                    let far = |(moved, variance): (f64, f64)| {
+                        let deviation = Some(variance.max(0.0).sqrt());
+                        let own = Leaning { moved: Some(moved), deviation, by_prior: None, is_weighed };
+                        moved * FARTHEST / limit(&own)
+                    };
+                    leaning = moved.into_iter().zip(variances).map(far).fold(0.0, f64::max);
                     spread = Some(found.covariance.corner);
                 }
             }
