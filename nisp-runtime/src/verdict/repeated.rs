@@ -90,7 +90,7 @@ mod tests {
     fn a_table_behind_itself_is_there_twice() {
         let places: Vec<f64> = (0..60).map(|at| f64::from(at % 30)).collect();
         let values: Vec<f64> = (0..60).map(|at| (f64::from(at % 30) * 1.7).sin()).collect();
-        assert_eq!(copies(&places, 1, &[values.clone()]), Some(30));
+        assert_eq!(copies(&places, 1, std::slice::from_ref(&values)), Some(30));
         // Measured again, a value has other digits, but where its sensor has few.
         let again: Vec<f64> = values.iter().enumerate().map(|(at, value)| value + 1e-3 * (at as f64).cos()).collect();
         assert_eq!(copies(&places, 1, &[again]), None);
