@@ -121,8 +121,9 @@ Rows of a record:
   answered at shorter lags. After a gap longer than the lag it begins anew with the next 200 rows. Where answers no longer
   fit the rows (a source sets in after quiet ones, 50 rows are inconsistent) the last 400 are solved as the first ones
   were. A row that cannot be taken (time that goes back, a word for a number) gets a line that says so, and the next one
-  is waited for; so does a time far ahead that the next row's time is not. A value that stands alone, far off, is left
-  out. First rows that tell nothing (a sensor at rest, empty cells) wait for others: 1600 at most.
+  is waited for; so does a time far ahead that the next row's time is not. Where 20 rows rise behind the last one, the
+  clock was set back, and the record begins anew with them. A value that stands alone, far off, is left out. First rows
+  that tell nothing (a sensor at rest, empty cells) wait for others: 1600 at most.
   The first rows are judged as `nisp solve` judges a record. A column that seems to be in another unit ends the stream where its
   header says none.
 

@@ -11,7 +11,7 @@ use std::time::{Duration, Instant};
 use crate::interrupt;
 use crate::terminal::{NOT_CONVERGED, note};
 use nisp::schema::{Head, Origin, Scene};
-use nisp::{FixedLagSmoother, LagSettings, Smoothed};
+use nisp::{FixedLagSmoother, LagSettings, LiveError, Smoothed};
 use nisp_data::Rows;
 use nisp_equations::{Entry, Record, Request};
 use serde_json::{Map, Value, json};
@@ -24,6 +24,9 @@ use crate::args::stream::StreamOptions;
 const AHEAD: usize = 1024;
 /// How often a signal is looked for while no row comes.
 const LOOK: Duration = Duration::from_millis(50);
+
+/// Rows that rise behind the last one, of which it is said that a clock was set back.
+const SET_BACK: usize = 20;
 
 /// A row: its place and its columns.
 type Row = Result<(f64, Vec<f64>), Wrong>;
@@ -67,6 +70,7 @@ pub(super) fn follow(entry: &Entry, options: &StreamOptions) -> Result<ExitCode,
         settings: LagSettings { lag: options.lag, ..LagSettings::default() },
         smoother: None,
         is_asked: false,
+        behind: Vec::new(),
     };
     match answers.follow(&record, &came)? {
         Ended::NotWritten(message) => Ok(not_written(&message)),
@@ -96,6 +100,12 @@ fn bring(mut rows: Rows<Box<dyn BufRead + Send>>, record: &Record, place: &SyncS
     }
 }
 
+/// A smoother of a record whose first row is at a place.
+fn begun(record: &Record, at: f64, settings: LagSettings) -> Result<FixedLagSmoother, String> {
+    let problem = record.problem(at).map_err(|error| error.to_string())?;
+    FixedLagSmoother::new(problem, settings).map_err(|error| error.to_string())
+}
+
 /// What is wrong with a row that was taken for one far ahead.
 fn far_ahead(smoother: &mut FixedLagSmoother) -> Option<Wrong> {
     let place = smoother.left_out()?;
@@ -119,6 +129,8 @@ struct Answers {
     smoother: Option<FixedLagSmoother>,
     /// Whether the units of the first rows have been looked at.
     is_asked: bool,
+    /// Rows that do not come after the last one, as far as they rise.
+    behind: Vec<(f64, Vec<f64>)>,
 }
 
 impl Answers {
@@ -140,15 +152,17 @@ impl Answers {
                 (Some(Ok((at, values))), smoother) => {
                     let smoother = match smoother {
                         Some(smoother) => smoother,
-                        None => {
-                            let problem = record.problem(at).map_err(|error| error.to_string())?;
-                            let new =
-                                FixedLagSmoother::new(problem, self.settings).map_err(|error| error.to_string())?;
-                            self.smoother.insert(new)
-                        }
+                        None => self.smoother.insert(begun(record, at, self.settings)?),
                     };
                     match smoother.push(at, &values) {
-                        Ok(found) => (far_ahead(smoother), found),
+                        Ok(found) => {
+                            self.behind.clear();
+                            (far_ahead(smoother), found)
+                        }
+                        Err(error @ LiveError::Backwards { .. }) => {
+                            let found = self.behind(record, (at, values))?;
+                            (Some((error.to_string(), Some(at))), found)
+                        }
                         Err(error) if error.is_of_row() => (Some((error.to_string(), Some(at))), Vec::new()),
                         Err(error) => return Ok(Ended::Open(error.to_string())),
                     }
@@ -181,6 +195,35 @@ impl Answers {
                 return Ok(Ended::Read);
             }
         }
+    }
+
+    /// Keeps a row that does not come after the last one. Where so many of these rise that a clock was set back, the record begins anew with
+    /// them, and the rows that still waited are answered.
+    ///
+    /// # Errors
+    /// Parameters that do not fit, or rows that nothing can be said of.
+    fn behind(&mut self, record: &Record, row: (f64, Vec<f64>)) -> Result<Vec<Smoothed>, String> {
+        if self.behind.last().is_some_and(|last| last.0 >= row.0) {
+            self.behind.clear();
+        }
+        self.behind.push(row);
+        if self.behind.len() < SET_BACK {
+            return Ok(Vec::new());
+        }
+        let rows = std::mem::take(&mut self.behind);
+        let (name, first) = (self.scene.coordinates[0].name, rows[0].0);
+        say(&format!(
+            "{SET_BACK} rows rise from `{name}` = {first} on, behind those before: the clock was set back, and the record begins anew with them"
+        ));
+        let mut found = match &mut self.smoother {
+            Some(before) => before.finish().map_err(|error| error.to_string())?,
+            None => Vec::new(),
+        };
+        let new = self.smoother.insert(begun(record, first, self.settings)?);
+        for (at, values) in rows {
+            found.extend(new.push(at, &values).map_err(|error| error.to_string())?);
+        }
+        Ok(found)
     }
 
     /// The members of a row's line.

@@ -81,6 +81,28 @@ fn every_row_has_its_line_and_a_bad_one_is_named() {
     assert!(lag(&good[399]) < 1e-9 && (lag(&good[200]) - lag(&good[210])).abs() < 1e-6);
 }
 
+/// A clock that was set back ends a record and begins another: its rows are answered, and so are those that waited.
+#[test]
+fn a_clock_that_is_set_back_begins_a_record_anew() {
+    let place = Place::new();
+    place.put("spring.pde", SPRING);
+    let mut csv = String::from("t_s,y_m\n");
+    for i in (0..320).chain(100..400) {
+        writeln!(csv, "{}", row(i)).unwrap();
+    }
+    place.put("run.csv", &csv);
+    let ran = place.run("stream spring.pde --data run.csv");
+    assert_eq!(ran.code, Some(0), "{}", ran.stderr);
+    assert!(ran.stderr.contains("20 rows rise from `t` = 5 on") && ran.stderr.contains("set back"), "{}", ran.stderr);
+    let (bad, good): (Vec<_>, Vec<_>) = lines(&ran.stdout).into_iter().partition(|line| line["status"] == "error");
+    assert_eq!((good.len(), bad.len()), (620, 20));
+    for (i, line) in (0..320).chain(100..400).zip(&good) {
+        let t = line["t"].as_f64().unwrap();
+        assert!((t - 0.05 * f64::from(i)).abs() < 1e-9, "{line}");
+        assert!((line["state"]["y"]["value"].as_f64().unwrap() - motion(t).0).abs() < 0.02, "{line}");
+    }
+}
+
 /// Loggers write titles, a line of units, dates and Windows line ends, into pipes as into files.
 #[test]
 fn what_files_may_have_streams_may_have() {

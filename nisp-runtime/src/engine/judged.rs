@@ -35,6 +35,7 @@ impl Engine<f64> {
             ahead: None,
             moved: None,
             strain: None,
+            loose: None,
             is_coarse: false,
             shared: Vec::new(),
             used: 1.0,

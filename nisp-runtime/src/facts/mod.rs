@@ -69,6 +69,8 @@ pub(crate) struct Answer {
     pub(crate) moved: Option<f64>,
     /// How far the cells hold the answer back, over what may be, where the budget ended before finer ones were tried.
     pub(crate) strain: Option<f64>,
+    /// The same where equations were held loosely to the end, and finer cells did not help.
+    pub(crate) loose: Option<f64>,
     /// Whether more than may be is left of equations between the points that they were asked at: its cells are too coarse for them.
     pub(crate) is_coarse: bool,
     /// By group and term, the noise that neighbouring rows share; nothing where each has its own. Empty where the carrier knows no such noise.

@@ -24,6 +24,7 @@ impl Solver {
             ahead: None,
             moved: None,
             strain: None,
+            loose: None,
             is_coarse: false,
             shared: Vec::new(),
             used: 1.0,

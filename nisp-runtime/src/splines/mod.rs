@@ -251,6 +251,7 @@ pub(crate) fn solve(
         ahead,
         moved: None,
         strain: None,
+        loose: None,
         is_coarse: false,
         shared,
         used: 1.0,

@@ -10,6 +10,8 @@ const NEAR: f64 = 1e-2;
 const MOVED: f64 = 0.1;
 /// How far cells may hold an answer back.
 const STRAINED: f64 = 1.0;
+/// How far equations that were held loosely may be off: where no finer cells help, a quarter more is as good.
+const LOOSE: f64 = 1.25;
 /// How much the last finer cells may have changed an answer to exact measurements.
 const REFINED: f64 = 0.05;
 /// How far the cells may hold an answer back for which nothing was measured, as a share of its range.
@@ -30,7 +32,17 @@ pub(super) fn checks(bound: &Bound, answer: &Answer) -> Vec<Check> {
         let said = format!("the run ended while {said}: give a larger budget, or more iterations");
         Check::new("settled", ("", ""), (value, limit), said)
     };
-    ahead.into_iter().chain(moved).chain(strain).map(check).chain(refined(bound, answer)).collect()
+    let early = ahead.into_iter().chain(moved).chain(strain).map(check);
+    early.chain(answer.loose.map(loose)).chain(refined(bound, answer)).collect()
+}
+
+/// Whether equations that had to be held loosely hold by themselves.
+fn loose(strain: f64) -> Check {
+    let said = format!(
+        "the equations had to be held loosely, and are off by {strain:.1} times what may be on the finest cells that helped: data or \
+         conditions contradict them somewhere, or what acts there is narrower than these cells"
+    );
+    Check::new("settled", ("", ""), (strain, LOOSE), said)
 }
 
 /// Whether a finer lattice still changed an answer without noise.

@@ -61,13 +61,14 @@ pub(super) fn finish(
     let is_early = status == Status::Budget && changes.least() > SAME;
     // Equations that had to be loose hold only if they do so by themselves.
     let is_loose = state.strictest > solver.tolerance;
-    let may_change = solver.is_measured() && (is_early || is_loose);
-    let strain = may_change.then(|| solver.strain(&state, noise));
+    let strain = (solver.is_measured() && (is_early || is_loose)).then(|| solver.strain(&state, noise));
+    let (strain, loose) = if is_early { (strain, None) } else { (None, strain) };
     let is_coarse = solver.left_of_equations(&state, noise) > 1.0;
     solver.judge_at(bound);
     let (mut answer, misfits) = (solver.answer(&state), solver.misfits(&state));
     answer.is_coarse = is_coarse;
-    (answer.strain, answer.used) = (strain, measurements(&solver.bound) as f64 / measurements(bound).max(1) as f64);
+    (answer.strain, answer.loose) = (strain, loose);
+    answer.used = measurements(&solver.bound) as f64 / measurements(bound).max(1) as f64;
     // Noise may fall differently on other cells; without it they are all that changes an answer.
     answer.refined = if solver.is_measured() { changes.taken().filter(|_| !is_noisy) } else { Some(changes.off()) };
     if status != Status::Converged {

@@ -233,6 +233,7 @@ impl Solver<'_> {
             ahead: None,
             moved: None,
             strain: None,
+            loose: None,
             shared: Vec::new(),
             used: 1.0,
             refined: None,
