@@ -34,6 +34,7 @@ impl Engine<f64> {
             leaning: Vec::new(),
             ahead: None,
             moved: None,
+            left_to_learned: Vec::new(),
             strain: None,
             loose: None,
             is_coarse: false,

@@ -67,6 +67,9 @@ pub(crate) struct Answer {
     /// How far the last step moved a source, over its size, at most; nothing at the end of the steps, and where the carrier does not
     /// tell.
     pub(crate) moved: Option<f64>,
+    /// By learned scalar, what is left of the equations, as a change of it in its own deviations; nothing without these. Empty where equations
+    /// hold to rounding, or in the mean over cells.
+    pub(crate) left_to_learned: Vec<Option<f64>>,
     /// How far the cells hold the answer back, over what may be, where the budget ended before finer ones were tried.
     pub(crate) strain: Option<f64>,
     /// The same where equations were held loosely to the end, and finer cells did not help.

@@ -23,6 +23,7 @@ impl Solver {
             leaning: Vec::new(),
             ahead: None,
             moved: None,
+            left_to_learned: Vec::new(),
             strain: None,
             loose: None,
             is_coarse: false,

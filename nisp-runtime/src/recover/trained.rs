@@ -29,15 +29,8 @@ pub(super) struct Trained {
 }
 
 impl Trained {
-    /// Standard deviations of the learned scalars' parameters. What equations are off by may be a scalar's fault, in the equation that says
-    /// most of it.
+    /// Standard deviations of the learned scalars' parameters.
     fn deviations(&mut self) -> Vec<Option<f64>> {
-        let beside = self.engine.left_to_learned(&self.theta);
-        self.by_noise().into_iter().zip(beside).map(|(own, beside)| Some(own?.hypot(beside))).collect()
-    }
-
-    /// Standard deviations of the learned scalars' parameters, as noise makes them.
-    fn by_noise(&mut self) -> Vec<Option<f64>> {
         let learned = self.engine.layout().learned.clone();
         // The curvature takes memory for every row and parameter.
         let prior = self.prior.as_ref().filter(|_| !learned.is_empty());
@@ -97,6 +90,8 @@ impl Carried for Trained {
 
     fn answer(&mut self, bound: &Bound) -> Answer {
         let mut answer = self.engine.answer(&self.theta, &bound.clouds);
+        let left = self.engine.left_to_learned(&self.theta).into_iter().zip(self.deviations());
+        answer.left_to_learned = left.map(|(left, deviation)| Some(left / deviation?)).collect();
         // How far scalars move where sources may be larger is not known of a network; how sure they are is.
         if bound.problem.scene().schema.heads.iter().any(|head| head.source) {
             let known = |deviation| Leaning { moved: None, deviation, by_prior: None, is_weighed: false };

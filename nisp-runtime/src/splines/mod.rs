@@ -250,6 +250,7 @@ pub(crate) fn solve(
         leaning,
         ahead,
         moved: None,
+        left_to_learned: Vec::new(),
         strain: None,
         loose: None,
         is_coarse: false,

@@ -53,7 +53,7 @@ const FIRM: f64 = 0.25;
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
     /// `rhythm`, `filtered`, `repeated`, `polled`, `jolt`, `edge`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
-    /// `distance`, `seen`, `patch`, `determined`, `leaning`, `believed`, `contradicted`, `refined`, `amplified`, `agreed` or `range`.
+    /// `distance`, `seen`, `patch`, `determined`, `leaning`, `believed`, `known`, `contradicted`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,
@@ -173,6 +173,7 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
     checks.extend(told::checks(bound, &answer.told).into_iter().filter(|check| !free.contains(&check.term)));
     checks.extend(answer.clouds.iter().flat_map(|cloud| clouds::checks(bound, cloud)));
     checks.extend(learned::checks(bound, &answer.scalars));
+    checks.extend(learned::held(bound, &answer.left_to_learned));
     checks.extend(leaning::checks(bound, &answer.leaning));
     // What coarse cells leave looks like what a wrong number does. Where something else fails anyway no number is accused.
     if answer.is_coarse && checks.iter().any(|check| !check.passed && check.check != "given") {

@@ -232,6 +232,7 @@ impl Solver<'_> {
             leaning: Vec::new(),
             ahead: None,
             moved: None,
+            left_to_learned: Vec::new(),
             strain: None,
             loose: None,
             shared: Vec::new(),
