@@ -5,7 +5,7 @@
 
 use super::{Domain, Points, Sampling};
 
-/// Points that tell how large what both have in common is. What they do not find, no others would in time.
+/// Points that tell how large what both have in common is.
 const PROBES: usize = 1 << 14;
 /// Points of a boundary that tell how much of it is left.
 const TRIAL: usize = 4096;

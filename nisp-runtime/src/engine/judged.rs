@@ -49,6 +49,9 @@ impl Engine<f64> {
     pub(crate) fn left_to_learned(&mut self, theta: &[f64]) -> Vec<f64> {
         let found = self.learned_values(theta);
         let mut least = vec![f64::INFINITY; found.len()];
+        if found.is_empty() {
+            return least;
+        }
         for at in 0..self.groups.len() {
             let facts = self.facts(at, theta);
             let group = &self.groups[at];

@@ -38,8 +38,8 @@ impl Solver<'_> {
         Ok(state.learned.iter().zip(&end.learned).map(|(larger, own)| (larger - own).abs()).collect())
     }
 
-    /// By learned scalar, the share of what is known of it about a state that the belief says that sources are as large and as rough all
-    /// along: how its variance grows with theirs.
+    /// By learned scalar, the share of what is known of it that comes from the sources' prior alone: its variance at a state is compared with
+    /// that where sources may be larger.
     pub(super) fn by_prior(&mut self, state: &State, covariance: &Covariance) -> Result<Vec<f64>, Fault> {
         let wide = self.with_larger_sources(state);
         let Some(found) = self.step(&wide, Phase::Solve)? else { return Ok(vec![0.0; state.learned.len()]) };
@@ -59,7 +59,7 @@ impl Solver<'_> {
     }
 }
 
-/// What the deviation of a scalar is multiplied by of which the prior says such a share.
+/// The factor by which the deviation of a scalar grows if the prior says this share of what is known of it.
 pub(super) fn hedge(by_prior: f64) -> f64 {
     (1.0 - by_prior + WORTH * by_prior).sqrt().recip()
 }

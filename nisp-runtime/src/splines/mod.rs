@@ -262,8 +262,8 @@ pub(crate) fn solve(
     Ok(SplineSolution { kept, roots, status, iterations, loss, warnings, checkpoint, answer, misfits })
 }
 
-/// Kinds of smoothness that are tried. What a scalar is beside sources is told by how smooth these are, so that the smoothest is asked about
-/// there, too: of a stiffness beside smooth forces third orders know ten deviations off what fifth ones find.
+/// Kinds of smoothness that are tried. How smooth sources are says what a scalar beside them is, so that the smoothest kind is tried there,
+/// too: a stiffness beside smooth forces was ten deviations off with third orders, and right with fifth ones.
 fn kinds(solver: &Solver<'_>, stretches: bool, is_exact: bool) -> Vec<usize> {
     let is_any = is_exact || solver.is_beside_sources();
     if !solver.has_sources() {

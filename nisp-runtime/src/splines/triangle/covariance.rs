@@ -121,8 +121,8 @@ impl Covariance {
         self.corner.iter().step_by(self.shared + 1).copied().collect()
     }
 
-    /// Multiplies the deviations of the shared unknowns, and what others are off by for their sake. The rest of the others' covariance,
-    /// which these leave where they are known, stays.
+    /// Multiplies the deviations of the shared unknowns. The variance that other unknowns have because of these grows alike; what they would
+    /// have if the shared ones were known stays.
     pub(in super::super) fn stretch_shared(&mut self, by: &[f64]) {
         let n = self.shared;
         let corner = DMatrix::from_row_slice(n, n, &self.corner);
