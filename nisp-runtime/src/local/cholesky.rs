@@ -84,7 +84,7 @@ impl Cholesky {
         let own = |node: &Node| node.first * sides..(node.first + node.strip.width) * sides;
         for node in &fill.nodes {
             let (rows, strip, count) = (self.rows_of(node), node.strip, node.others.len());
-            strip.solve_transposed(isa, rows, &mut x[own(node)], sides);
+            strip.solve_transposed(isa, rows, &mut x[own(node)], (sides, sides));
             let shape = Shape { rows: count, columns: sides, inner: strip.width };
             let right = Right::Rows { elements: &x[own(node)], stride: sides };
             let left = Left::transposed(&rows[strip.others()..], strip.stride);
@@ -140,12 +140,11 @@ fn eliminate(fill: &Fill, isa: Isa, (first, fronts): (usize, &mut [Front]), at: 
         let (child, from) = (&fill.nodes[child], &below[child - first].taken);
         child.pass_on(from, 0..strip.width, rows, strip.stride, |own, taken| *own -= taken);
     }
-    if !strip.eliminate(isa, rows) {
+    let len = node.others.len() * strip.apart();
+    *taken = fill.spare.any(len)?;
+    if !strip.eliminate(isa, rows, &mut taken[..len]) {
         return None;
     }
-    let count = node.others.len();
-    *taken = fill.spare.any(count * strip.apart())?;
-    strip.taken(isa, rows, &mut taken[..count * strip.apart()]);
     for &child in &node.children {
         let from = std::mem::take(&mut below[child - first].taken);
         let columns = strip.others()..strip.stride;

@@ -30,7 +30,7 @@ impl Cholesky {
             self.factor.copy_within(row * n..(row + 1) * n, row * strip.stride);
             self.factor[row * strip.stride + n..(row + 1) * strip.stride].fill(0.0);
         }
-        strip.eliminate(self.isa, &mut self.factor) && (0..n).all(|i| self.diagonal(i).is_finite())
+        strip.eliminate(self.isa, &mut self.factor, &mut []) && (0..n).all(|i| self.diagonal(i).is_finite())
     }
 
     fn strip(&self) -> Strip {
@@ -49,7 +49,7 @@ impl Cholesky {
 
     /// Solves `L x = b` in place for `count` right-hand sides, one after the other in memory.
     pub(crate) fn solve_lower(&self, b: &mut [f64], count: usize) {
-        self.solve_all(b, count, |x, sides| self.strip().solve_transposed(self.isa, &self.factor, x, sides));
+        self.solve_all(b, count, |x, sides| self.strip().solve_transposed(self.isa, &self.factor, x, (sides, sides)));
     }
 
     /// Solves `L^T x = b` in place for `count` right-hand sides, one after the other in memory.

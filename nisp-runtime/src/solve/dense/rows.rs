@@ -8,19 +8,22 @@ use std::ops::Range;
 use rayon::prelude::*;
 
 use super::blocks::{BLOCK, Diagonal, Substitution};
+use crate::aligned::AlignedVec;
 use crate::gemm::{Left, Right, Shape, Write, gemm};
 use crate::simd::{Isa, dispatch};
 
 /// Rows are as long as a multiple of this: whole vectors of any instruction set.
 pub(crate) const ALIGN: usize = 8;
 /// Rows that are eliminated before the rest of the matrix is updated.
-const PANEL: usize = 4 * BLOCK;
+const PANEL: usize = 6 * BLOCK;
 /// Rows of a task: their number and shape depend on the matrix alone, so that the number of threads changes no bit.
 const HEIGHT: usize = 96;
 /// Rows on the diagonal whose products with each other are all taken, though nobody needs those below the diagonal.
 const STEP: usize = 24;
+/// How far rows of a task's columns are apart: an odd number of cache lines.
+const ACROSS: usize = HEIGHT + ALIGN;
 /// Products of numbers for which waking a second thread pays.
-const SHARED: usize = 1 << 17;
+const SHARED: usize = 1 << 23;
 
 /// Rows that are eliminated together: `width` of them, whose columns are their own `width`, and from the next multiple of
 /// [`ALIGN`] on those of others. What lies between is zero.
@@ -48,8 +51,9 @@ impl Strip {
         self.width * self.stride
     }
 
-    /// From rows of a matrix to those of its factor; false where it is not positive definite in this precision.
-    pub(crate) fn eliminate(self, isa: Isa, rows: &mut [f64]) -> bool {
+    /// From rows of a matrix to those of its factor; false where it is not positive definite in this precision. What the rows take from
+    /// the matrix of the others goes to `taken`, [`Strip::apart`] from row to row, on and right of its diagonal.
+    pub(crate) fn eliminate(self, isa: Isa, rows: &mut [f64], taken: &mut [f64]) -> bool {
         let Self { width, stride } = self;
         for first in (0..width).step_by(PANEL) {
             let count = PANEL.min(width - first);
@@ -57,10 +61,11 @@ impl Strip {
             if !eliminate(isa, own, (first, count, stride)) {
                 return false;
             }
-            if !below.is_empty() {
-                let start = first + count;
-                square(isa, (&own[start..], stride, count), below, (stride, start), Write::Subtract);
-            }
+            let blocks = self.blocks((first + count).next_multiple_of(ALIGN));
+            let shared = own.len() * (below.len() / stride + taken.len() / self.apart().max(1)) >= SHARED;
+            let columns = Columns::divided(isa, own, (first, stride), &blocks, shared);
+            let write = if first == 0 { Write::Set } else { Write::Add };
+            self.subtract(isa, &columns, (below, taken, write), shared);
         }
         true
     }
@@ -70,27 +75,62 @@ impl Strip {
         self.stride - self.others()
     }
 
-    /// What the eliminated rows take from the matrix of the others, [`Strip::apart`] from row to row, on and right of its diagonal.
-    pub(crate) fn taken(self, isa: Isa, rows: &[f64], from_others: &mut [f64]) {
-        if !from_others.is_empty() {
-            let own = (&rows[self.others()..], self.stride, self.width);
-            square(isa, own, from_others, (self.apart(), 0), Write::Set);
+    /// Its columns from one on, a task's beside each other: first its own, then those of others.
+    fn blocks(self, start: usize) -> Vec<Range<usize>> {
+        let part = |from: usize, end: usize| (from..end).step_by(HEIGHT).map(move |at| at..end.min(at + HEIGHT));
+        part(start, self.others()).chain(part(self.others().max(start), self.stride)).collect()
+    }
+
+    /// Subtracts the products of eliminated rows' columns from the rows below them, and writes those of others to theirs.
+    fn subtract(
+        self,
+        isa: Isa,
+        columns: &Columns,
+        (below, taken, write): (&mut [f64], &mut [f64], Write),
+        shared: bool,
+    ) {
+        let own = below.len().div_ceil(HEIGHT * self.stride);
+        let task = |(task, rows): (usize, &mut [f64])| {
+            let (stride, before, write) = match task < own {
+                true => (self.stride, 0, Write::Subtract),
+                false => (self.apart(), self.others(), write),
+            };
+            let left = columns.block(task);
+            for (number, block) in columns.blocks.iter().enumerate().skip(task) {
+                // Of a block on the diagonal, most of what is below it is left out.
+                let step = if number == task { STEP } else { HEIGHT };
+                for (step_at, rows) in rows.chunks_mut(step * stride).enumerate() {
+                    let first = step_at * step;
+                    let from = if number == task { first } else { 0 };
+                    let shape = Shape { rows: rows.len() / stride, columns: block.len() - from, inner: columns.inner };
+                    let right = Right::Rows { elements: &columns.block(number)[from..], stride: ACROSS };
+                    let left = Left::transposed(&left[first..], ACROSS);
+                    gemm(isa, shape, left, right, &mut rows[block.start - before + from..], stride, write);
+                }
+            }
+        };
+        let (tall, others) = (HEIGHT * self.stride, HEIGHT * self.apart().max(1));
+        if shared {
+            below.par_chunks_mut(tall).chain(taken.par_chunks_mut(others)).enumerate().for_each(task);
+        } else {
+            below.chunks_mut(tall).chain(taken.chunks_mut(others)).enumerate().for_each(task);
         }
     }
 
-    /// Solves `U^T x = b` in place, for its own columns and so many right-hand sides, a multiple of [`ALIGN`]; row by row.
-    pub(crate) fn solve_transposed(self, isa: Isa, rows: &[f64], x: &mut [f64], sides: usize) {
+    /// Solves `U^T x = b` in place, for its own columns and so many right-hand sides, a multiple of [`ALIGN`]; row by row, as far apart as
+    /// given.
+    pub(crate) fn solve_transposed(self, isa: Isa, rows: &[f64], x: &mut [f64], (sides, apart): (usize, usize)) {
         let Self { width, stride } = self;
-        for first in (0..width).step_by(BLOCK) {
-            let count = BLOCK.min(width - first);
-            let (before, x) = x.split_at_mut(first * sides);
+        for first in (0..width).step_by(ALIGN) {
+            let count = ALIGN.min(width - first);
+            let (before, x) = x.split_at_mut(first * apart);
             let shape = Shape { rows: count, columns: sides, inner: first };
             if first > 0 {
-                let right = Right::Rows { elements: before, stride: sides };
-                gemm(isa, shape, Left::transposed(&rows[first..], stride), right, x, sides, Write::Subtract);
+                let right = Right::Rows { elements: before, stride: apart };
+                gemm(isa, shape, Left::transposed(&rows[first..], stride), right, x, apart, Write::Subtract);
             }
             let rows = &rows[first * (stride + 1)..];
-            dispatch(isa, Substitution { rows, stride, count, x, apart: sides, sides, transposed: true });
+            dispatch(isa, Substitution { rows, stride, count, x, apart, sides, transposed: true });
         }
     }
 
@@ -111,19 +151,72 @@ impl Strip {
     }
 }
 
-/// Eliminates so many rows, as far apart as given, of which the first one's diagonal stands in the given column.
-fn eliminate(isa: Isa, rows: &mut [f64], (at, height, stride): (usize, usize, usize)) -> bool {
+/// Columns of eliminated rows, copied block by block: rows of a block are next to each other.
+struct Columns<'a> {
+    blocks: &'a [Range<usize>],
+    /// Eliminated rows.
+    inner: usize,
+    elements: AlignedVec<f64>,
+}
+
+impl<'a> Columns<'a> {
+    /// Replaces blocks of columns of some rows, as far apart as given, by `U^-T` times them; `U` begins in the given column.
+    fn divided(
+        isa: Isa,
+        rows: &mut [f64],
+        (at, stride): (usize, usize),
+        blocks: &'a [Range<usize>],
+        shared: bool,
+    ) -> Self {
+        let inner = rows.len() / stride;
+        let mut elements = AlignedVec::zeros(blocks.len() * inner * ACROSS);
+        let from = &*rows;
+        let divide = |(block, x): (&Range<usize>, &mut [f64])| {
+            for (x, row) in x.chunks_exact_mut(ACROSS).zip(from.chunks(stride)) {
+                x[..block.len()].copy_from_slice(&row[block.clone()]);
+            }
+            Strip { width: inner, stride }.solve_transposed(isa, &from[at..], x, (block.len(), ACROSS));
+        };
+        if shared {
+            blocks.par_iter().zip(elements.par_chunks_exact_mut(inner * ACROSS)).for_each(divide);
+        } else {
+            blocks.iter().zip(elements.chunks_exact_mut(inner * ACROSS)).for_each(divide);
+        }
+        let columns = Columns { blocks, inner, elements };
+        for (number, block) in blocks.iter().enumerate() {
+            for (x, row) in columns.block(number).chunks_exact(ACROSS).zip(rows.chunks_mut(stride)) {
+                row[block.clone()].copy_from_slice(&x[..block.len()]);
+            }
+        }
+        columns
+    }
+
+    fn block(&self, number: usize) -> &[f64] {
+        &self.elements[number * self.inner * ACROSS..][..self.inner * ACROSS]
+    }
+}
+
+/// Eliminates so many rows, as far apart as given, in as many columns, which begin at the given one; false where the matrix is not positive
+/// definite.
+fn eliminate(isa: Isa, rows: &mut [f64], (at, count, stride): (usize, usize, usize)) -> bool {
     let mut block = [0.0; BLOCK * BLOCK];
-    for first in (0..height).step_by(BLOCK) {
-        let count = BLOCK.min(height - first);
-        let (own, below) = rows[first * stride..].split_at_mut(count * stride);
-        if !dispatch(isa, Diagonal { rows: &mut own[at + first..], stride, count, block: &mut block }) {
+    let end = (at + count).next_multiple_of(ALIGN);
+    for first in (0..count).step_by(BLOCK) {
+        let height = BLOCK.min(count - first);
+        let (own, below) = rows[first * stride..].split_at_mut(height * stride);
+        if !dispatch(isa, Diagonal { rows: &mut own[at + first..], stride, count: height, block: &mut block }) {
             return false;
         }
-        let start = (at + first + count).next_multiple_of(ALIGN);
-        if start < stride {
-            divide(isa, &block, own, (count, stride, start));
-            square(isa, (&own[start..], stride, count), below, (stride, start), Write::Subtract);
+        if below.is_empty() {
+            break;
+        }
+        let start = at + first + height;
+        divide(isa, &block, own, (height, stride, start..end));
+        for (step, rows) in below.chunks_mut(STEP * stride).enumerate() {
+            let from = start + step * STEP;
+            let shape = Shape { rows: rows.len() / stride, columns: end - from, inner: height };
+            let right = Right::Rows { elements: &own[from..], stride };
+            gemm(isa, shape, Left::transposed(&own[from..], stride), right, &mut rows[from..], stride, Write::Subtract);
         }
     }
     true
@@ -131,8 +224,8 @@ fn eliminate(isa: Isa, rows: &mut [f64], (at, height, stride): (usize, usize, us
 
 /// Replaces rows, as far apart as given, by `U^-T` times them from a column on; `U` is the block on the diagonal left of there. By
 /// substitution: the inverse of a block loses the digits of small pivots.
-fn divide(isa: Isa, block: &[f64], rows: &mut [f64], (count, stride, start): (usize, usize, usize)) {
-    let sides = stride - start;
+fn divide(isa: Isa, block: &[f64], rows: &mut [f64], (count, stride, columns): (usize, usize, Range<usize>)) {
+    let (start, sides) = (columns.start, columns.len());
     for first in (0..count).step_by(ALIGN) {
         let height = ALIGN.min(count - first);
         let (before, own) = rows.split_at_mut(first * stride);
@@ -154,46 +247,6 @@ fn divide(isa: Isa, block: &[f64], rows: &mut [f64], (count, stride, start): (us
     }
 }
 
-/// Writes `u^T u` to rows, on and right of the diagonal: `u` has so many rows, as far apart as given; the rows are as far apart as
-/// given, and the first one's diagonal stands in the given column.
-fn square(
-    isa: Isa,
-    (u, apart, inner): (&[f64], usize, usize),
-    rows: &mut [f64],
-    (stride, start): (usize, usize),
-    write: Write,
-) {
-    let product = |rows: &mut [f64], first: usize, columns: Range<usize>| {
-        let shape = Shape { rows: rows.len() / stride, columns: columns.len(), inner };
-        let right = Right::Rows { elements: &u[columns.start..], stride: apart };
-        gemm(
-            isa,
-            shape,
-            Left::transposed(&u[first..], apart),
-            right,
-            &mut rows[start + columns.start..],
-            stride,
-            write,
-        );
-    };
-    let task = |(task, rows): (usize, &mut [f64])| {
-        let (at, end) = (task * HEIGHT, stride - start);
-        let beside = (at + rows.len() / stride).next_multiple_of(ALIGN);
-        for (step, rows) in rows.chunks_mut(STEP * stride).enumerate() {
-            let first = at + step * STEP;
-            product(rows, first, first..beside);
-        }
-        if beside < end {
-            product(rows, at, beside..end);
-        }
-    };
-    if rows.len() * inner < SHARED {
-        rows.chunks_mut(HEIGHT * stride).enumerate().for_each(task);
-    } else {
-        rows.par_chunks_mut(HEIGHT * stride).enumerate().for_each(task);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -208,13 +261,13 @@ mod tests {
     #[test]
     fn some_rows_are_eliminated_as_in_the_whole() {
         let isa = Isa::detect();
-        for (width, others) in [(1, 0), (3, 2), (8, 8), (33, 5), (70, 150), (200, 1)] {
+        for (width, others) in [(1, 0), (3, 2), (8, 8), (33, 5), (70, 150), (200, 1), (301, 203)] {
             let size = width + others;
             let entry = matrix(size);
             let whole = Strip::new(size, 0);
             let mut factor = vec![0.0; whole.len()];
             (0..size).for_each(|i| (i..size).for_each(|j| factor[i * whole.stride + j] = entry(i, j)));
-            assert!(whole.eliminate(isa, &mut factor));
+            assert!(whole.eliminate(isa, &mut factor, &mut []));
             let u = |i: usize, j: usize| factor[i * whole.stride + j];
             for i in 0..size {
                 for j in i..size {
@@ -228,8 +281,7 @@ mod tests {
             (0..width).for_each(|i| (i..size).for_each(|j| rows[i * strip.stride + place(j)] = entry(i, j)));
             let apart = strip.apart();
             let mut taken = vec![f64::NAN; others * apart];
-            assert!(strip.eliminate(isa, &mut rows));
-            strip.taken(isa, &rows, &mut taken);
+            assert!(strip.eliminate(isa, &mut rows, &mut taken));
             for i in 0..width {
                 for j in i..size {
                     let found = rows[i * strip.stride + place(j)];
@@ -253,13 +305,13 @@ mod tests {
             let (entry, strip) = (matrix(size), Strip::new(size, 0));
             let mut factor = vec![0.0; strip.len()];
             (0..size).for_each(|i| (i..size).for_each(|j| factor[i * strip.stride + j] = entry(i, j)));
-            assert!(strip.eliminate(isa, &mut factor));
+            assert!(strip.eliminate(isa, &mut factor, &mut []));
             let solution: Vec<f64> = (0..size * sides).map(|at| (at as f64 * 0.37).cos()).collect();
             // A x = b by both triangles, one after the other.
             let mut x: Vec<f64> = (0..size * sides)
                 .map(|at| (0..size).map(|k| entry(at / sides, k) * solution[k * sides + at % sides]).sum())
                 .collect();
-            strip.solve_transposed(isa, &factor, &mut x, sides);
+            strip.solve_transposed(isa, &factor, &mut x, (sides, sides));
             strip.solve(isa, &factor, &mut x, sides);
             assert!(x.iter().zip(&solution).all(|(x, y)| (x - y).abs() < 1e-12), "{size} {sides}");
         }
@@ -271,7 +323,7 @@ mod tests {
             let strip = Strip::new(size, 0);
             let mut rows = vec![0.0; strip.len()];
             (0..size).for_each(|i| rows[i * (strip.stride + 1)] = if i == at { -1.0 } else { 1.0 });
-            assert!(!strip.eliminate(Isa::detect(), &mut rows), "{size}");
+            assert!(!strip.eliminate(Isa::detect(), &mut rows, &mut []), "{size}");
         }
     }
 }
