@@ -50,6 +50,18 @@ pub(crate) fn held(values: &[f64], is_state: bool) -> Vec<Range<usize>> {
     long.into_iter().filter(is_held).collect()
 }
 
+/// Of the values of a quantity that is given, those in long runs of equal ones, where others seldom follow their like. That may be what was
+/// done, as with a heater at full power, or the end of what was measured. Zero is what a quantity that is switched off is.
+pub(crate) fn stands(values: &[f64]) -> Vec<Range<usize>> {
+    let (long, short): (Vec<Range<usize>>, Vec<Range<usize>>) =
+        runs(values).into_iter().partition(|run| run.len() >= LONG);
+    let others: usize = short.iter().map(|run| run.len()).sum();
+    if others < LONG || (short.len() as f64) < (1.0 - STEPS) * others as f64 {
+        return Vec::new();
+    }
+    long.into_iter().filter(|run| values[run.start] != 0.0).collect()
+}
+
 /// Numbers of the values but for long runs of equal ones, which say nothing of how noisy a sensor is that seldom repeats itself; of all
 /// values where too few are left.
 pub(crate) fn moving(values: &[f64], fewest: usize) -> Vec<usize> {
@@ -138,6 +150,18 @@ mod tests {
         assert_eq!((held(&dead, true).len(), count(&dead, true)), (1, 90));
         let stops: Vec<f64> = (0..190).map(|at| (100.0 - at as f64).max(0.0) * (1.0 + 1e-3 * wave(at))).collect();
         assert_eq!(held(&stops, true), [], "a car that stops");
+    }
+
+    #[test]
+    fn what_is_given_stands_where_others_move() {
+        let heater: Vec<f64> = (0..190).map(|at| (1.0 + (0.1 * at as f64).sin()).min(1.8)).collect();
+        let count: usize = stands(&heater).into_iter().map(|run| run.len()).sum();
+        assert_eq!(count, heater.iter().filter(|power| **power == 1.8).count());
+        // On and off, and off alone.
+        let switched: Vec<f64> = (0..190).map(|at| f64::from(u8::from(at / 20 % 2 == 0))).collect();
+        assert_eq!(stands(&switched), []);
+        let late: Vec<f64> = (0..190).map(|at| if at < 50 { 0.0 } else { heater[at] }).collect();
+        assert!(stands(&late).iter().all(|run| run.start >= 50));
     }
 
     #[test]

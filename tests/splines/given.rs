@@ -135,3 +135,43 @@ fn few_values_that_contradict_all_others_are_no_noise() {
     let is_said = |check: &nisp::Check| (check.check, check.group) == ("contradicted", "couples");
     assert!(wrong.verdict.failed().any(is_said), "{:?}", wrong.verdict.failed().collect::<Vec<_>>());
 }
+
+interpret! {
+    /// A room under a heater whose power is logged.
+    mod heater {
+        units: off;
+        coordinates: t;
+        fields: u;
+        parameters: c > 0 = 1, r > 0 = 1;
+        on room { columns: p; heat: c * d(u, t) == p - u / r; }
+        on samples { observe u; }
+        scene rates { learn c, r; }
+    }
+}
+
+/// A heater at full power and a meter at the end of its range look alike in the log, and only the room tells them apart.
+#[test]
+fn a_given_column_at_the_end_of_its_range_is_told_from_a_heater_at_full_power() {
+    let times: Vec<f64> = (0..241).map(|row| 0.1 * f64::from(row)).collect();
+    let wanted = |t: f64| 2.0 + (1.1 * t).sin() + 0.8 * (2.7 * t).sin();
+    let limited = |t: f64| wanted(t).min(2.6);
+    let found = |power: &dyn Fn(f64) -> f64| {
+        let course = simulated(&times, [1.5, 0.0], |t, [u, _]| [(power(t) - u / 1.3) / 2.0, 0.0]);
+        let mut normal = normals(4);
+        let measured = course.iter().map(|x| x[0] + 0.01 * normal()).collect();
+        let logged = times.iter().map(|&t| limited(t)).collect();
+        let mut problem = Problem::new(heater::scene("rates"));
+        problem.set_group("room", times.clone().into(), vec![logged]).unwrap();
+        problem.set_group("samples", times.clone().into(), vec![measured]).unwrap();
+        solve(&problem, Carrier::Splines)
+    };
+    let mut right = found(&limited);
+    assert_eq!(right.status, Status::Converged, "{:?}", right.verdict.failed().collect::<Vec<_>>());
+    for (learned, exact) in right.learned().iter().zip([2.0, 1.3]) {
+        assert!((learned.value - exact).abs() < 3.5 * learned.deviation.unwrap(), "{learned:?} is not {exact}");
+    }
+    let wrong = found(&wanted);
+    assert_eq!(wrong.status, Status::Inconsistent, "{:?}", wrong.verdict);
+    let check = wrong.verdict.failed().find(|check| check.check == "given").unwrap();
+    assert!(check.message.contains("added to `p` where it stands still"), "{}", check.message);
+}

@@ -7,6 +7,8 @@ pub(crate) enum Known {
     Scalar(usize),
     /// That a column of a record is measured without an offset.
     Offset { group: usize, column: usize },
+    /// That a given column of a record is what it says where it stands still.
+    Standing { group: usize, column: usize },
     /// Where a cloud is, along an axis.
     Place { cloud: usize, axis: usize },
     /// How a cloud is turned about an axis through its middle.

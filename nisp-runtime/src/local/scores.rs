@@ -110,7 +110,7 @@ impl Solver {
                     pairs.map(|(more, less)| (more - less) / (2.0 * SMALL)).collect()
                 }
                 // A cloud's rows read no column.
-                Known::Offset { .. } => return,
+                Known::Offset { .. } | Known::Standing { .. } => return,
                 Known::Place { cloud, .. } | Known::Direction { cloud, .. } | Known::Size { cloud }
                     if !std::ptr::eq(surface, &self.surfaces[cloud]) =>
                 {

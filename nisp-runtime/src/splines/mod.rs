@@ -46,7 +46,7 @@ use std::time::Instant;
 
 use crate::bounds;
 use crate::carrier::Progress;
-use crate::facts::{Answer, Leaning, OTHER_THAN_SPLINES};
+use crate::facts::{Answer, Known, Leaning, OTHER_THAN_SPLINES};
 use crate::memory;
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -201,14 +201,16 @@ pub(crate) fn solve(
     if let Some(best) = place.best().filter(|_| status == Status::Converged && run.has_time_for(leaning::STEPS)) {
         moved = solver.leaning(KINDS[best.kind], &best.state)?;
     }
-    let known = solver.known();
-    let mut scores = Vec::new();
+    let is_blurred = place.best().is_some_and(|best| best.state.blurred);
     // Noise of a column that a number multiplies makes the number look too large.
+    let known = solver.known().into_iter().filter(|known| !is_blurred || !matches!(known, Known::Scalar(_)));
+    let known: Vec<Known> = known.collect();
+    let mut scores = Vec::new();
     if status == Status::Converged
         && solver.heads.len() <= MANY
         && !known.is_empty()
         && run.has_time_for(1 + known.len())
-        && let Some(best) = place.best().filter(|best| !best.state.blurred)
+        && let Some(best) = place.best()
     {
         scores = solver.scores(KINDS[best.kind], &best.state, &known)?;
     }

@@ -13,6 +13,7 @@ use crate::facts::{Known, Score};
 use crate::given::{SMALL, given, slope};
 use crate::schema::TermKind;
 use crate::solve::fault::Fault;
+use crate::standing::stands;
 
 /// Share of what rows say of a number that must be left when the unknowns have taken theirs: below it is rounding.
 pub(super) const OPEN: f64 = 1e-20;
@@ -20,8 +21,8 @@ pub(super) const OPEN: f64 = 1e-20;
 const FEWEST: usize = 16;
 
 impl Solver<'_> {
-    /// What is taken for known and can be asked about: given numbers, and that columns of a record are measured without an offset. Under
-    /// robust losses rows change with their weights, which must not.
+    /// What is taken for known and can be asked about: given numbers, that columns of a record are measured without an offset, and that those
+    /// which are given stand where they say, if they do. Under robust losses rows change with their weights, which must not.
     pub(super) fn known(&self) -> Vec<Known> {
         if self.bound.losses.iter().flatten().any(|loss| loss.is_robust()) {
             return Vec::new();
@@ -29,11 +30,17 @@ impl Solver<'_> {
         let schema = self.bound.problem.scene().schema;
         let given = given(schema, &self.scalars).into_iter().map(Known::Scalar);
         let records = self.groups.iter().enumerate().filter(|(_, group)| group.len() >= FEWEST);
-        let observed = records.flat_map(|(at, group)| {
+        let observed = records.clone().flat_map(|(at, group)| {
             let terms = group.schema.terms.iter().filter(|term| term.kind == TermKind::Observation);
             terms.flat_map(move |term| term.columns.iter().map(move |&column| Known::Offset { group: at, column }))
         });
-        given.chain(observed).collect()
+        let standing = records.flat_map(|(at, group)| {
+            let observed: Vec<usize> = group.schema.terms.iter().flat_map(|term| term.columns).copied().collect();
+            let given = (0..group.schema.columns.len()).filter(move |column| !observed.contains(column));
+            let stands = given.filter(move |&column| !stands(&self.bound.columns[at][column]).is_empty());
+            stands.map(move |column| Known::Standing { group: at, column })
+        });
+        given.chain(observed).chain(standing).collect()
     }
 
     /// Scores of what is taken for known about an end.
@@ -89,6 +96,14 @@ impl Solver<'_> {
                 self.groups[group].column(column).iter_mut().for_each(|value| *value += by);
                 own
             }
+            Known::Standing { group, column } => {
+                let by = share * self.bound.spread_of(group, column);
+                let len = self.groups[group].len();
+                let values = self.groups[group].column(column);
+                let own = values.to_vec();
+                stands(&own[..len]).into_iter().flatten().for_each(|at| values[at] += by);
+                own
+            }
             Known::Place { .. } | Known::Direction { .. } | Known::Size { .. } => Vec::new(),
         }
     }
@@ -97,7 +112,9 @@ impl Solver<'_> {
     fn move_back(&mut self, known: Known, own: Vec<f64>) {
         match known {
             Known::Scalar(slot) => self.scalars[slot] = own[0],
-            Known::Offset { group, column } => self.groups[group].column(column).copy_from_slice(&own),
+            Known::Offset { group, column } | Known::Standing { group, column } => {
+                self.groups[group].column(column).copy_from_slice(&own)
+            }
             Known::Place { .. } | Known::Direction { .. } | Known::Size { .. } => {}
         }
     }

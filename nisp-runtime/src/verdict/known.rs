@@ -56,7 +56,7 @@ pub(crate) fn check(bound: &Bound, scores: &[Score], known: Values<'_>) -> Optio
     );
     let place = match first.known {
         Known::Scalar(slot) => ("", bound.problem.scene().schema.scalars[slot].name),
-        Known::Offset { group, column } => {
+        Known::Offset { group, column } | Known::Standing { group, column } => {
             let group = &bound.problem.scene().schema.groups[group];
             (group.name, group.columns[column].name)
         }
@@ -93,11 +93,13 @@ fn said(bound: &Bound, known: Values<'_>, score: &Score) -> String {
             let unit = scalar.unit.behind();
             format!("`{}` about {:.3e}{unit} instead of {now:.3e}{unit}", scalar.name, now * (1.0 + score.change))
         }
-        Known::Offset { group, column } => {
+        Known::Offset { group, column } | Known::Standing { group, column } => {
             let column_of = &schema.groups[group].columns[column];
             let by = score.change * bound.spread_of(group, column);
             let by = bound.system.outward(&column_of.unit).of(Number::engine(by)).as_declared();
-            format!("{by:.2e}{} added to `{}` all along", column_of.unit.behind(), column_of.name)
+            let stands = matches!(score.known, Known::Standing { .. });
+            let place = if stands { "where it stands still" } else { "all along" };
+            format!("{by:.2e}{} added to `{}` {place}", column_of.unit.behind(), column_of.name)
         }
         Known::Place { cloud, axis: at } => {
             let (name, unit) = term(cloud);
