@@ -1,7 +1,8 @@
 //! Cholesky factors `A = U^T U` row by row: some rows of a matrix are eliminated, and what is left of the others follows.
 //!
 //! Rows lie one after the other, `stride` apart, and only what stands on and right of the diagonal counts. So the products of
-//! the engine's layers do nearly all of the work, with `U` as both of their factors as it lies.
+//! the engine's layers do nearly all of the work, with `U` as both of their factors. They read it from copies of its columns, block
+//! by block: rows of a large matrix lie pages apart.
 
 use std::ops::Range;
 
@@ -118,7 +119,7 @@ impl Strip {
     }
 
     /// Solves `U^T x = b` in place, for its own columns and so many right-hand sides, a multiple of [`ALIGN`]; row by row, as far apart as
-    /// given.
+    /// given. By substitution: the inverse of a block on the diagonal loses the digits of small pivots.
     pub(crate) fn solve_transposed(self, isa: Isa, rows: &[f64], x: &mut [f64], (sides, apart): (usize, usize)) {
         let Self { width, stride } = self;
         for first in (0..width).step_by(ALIGN) {
@@ -211,7 +212,8 @@ fn eliminate(isa: Isa, rows: &mut [f64], (at, count, stride): (usize, usize, usi
             break;
         }
         let start = at + first + height;
-        divide(isa, &block, own, (height, stride, start..end));
+        let divisor = Strip { width: height, stride: BLOCK };
+        divisor.solve_transposed(isa, &block, &mut own[start..], (end - start, stride));
         for (step, rows) in below.chunks_mut(STEP * stride).enumerate() {
             let from = start + step * STEP;
             let shape = Shape { rows: rows.len() / stride, columns: end - from, inner: height };
@@ -220,31 +222,6 @@ fn eliminate(isa: Isa, rows: &mut [f64], (at, count, stride): (usize, usize, usi
         }
     }
     true
-}
-
-/// Replaces rows, as far apart as given, by `U^-T` times them from a column on; `U` is the block on the diagonal left of there. By
-/// substitution: the inverse of a block loses the digits of small pivots.
-fn divide(isa: Isa, block: &[f64], rows: &mut [f64], (count, stride, columns): (usize, usize, Range<usize>)) {
-    let (start, sides) = (columns.start, columns.len());
-    for first in (0..count).step_by(ALIGN) {
-        let height = ALIGN.min(count - first);
-        let (before, own) = rows.split_at_mut(first * stride);
-        if first > 0 {
-            let shape = Shape { rows: height, columns: sides, inner: first };
-            let right = Right::Rows { elements: &before[start..], stride };
-            gemm(
-                isa,
-                shape,
-                Left::transposed(&block[first..], BLOCK),
-                right,
-                &mut own[start..],
-                stride,
-                Write::Subtract,
-            );
-        }
-        let (rows, x) = (&block[first * (BLOCK + 1)..], &mut own[start..]);
-        dispatch(isa, Substitution { rows, stride: BLOCK, count: height, x, apart: stride, sides, transposed: true });
-    }
 }
 
 #[cfg(test)]
