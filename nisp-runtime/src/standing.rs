@@ -50,8 +50,8 @@ pub(crate) fn held(values: &[f64], is_state: bool) -> Vec<Range<usize>> {
     long.into_iter().filter(is_held).collect()
 }
 
-/// Of the values of a quantity that is given, those in long runs of equal ones, where others seldom follow their like. That may be what was
-/// done, as with a heater at full power, or the end of what was measured. Zero is what a quantity that is switched off is.
+/// Long runs of equal values of a given quantity, where the other values seldom repeat from one row to the next. They may be what was done, as
+/// with a heater at full power, or the end of what its meter shows. Zero is left out: a quantity that is switched off is exactly zero.
 pub(crate) fn stands(values: &[f64]) -> Vec<Range<usize>> {
     let (long, short): (Vec<Range<usize>>, Vec<Range<usize>>) =
         runs(values).into_iter().partition(|run| run.len() >= LONG);

@@ -7,7 +7,7 @@ pub(crate) enum Known {
     Scalar(usize),
     /// That a column of a record is measured without an offset.
     Offset { group: usize, column: usize },
-    /// That a given column of a record is what it says where it stands still.
+    /// That a given column of a record is right in the rows where it stands still.
     Standing { group: usize, column: usize },
     /// Where a cloud is, along an axis.
     Place { cloud: usize, axis: usize },

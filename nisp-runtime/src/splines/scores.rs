@@ -1,4 +1,4 @@
-//! Whether the data would be met better if a given number were otherwise, or if a sensor had an offset (Rao's score test). Sources may take over what is wrong with it, as far as
+//! Whether the data would be met better if a given number or column were otherwise, or if a sensor had an offset (Rao's score test). Sources may take over what is wrong with it, as far as
 //! they can: what the data say beyond that is what counts.
 //!
 //! A prior says that sources are as small and as smooth as they may be, and any number that makes them smaller gains by it. So what is said here
@@ -21,8 +21,8 @@ pub(super) const OPEN: f64 = 1e-20;
 const FEWEST: usize = 16;
 
 impl Solver<'_> {
-    /// What is taken for known and can be asked about: given numbers, that columns of a record are measured without an offset, and that those
-    /// which are given stand where they say, if they do. Under robust losses rows change with their weights, which must not.
+    /// What is taken for known and can be asked about: given numbers, that measured columns of a record have no offset, and that given columns
+    /// are right where they stand still. Under robust losses rows change with their weights, which must not.
     pub(super) fn known(&self) -> Vec<Known> {
         if self.bound.losses.iter().flatten().any(|loss| loss.is_robust()) {
             return Vec::new();

@@ -76,13 +76,13 @@ impl Strip {
         self.stride - self.others()
     }
 
-    /// Its columns from one on, a task's beside each other: first its own, then those of others.
+    /// Its columns from one on, in blocks of a task each: first its own columns, then those of others.
     fn blocks(self, start: usize) -> Vec<Range<usize>> {
         let part = |from: usize, end: usize| (from..end).step_by(HEIGHT).map(move |at| at..end.min(at + HEIGHT));
         part(start, self.others()).chain(part(self.others().max(start), self.stride)).collect()
     }
 
-    /// Subtracts the products of eliminated rows' columns from the rows below them, and writes those of others to theirs.
+    /// Subtracts the products of the eliminated columns with each other from the rows `below`; those of others with each other go to `taken`.
     fn subtract(
         self,
         isa: Isa,
