@@ -10,6 +10,7 @@ mod given;
 mod jumps;
 mod leaning;
 mod mixed;
+mod singular;
 mod some;
 mod sources;
 mod swings;

@@ -136,6 +136,15 @@ impl Warning {
         Self { kind: WarningKind::Clash, message }
     }
 
+    /// Places where fields are singular.
+    pub(crate) fn singular(places: &str) -> Self {
+        let message = format!(
+            "fields are not smooth about {places}, where the domain has a corner that points inwards or a part of a side with a given value \
+             ends: equations are not asked within two or three cells of the lattice there, and a source is what it is farther away, continued"
+        );
+        Self { kind: WarningKind::Singular, message }
+    }
+
     /// A head that comes in as a square does: either sign fits.
     pub(crate) fn open_sign(name: &str) -> Self {
         let message = format!(
@@ -175,6 +184,8 @@ pub enum WarningKind {
     LeftOut,
     /// Conditions that contradict each other where they meet.
     Clash,
+    /// Places where no smooth field meets the conditions, though they agree.
+    Singular,
     /// A direction of the answer that neither equations nor data determine.
     Undetermined,
     /// A condition that the answer rests on: the data alone would leave a direction open.

@@ -28,11 +28,11 @@ const STEP: f64 = 1e-3;
 const NONE: f64 = 1e-9;
 
 /// A row of a condition at a point: what is left of it, and its derivatives by the jets that it reads.
-struct Row {
+pub(super) struct Row {
     place: [f64; MOST_COORDINATES],
     group: usize,
     left: f64,
-    slopes: Vec<f64>,
+    pub(super) slopes: Vec<f64>,
 }
 
 /// Where conditions contradict each other.
@@ -96,7 +96,7 @@ pub(super) fn clashes(bound: &Bound) -> Clashes {
 }
 
 /// Rows of a condition at all its points, linear in what they read about the sizes of it.
-fn rows(bound: &Bound, group: usize, widths: &[f64]) -> Vec<Row> {
+pub(super) fn rows(bound: &Bound, group: usize, widths: &[f64]) -> Vec<Row> {
     let schema = bound.problem.scene().schema;
     let (own, inputs) = (&schema.groups[group], schema.coordinates.len());
     let count = bound.coordinates[group].len() / inputs;

@@ -5,7 +5,7 @@ use super::changes::Changes;
 use super::run::{Clock, Run};
 use super::solver::Solver;
 use super::state::State;
-use super::{SAME, leaning, places, told};
+use super::{SAME, leaning, places, singular, told};
 use crate::local::{KeptLattices, LocalError, LocalSolution};
 use crate::noise::Noise;
 use crate::problem::Bound;
@@ -50,6 +50,7 @@ pub(super) fn finish(
     let heads = schema.heads.iter().enumerate();
     warnings.extend(heads.filter_map(|(head, own)| Some(solver.unseen(head)?.warning(own.name))));
     warnings.extend(solver.clashes.warning(schema));
+    warnings.extend(singular::warning(bound, solver.singular()));
     let scores = if is_minimum { solver.scores(&state, clock, longest) } else { Vec::new() };
     if !solver.is_measured() {
         // What finer cells hardly change is as good as resolved.

@@ -1,4 +1,4 @@
-//! Equations that jump. No spline follows the highest derivative there: asked for at points, such an equation is missed by every answer,
+//! Equations that jump, and fields that do. No spline follows the highest derivative there: asked for at points, such an equation is missed by every answer,
 //! and the least sum of squares is one without the jump. In the mean over hats it can be met, as a finite volume is balanced: what flows
 //! through its sides is right whatever the splines do inside. Splines of one degree above the equation's order leave a residual of hats, as
 //! many as there are means.
@@ -12,6 +12,7 @@ use super::clashes::{Clashes, clashes};
 use super::domain::Domain;
 use super::quadrature::Quadrature;
 use super::shares::shares;
+use super::singular::{Singularity, singularities};
 use crate::abrupt;
 use crate::ends::ranges;
 use crate::local::heads::Heads;
@@ -28,23 +29,37 @@ pub(super) enum Asked {
     AtPoints,
     /// In the mean, at its own points: a condition.
     InMean,
-    /// In the mean over the domain: an equation. Points, flat, where it jumps, and where conditions contradict each other.
-    OverDomain {
-        /// Where it jumps.
-        jumps: Vec<f64>,
-        /// Where conditions do not agree.
-        clashes: Vec<f64>,
-    },
+    /// In the mean over the domain: an equation.
+    OverDomain(Uneven),
 }
 
-/// How the groups of a problem are asked, whatever lattice they are asked on: equations that jump in the mean, and where conditions
-/// contradict each other all equations and conditions.
+/// Where fields are not smooth.
+#[derive(Clone)]
+pub(super) struct Uneven {
+    /// Points, flat, where the equation jumps.
+    pub(super) jumps: Vec<f64>,
+    /// Points, flat, where conditions contradict each other.
+    pub(super) clashes: Vec<f64>,
+    /// Where fields are singular: the equation is not asked beside such places.
+    pub(super) singular: Vec<Singularity>,
+}
+
+impl Uneven {
+    fn is_nowhere(&self) -> bool {
+        self.jumps.is_empty() && self.clashes.is_empty() && self.singular.is_empty()
+    }
+}
+
+/// How the groups of a problem are asked, whatever lattice they are asked on: equations that jump, or whose fields are singular somewhere, in
+/// the mean, and where conditions contradict each other all equations and conditions.
 pub(super) fn asked(bound: &Bound) -> (Vec<Asked>, Clashes) {
     let schema = bound.problem.scene().schema;
     let stating = stating(bound);
     let is_tested =
         |at: usize| stating.contains(&at) && is_equation(schema, &schema.groups[at]) && is_of_the_whole(bound, at);
-    let clashes = if (0..schema.groups.len()).any(is_tested) { clashes(bound) } else { Clashes::default() };
+    let is_any = (0..schema.groups.len()).any(is_tested);
+    let clashes = if is_any { clashes(bound) } else { Clashes::default() };
+    let singular = if is_any { singularities(bound) } else { Vec::new() };
     let conditions = schema.conditions();
     let of = |at: usize| {
         if !is_tested(at) {
@@ -55,8 +70,8 @@ pub(super) fn asked(bound: &Bound) -> (Vec<Asked>, Clashes) {
             };
         }
         let jumps = abrupt::jumps(bound, at, &abrupt::even(schema.coordinates.len()));
-        let clashes = clashes.places.clone();
-        if jumps.is_empty() && clashes.is_empty() { Asked::AtPoints } else { Asked::OverDomain { jumps, clashes } }
+        let uneven = Uneven { jumps, clashes: clashes.places.clone(), singular: singular.clone() };
+        if uneven.is_nowhere() { Asked::AtPoints } else { Asked::OverDomain(uneven) }
     };
     let asked = (0..schema.groups.len()).map(of).collect();
     (asked, clashes)
@@ -66,8 +81,8 @@ pub(super) fn asked(bound: &Bound) -> (Vec<Asked>, Clashes) {
 pub(super) fn asked_on(bound: &Bound, asked: &[Asked], cells: &[usize]) -> Vec<Asked> {
     let pieces = abrupt::finer(cells);
     let of = |(at, own): (usize, &Asked)| match (own, &pieces) {
-        (Asked::OverDomain { jumps, clashes }, Some(pieces)) if !jumps.is_empty() => {
-            Asked::OverDomain { jumps: abrupt::jumps(bound, at, pieces), clashes: clashes.clone() }
+        (Asked::OverDomain(uneven), Some(pieces)) if !uneven.jumps.is_empty() => {
+            Asked::OverDomain(Uneven { jumps: abrupt::jumps(bound, at, pieces), ..uneven.clone() })
         }
         _ => own.clone(),
     };
@@ -122,7 +137,7 @@ pub(super) fn with_means(
                 means[at].weights = shares(bound, at);
                 continue;
             }
-            Asked::OverDomain { jumps, clashes } => [jumps.as_slice(), clashes],
+            Asked::OverDomain(uneven) => uneven,
         };
         let (points, own) = points(lattice, (within, at), uneven, &mut random);
         // Where none of them is known to be in the domain, it is asked for at its own.
@@ -134,19 +149,21 @@ pub(super) fn with_means(
     (with, means)
 }
 
-/// Points in the domain of a group, and what its means are made from.
+/// Points in the domain of a group, none where fields are singular, and what its means are made from.
 fn points(
     lattice: &Lattice,
     (bound, group): (&Bound, usize),
-    uneven: [&[f64]; 2],
+    uneven: &Uneven,
     random: &mut StdRng,
 ) -> (Vec<f64>, Means) {
     let inputs = lattice.cells.len();
-    let all = Quadrature::new(lattice, uneven, random);
+    let all = Quadrature::new(lattice, [&uneven.jumps, &uneven.clashes], random);
     let domain = Domain::new(bound, group);
     let is_inside = |point: &[f64]| {
         let cell = lattice.cell_span(&lattice.place(point));
-        lattice.kept(cell).all(|n| n != NONE) && domain.is_inside(point)
+        lattice.kept(cell).all(|n| n != NONE)
+            && domain.is_inside(point)
+            && !uneven.singular.iter().any(|place| place.is_near(lattice, point))
     };
     let inside: Vec<bool> = all.points.par_chunks_exact(inputs).map(is_inside).collect();
     let kept: Vec<usize> = (0..inside.len()).filter(|&p| inside[p]).collect();

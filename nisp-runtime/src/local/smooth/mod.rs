@@ -31,6 +31,7 @@ mod sampled;
 mod scores;
 mod shares;
 mod short;
+mod singular;
 mod solver;
 mod starts;
 mod state;

@@ -9,6 +9,7 @@ use super::means::{Asked, Means, TESTS, asked_on, with_means};
 use super::meshes::{across_pairs, lattices, together};
 use super::prior::Prior;
 use super::proportions::Proportions;
+use super::singular::Singularity;
 use super::state::{Phase, State};
 use crate::local::LocalError;
 use crate::local::group::{Group, Places};
@@ -164,6 +165,15 @@ impl<'a> Solver<'a> {
     pub(super) fn judge_at(&mut self, bound: &Bound) {
         let (with, means) = with_means((bound, bound), &self.heads, &self.asked, ASKED);
         self.groups = groups(with.as_ref().unwrap_or(bound), &self.heads, &means);
+    }
+
+    /// Where fields are singular.
+    pub(super) fn singular(&self) -> &[Singularity] {
+        let uneven = self.asked.iter().find_map(|asked| match asked {
+            Asked::OverDomain(uneven) => Some(uneven),
+            Asked::AtPoints | Asked::InMean => None,
+        });
+        uneven.map_or(&[], |uneven| &uneven.singular)
     }
 
     /// False of a problem that equations and conditions alone solve.
