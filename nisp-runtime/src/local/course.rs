@@ -26,6 +26,8 @@ const CONVERGED: f64 = 2e-3;
 /// Change of the logarithm of the probability, by rows, at which a lattice's answer counts as converged too if learned scalars
 /// rest: a pressure that the data hardly determine may wander for long.
 const SETTLED: f64 = 2e-4;
+/// The same by rows, below which an answer that goes on from the last one has followed its data.
+const FOLLOWED: f64 = 1e-2;
 /// Change of the parameters of learned scalars that rest.
 const RESTING: f64 = 1e-3;
 /// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.
@@ -272,6 +274,13 @@ pub(super) struct Found {
     /// Stiffness against the step.
     damping: f64,
     pub(super) told: Vec<Asked>,
+}
+
+impl Found {
+    /// Whether an answer that goes on from the last one has followed its data: after a leap a step gains more.
+    pub(super) fn has_followed(&self) -> bool {
+        self.gain.abs() < FOLLOWED * self.rows as f64
+    }
 }
 
 fn mean(values: &[f64]) -> f64 {

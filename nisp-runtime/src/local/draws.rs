@@ -40,11 +40,13 @@ pub(super) struct Together {
 }
 
 impl Deviations {
-    /// Adds numbers of these deviations to the coefficients, each by itself.
-    pub(super) fn widen(&mut self, deviations: &[f64]) {
+    /// Adds numbers of these deviations to the coefficients and to the parameters of learned scalars, each by itself.
+    pub(super) fn widen(&mut self, coefficients: &[f64], learned: &[f64]) {
         let mut random = StdRng::seed_from_u64(1);
-        for draw in &mut self.coefficients {
-            draw.iter_mut().zip(deviations).for_each(|(x, deviation)| *x += deviation * normal(&mut random));
+        for (draws, deviations) in [(&mut self.coefficients, coefficients), (&mut self.learned, learned)] {
+            for draw in draws {
+                draw.iter_mut().zip(deviations).for_each(|(x, deviation)| *x += deviation * normal(&mut random));
+            }
         }
     }
 

@@ -3,13 +3,16 @@
 use super::draws::Deviations;
 use super::kept::KeptLattices;
 use super::phase::CONVEX_STEPS;
-use super::place::State;
+use super::place::{Place, State};
 use super::solver::Solver;
 use super::together::{together, uncertain};
 use super::{LocalError, LocalSolution};
 use crate::facts::{Known, Score};
 use crate::problem::Bound;
 use crate::solve::driver::Status;
+
+/// Steps after a leap, under each prior, at most.
+const STEPS: u64 = 8;
 
 /// A solver with its answer: its lattice, the places of its points and the pattern of its equations stay.
 pub(crate) struct Live {
@@ -29,6 +32,17 @@ impl Live {
         Self { solver, state, known, scores, turn: 0 }
     }
 
+    /// Where the answer is, to go back to.
+    pub(crate) fn place(&self) -> Place {
+        self.solver.place(&self.state, 1)
+    }
+
+    /// Goes back to where an answer was.
+    pub(crate) fn go_back(&mut self, place: Place) {
+        self.solver.set_feet(place.feet);
+        self.state = place.state;
+    }
+
     /// The answer to a problem of the same points, from the last one. Edges of patches that have moved are let go of under the
     /// convex prior, and found again under the other.
     pub(crate) fn update(&mut self, bound: Bound) -> Result<LocalSolution, LocalError> {
@@ -41,7 +55,14 @@ impl Live {
             len if len == self.known.len() => self.turn..(self.turn + 1).min(len),
             _ => 0..self.known.len(),
         };
-        let (convex, _) = self.solver.step(&self.state, CONVEX_STEPS, false, &[])?;
+        let mut convex = self.solver.step(&self.state, CONVEX_STEPS, false, &[])?;
+        for _ in 0..STEPS {
+            if convex.1.has_followed() {
+                break;
+            }
+            convex = self.solver.step(&convex.0, CONVEX_STEPS, false, &[])?;
+        }
+        let convex = convex.0;
         let place = self.solver.place(&convex, 1);
         // The matrix holds sources at zero where no cloud saw the surface, so that its deviations say too little.
         let on_prior = self.solver.rests_on_the_prior();
@@ -49,7 +70,13 @@ impl Live {
         if on_prior.is_empty() {
             asked.extend(uncertain(&self.solver.bound.problem, &asked));
         }
-        let (state, found) = self.solver.step(&convex, CONVEX_STEPS + 1, false, &asked)?;
+        let (mut state, mut found) = self.solver.step(&convex, CONVEX_STEPS + 1, false, &asked)?;
+        for further in 1..=STEPS {
+            if found.has_followed() {
+                break;
+            }
+            (state, found) = self.solver.step(&state, CONVEX_STEPS + 1 + further, false, &asked)?;
+        }
         self.state = state;
         self.scores.resize(self.known.len(), None);
         let told = self.scores[turns.clone()].iter_mut().zip(&found.told);

@@ -36,7 +36,7 @@ impl State {
 }
 
 /// Everything that the next step follows from.
-pub(super) struct Place {
+pub(crate) struct Place {
     pub(super) state: State,
     /// Steps on this lattice before.
     pub(super) step: u64,

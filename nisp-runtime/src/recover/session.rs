@@ -17,8 +17,8 @@ use crate::verdict::Check;
 ///
 /// Local functions go on from that answer where nothing but clouds and given parameters has changed: units, scales, the lattice
 /// and the pattern of the equations stay, and a few steps are taken. What the verdict does not accept is sought again from
-/// nothing, unless the last answer that was sought so was not accepted for the same reason. Other carriers solve every problem
-/// from nothing.
+/// nothing, unless the last answer that was sought so was not accepted for the same reason. What did not converge is not gone on from:
+/// the next answer follows the last one that did. Other carriers solve every problem from nothing.
 pub struct Session {
     problem: Problem,
     settings: Settings,
@@ -82,7 +82,13 @@ impl Session {
         let start = Instant::now();
         let Some(kept) = &mut self.kept else { return Ok(None) };
         let Some(bound) = kept.bound.renewed(&self.problem)? else { return Ok(None) };
+        let place = kept.live.place();
         let solution = self.pool.install(|| kept.follow(bound, start));
+        match solution.as_ref().map(|solution| solution.status) {
+            Some(Status::Converged) => (kept.status, kept.faults) = (Status::Converged, Vec::new()),
+            Some(Status::NotConverged) | None => kept.live.go_back(place),
+            Some(_) => {}
+        }
         Ok(solution.filter(|solution| !kept.is_astray(solution)))
     }
 
@@ -103,7 +109,10 @@ impl Session {
         })?;
         let open = solution.warnings.iter().filter(|warning| warning.kind == WarningKind::Undetermined);
         let (open, status, faults) = (open.cloned().collect(), solution.status, faults(&solution));
-        self.kept = Some(Kept { bound, live, local, settings, fingerprint, open, status, faults });
+        match &mut self.kept {
+            Some(kept) if status == Status::NotConverged => (kept.status, kept.faults) = (status, faults),
+            _ => self.kept = Some(Kept { bound, live, local, settings, fingerprint, open, status, faults }),
+        }
         Ok(solution)
     }
 }

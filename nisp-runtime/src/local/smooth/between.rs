@@ -6,6 +6,7 @@ use rand::seq::index::sample;
 use rand::{RngExt, SeedableRng};
 use rayon::prelude::*;
 
+use super::MORE;
 use crate::ends::ranges;
 use crate::problem::Bound;
 use crate::schema::{self, TermKind};
@@ -31,15 +32,16 @@ const EXACT: usize = 2;
 const NOISY: usize = 4;
 
 /// How many points an equation is asked at before it is known whether these are enough. A source of all coordinates may be
-/// anything between the given ones. Where nothing is measured two lattices tell how far an answer is off, so that the first is coarser:
-/// over more than two coordinates it has three cells along each with [`ENOUGH`].
-pub(super) fn first(bound: &Bound) -> usize {
+/// anything between the given ones. Where nothing is measured, and where noisy measurements are to tell scalars, two lattices tell how far an
+/// answer is off, so that the first is coarser: over more than two coordinates it has three cells along each with [`ENOUGH`].
+pub(super) fn first(bound: &Bound, is_noisy: bool) -> usize {
     let schema = bound.problem.scene().schema;
     let given = largest(bound).map_or(0, |at| count(bound, at));
     if schema.observed().is_empty() {
         return if schema.coordinates.len() > 2 { ENOUGH } else { FEW };
     }
-    if is_filled(schema) { given.max(ENOUGH) } else { given }
+    let enough = if is_filled(schema) { given.max(ENOUGH) } else { given };
+    if is_noisy && !bound.learned.is_empty() { enough / MORE } else { enough }
 }
 
 /// True if equations are asked between their points before it is known whether these are enough.

@@ -1,4 +1,4 @@
-//! How far cells hold back an answer without noise: lattices, each finer than the one before, tell.
+//! How far cells hold back an answer: lattices, each finer than the one before, tell.
 
 /// What a finer lattice is taken to leave of a change where only one change is known.
 const FALL: f64 = 0.5;
@@ -13,13 +13,24 @@ pub(super) struct Changes {
     taken: Vec<f64>,
     /// The last one, whether the steps came to their end or not.
     last: Option<f64>,
+    /// How far the parameters of learned scalars are off by the lattice that has the answer; nothing if it is the first.
+    learned: Vec<f64>,
 }
 
 impl Changes {
-    /// Adds the change of the answer by a finer lattice, which has the answer from now on if its steps have come to their end.
-    pub(super) fn add(&mut self, change: f64, is_taken: bool) {
+    /// Adds the change of the answer, and of the parameters of learned scalars, by a finer lattice, which has the answer from now on if its
+    /// steps have come to their end.
+    pub(super) fn add(&mut self, change: f64, learned: Vec<f64>, is_taken: bool) {
         self.last = Some(change);
-        self.taken.extend(is_taken.then_some(change));
+        if is_taken {
+            self.taken.push(change);
+            self.learned = learned.into_iter().map(|moved| FALL * moved).collect();
+        }
+    }
+
+    /// How far the parameters of learned scalars are off, by how far the lattice that has the answer moved them; nothing if it is the first.
+    pub(super) fn learned(&self) -> &[f64] {
+        &self.learned
     }
 
     /// The last change; infinite where there is none.
@@ -57,12 +68,12 @@ mod tests {
     fn changes_that_fall_by_a_share_say_what_is_left() {
         let mut changes = Changes::default();
         assert!(changes.off().is_infinite());
-        changes.add(0.4, true);
+        changes.add(0.4, Vec::new(), true);
         assert!((changes.off() - 0.4).abs() < 1e-12);
-        changes.add(0.3, true);
+        changes.add(0.3, Vec::new(), true);
         assert!((changes.off() - 0.9).abs() < 1e-12);
         // Steps that did not come to their end say nothing of the answer that stands.
-        changes.add(5.0, false);
+        changes.add(5.0, Vec::new(), false);
         assert!((changes.off() - 0.9).abs() < 1e-12 && changes.taken() == Some(0.3) && changes.least() == 0.3);
     }
 
@@ -70,8 +81,8 @@ mod tests {
     #[test]
     fn changes_that_stay_say_that_the_answer_is_far_off() {
         let mut changes = Changes::default();
-        changes.add(0.01, true);
-        changes.add(0.02, true);
+        changes.add(0.01, Vec::new(), true);
+        changes.add(0.02, Vec::new(), true);
         assert!((changes.off() - 0.08).abs() < 1e-12);
     }
 }

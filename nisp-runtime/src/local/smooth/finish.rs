@@ -87,10 +87,10 @@ pub(super) fn finish(
         is_noisy && kept.draws.coefficients.is_empty() && matches!(status, Status::Converged | Status::Budget);
     answer.told = told::told(bound, &kept, is_untold);
     answer.scores = scores;
+    kept.draws.widen(&beyond, changes.learned());
     if is_beside_sources {
         answer.leaning = leaning::facts(&kept, rougher.as_deref());
     }
-    kept.draws.widen(&beyond);
     let factor = Some(factor).filter(|_| wants_bars);
     let together = Vec::new();
     Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, together, checkpoint, answer, misfits })

@@ -41,7 +41,7 @@ pub(super) fn degree(schema: &schema::Scene, head: usize) -> Option<usize> {
 }
 
 /// The lattices of all heads, over cells as fine as the points of the equations can tell; and how many cells these are along
-/// every coordinate in the given proportions. Where nothing is measured cells are no finer than `most` points can tell: coarser ones come first.
+/// every coordinate in the given proportions. Cells are no finer than `most` points can tell: coarser ones come first.
 /// Fields whose equations are asked in the mean have splines of the least degree that these leave hats of.
 pub(super) fn lattices(
     bound: &Bound,
@@ -62,7 +62,7 @@ pub(super) fn lattices(
     let groups = schema.groups.iter().zip(&bound.coordinates).filter(|(group, _)| is_equation(group));
     let points = groups.map(|(_, points)| points.len() / inputs).max().unwrap_or(0);
     let is_measured = !schema.observed().is_empty();
-    let points = if is_measured { points } else { points.min(most) };
+    let points = points.min(most);
     let to_unknown = if is_measured || inputs > 2 { POINTS } else { DENSE };
     let functions = |lattice: &Lattice| lattice.cells.iter().map(|n| (n + highest) as f64).product::<f64>();
     let tests = if asked.iter().any(|own| !matches!(own, Asked::AtPoints)) { TESTS } else { 0 };

@@ -81,6 +81,8 @@ const PATIENCE: usize = 2;
 const EXACT: f64 = 0.01;
 /// Change of sources, fields and learned scalars from a lattice to a finer one, as a share, below which they are the same.
 const SAME: f64 = 0.01;
+/// Deviations by which a lattice may leave a learned scalar off.
+const STILL: f64 = 0.5;
 /// How far the cells of a lattice may hold back an answer for which nothing was measured, as a share of its range: finer ones follow.
 const NEAR: f64 = 1e-3;
 /// Steps with more measurements, about, after those with some; and how many times as many are worth these.
@@ -118,8 +120,8 @@ pub(crate) fn solve(
     monitor: &mut dyn FnMut(Progress<'_>) -> Flow,
 ) -> Result<LocalSolution, LocalError> {
     let clock = Clock { start: Instant::now(), limits };
-    let mut points = from.map_or(Ok(between::first(bound)), saved_points).map_err(LocalError::Fault)?;
     let is_noisy = noise.is_there(bound.problem.scene().schema);
+    let mut points = from.map_or(Ok(between::first(bound, is_noisy)), saved_points).map_err(LocalError::Fault)?;
     let schema = bound.problem.scene().schema;
     let asked = means::asked(bound);
     let proportions = match from {
@@ -150,16 +152,23 @@ pub(crate) fn solve(
             true => is_noisy || changes.last() < SAME || strain < EXACT && changes.taken().is_none(),
             false => changes.off() < NEAR,
         };
-        if strain < 1.0 && is_seen || idle >= patience {
+        // An equation that is off by less than noise lets on may still move what is learned by more than its deviation.
+        let is_resolved = strain < 1.0 && is_seen;
+        let is_still = !is_noisy || run.is_still(changes.learned());
+        if if is_resolved { is_still } else { idle >= patience } {
             break;
         }
-        let has_time = |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * run.seconds + run.bars);
+        // An answer that is resolved waits for a finer one, and for the error bars of that.
+        let later = if is_resolved { run.seconds + run.bars } else { 0.0 };
+        let has_time =
+            |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * (run.seconds + later) + run.bars);
         let factors: &[usize] = if missed > FAR { &[MORE * MORE, MORE] } else { &[MORE] };
         // If the last lattice did not help, this one's answer does not wait for the next. If it did, this one's answer is not the last,
         // and whatever time there is may be enough.
-        let any = (idle == 0 && clock.has_time(run.longest)).then_some(&MORE);
+        let is_early = idle == 0 && !is_resolved;
+        let any = (is_early && clock.has_time(run.longest)).then_some(&MORE);
         let Some(more) = factors.iter().find(|times| has_time(times)).or(any).map(|times| times * points) else {
-            if idle == 0 {
+            if is_early {
                 run.status = Status::Budget;
             }
             break;
@@ -177,13 +186,15 @@ pub(crate) fn solve(
             break;
         };
         // Steps on a finer lattice begin anew: where they agree with the coarser answer, that is no matter of where they began.
-        changes.add(finer.apart(&found.state, &solver, &run.state), found.status == Status::Converged);
+        let learned = found.state.learned.iter().zip(&run.state.learned).map(|(after, before)| (after - before).abs());
+        let change = finer.apart(&found.state, &solver, &run.state);
+        changes.add(change, learned.collect(), found.status == Status::Converged);
         match found.status {
             Status::Converged => (solver, run, points) = (finer, found, more),
             Status::NotConverged => break,
             status => {
-                // If the last lattice did not help, this one's answer stands without the next.
-                run.status = if idle == 0 || status == Status::Interrupted { status } else { run.status };
+                // If the last lattice did not help, or was fine enough, this one's answer stands without the next.
+                run.status = if is_early || status == Status::Interrupted { status } else { run.status };
                 (run.checkpoint, run.state.step) = (found.checkpoint, found.state.step);
                 break;
             }

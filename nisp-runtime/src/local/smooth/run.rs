@@ -2,6 +2,7 @@
 
 use std::time::Instant;
 
+use super::STILL;
 use super::proportions::Proportions;
 use super::solver::Solver;
 use super::state::{Phase, REGRESS, State};
@@ -72,6 +73,12 @@ pub(super) struct Run {
 }
 
 impl Run {
+    /// Whether the lattice leaves no learned scalar off by much beside its deviation; on the first lattice that is not known.
+    pub(super) fn is_still(&self, off: &[f64]) -> bool {
+        let deviation = |at: usize| self.factor.learned_variance(at).map_or(0.0, |variance| variance.max(0.0).sqrt());
+        off.len() == self.state.learned.len() && off.iter().enumerate().all(|(at, off)| *off <= STILL * deviation(at))
+    }
+
     /// Steps from a state, with equations asked at so many points; `kept` seconds of the budget are left for what comes after.
     pub(super) fn go(
         solver: &mut Solver<'_>,
