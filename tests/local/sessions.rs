@@ -34,6 +34,26 @@ fn a_session_follows_what_presses() {
     assert!((4..6).contains(&followed), "{followed}");
 }
 
+/// A disc that is put on and taken away from one frame to the next is seen at once, and a frame under a pressure that is none leaves no
+/// trace in the next one.
+#[test]
+fn a_session_follows_leaps() {
+    let mut session = pressed_session(0.1);
+    let area = 1e-6 * std::f64::consts::PI * R * R / 20_000.0;
+    for (number, (f, given)) in
+        [(12_000.0, P), (0.0, P), (12_000.0, P), (12_000.0, 20.0 * P), (12_000.0, P), (0.0, P)].into_iter().enumerate()
+    {
+        bind(session.problem(), f, 12.0, 0.1);
+        session.problem().set_parameter("p", given).unwrap();
+        let solution = session.update(&mut |_| Flow::Continue).unwrap();
+        assert_eq!(solution.status == Status::Converged, given == P, "{number}: {:?}", solution.verdict);
+        if given == P {
+            let force = area * values(&solution.evaluate(&disc(20_000)), "f").iter().sum::<f64>();
+            assert!((force - true_force(f, 12.0)).abs() < 0.27, "{number}: {force} N");
+        }
+    }
+}
+
 /// A wrong pressure in the middle of a session is named, by the answer from nothing that it leads to and by those that go on
 /// from there; the right one is not.
 #[test]

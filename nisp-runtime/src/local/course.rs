@@ -27,7 +27,7 @@ const CONVERGED: f64 = 2e-3;
 /// rest: a pressure that the data hardly determine may wander for long.
 const SETTLED: f64 = 2e-4;
 /// The same by rows, below which an answer that goes on from the last one has followed its data.
-const FOLLOWED: f64 = 1e-2;
+const FOLLOWED: f64 = 0.03;
 /// Change of the parameters of learned scalars that rest.
 const RESTING: f64 = 1e-3;
 /// The same as [`CONVERGED`] on a coarse lattice, whose solution is only where the fine one starts, and after how many steps at least.

@@ -55,14 +55,12 @@ impl Live {
             len if len == self.known.len() => self.turn..(self.turn + 1).min(len),
             _ => 0..self.known.len(),
         };
-        let mut convex = self.solver.step(&self.state, CONVEX_STEPS, false, &[])?;
-        for _ in 0..STEPS {
-            if convex.1.has_followed() {
-                break;
-            }
-            convex = self.solver.step(&convex.0, CONVEX_STEPS, false, &[])?;
+        let mut steps = 1;
+        let (mut convex, mut found) = self.solver.step(&self.state, CONVEX_STEPS, false, &[])?;
+        while !found.has_followed() && steps < STEPS {
+            (convex, found) = self.solver.step(&convex, CONVEX_STEPS, false, &[])?;
+            steps += 1;
         }
-        let convex = convex.0;
         let place = self.solver.place(&convex, 1);
         // The matrix holds sources at zero where no cloud saw the surface, so that its deviations say too little.
         let on_prior = self.solver.rests_on_the_prior();
@@ -71,11 +69,10 @@ impl Live {
             asked.extend(uncertain(&self.solver.bound.problem, &asked));
         }
         let (mut state, mut found) = self.solver.step(&convex, CONVEX_STEPS + 1, false, &asked)?;
-        for further in 1..=STEPS {
-            if found.has_followed() {
-                break;
-            }
-            (state, found) = self.solver.step(&state, CONVEX_STEPS + 1 + further, false, &asked)?;
+        steps += 1;
+        while !found.has_followed() && steps < 2 * STEPS {
+            (state, found) = self.solver.step(&state, CONVEX_STEPS + 1, false, &asked)?;
+            steps += 1;
         }
         self.state = state;
         self.scores.resize(self.known.len(), None);
@@ -97,7 +94,7 @@ impl Live {
                 draws: Deviations::default(),
             },
             status,
-            iterations: 2,
+            iterations: steps,
             loss: found.loss,
             warnings,
             factor,
