@@ -99,6 +99,7 @@ impl Live {
             warnings,
             factor,
             together,
+            off: Vec::new(),
             checkpoint: place.save(0, 1),
             answer,
             misfits: self.solver.misfits(&self.state),

@@ -130,6 +130,8 @@ pub(crate) struct LocalSolution {
     factor: Option<Factor>,
     /// What follows given numbers that may be off.
     together: Vec<Together>,
+    /// How far cells leave the parameters of learned scalars off; nothing where that is not known.
+    off: Vec<f64>,
     /// Where the solver stopped.
     pub(crate) checkpoint: State,
     /// What the verdict is made from.
@@ -202,8 +204,19 @@ pub(crate) fn solve(
     let misfits = solver.misfits(&end.state);
     let End { state, status, iterations, loss, warnings, factor, checkpoint, .. } = end;
     let kept = KeptLattices { heads, theta: state.theta.clone(), learned: state.learned.clone(), draws: deviations };
-    let solution =
-        LocalSolution { kept, status, iterations, loss, warnings, factor, together, checkpoint, answer, misfits };
+    let solution = LocalSolution {
+        kept,
+        status,
+        iterations,
+        loss,
+        warnings,
+        factor,
+        together,
+        off: Vec::new(),
+        checkpoint,
+        answer,
+        misfits,
+    };
     Ok((solution, Live::new(solver, state, scores)))
 }
 
@@ -234,7 +247,8 @@ impl Stage<'_> {
 impl LocalSolution {
     /// Standard deviation of a learned scalar's parameter.
     pub(crate) fn learned_deviation(&self, at: usize) -> Option<f64> {
-        self.factor.as_ref()?.learned_variance(at).map(|variance| variance.max(0.0).sqrt())
+        let off = self.off.get(at).map_or(0.0, |off| off * off);
+        self.factor.as_ref()?.learned_variance(at).map(|variance| (variance.max(0.0) + off).sqrt())
     }
 
     /// Covariance of some learned scalars' parameters, row by row.

@@ -13,22 +13,25 @@ pub(super) struct Changes {
     taken: Vec<f64>,
     /// The last one, whether the steps came to their end or not.
     last: Option<f64>,
-    /// How far the parameters of learned scalars are off by the lattice that has the answer; nothing if it is the first.
+    /// How far the parameters of learned scalars are off by the lattice that has the answer; nothing of the only one.
     learned: Vec<f64>,
 }
 
 impl Changes {
-    /// Adds the change of the answer, and of the parameters of learned scalars, by a finer lattice, which has the answer from now on if its
-    /// steps have come to their end.
-    pub(super) fn add(&mut self, change: f64, learned: Vec<f64>, is_taken: bool) {
+    /// Adds the change of the answer by a finer lattice, which has the answer from now on if its steps have come to their end.
+    pub(super) fn add(&mut self, change: f64, is_taken: bool) {
         self.last = Some(change);
-        if is_taken {
-            self.taken.push(change);
-            self.learned = learned.into_iter().map(|moved| FALL * moved).collect();
-        }
+        self.taken.extend(is_taken.then_some(change));
     }
 
-    /// How far the parameters of learned scalars are off, by how far the lattice that has the answer moved them; nothing if it is the first.
+    /// How far a finer lattice moves the parameters of learned scalars: so far they are off if it does not have the answer, and by a share of it
+    /// if it does.
+    pub(super) fn move_learned(&mut self, moved: Vec<f64>, is_taken: bool) {
+        let left = if is_taken { FALL } else { 1.0 };
+        self.learned = moved.into_iter().map(|moved| left * moved).collect();
+    }
+
+    /// How far the parameters of learned scalars are off by the lattice that has the answer; nothing of the only one.
     pub(super) fn learned(&self) -> &[f64] {
         &self.learned
     }
@@ -68,12 +71,12 @@ mod tests {
     fn changes_that_fall_by_a_share_say_what_is_left() {
         let mut changes = Changes::default();
         assert!(changes.off().is_infinite());
-        changes.add(0.4, Vec::new(), true);
+        changes.add(0.4, true);
         assert!((changes.off() - 0.4).abs() < 1e-12);
-        changes.add(0.3, Vec::new(), true);
+        changes.add(0.3, true);
         assert!((changes.off() - 0.9).abs() < 1e-12);
         // Steps that did not come to their end say nothing of the answer that stands.
-        changes.add(5.0, Vec::new(), false);
+        changes.add(5.0, false);
         assert!((changes.off() - 0.9).abs() < 1e-12 && changes.taken() == Some(0.3) && changes.least() == 0.3);
     }
 
@@ -81,8 +84,8 @@ mod tests {
     #[test]
     fn changes_that_stay_say_that_the_answer_is_far_off() {
         let mut changes = Changes::default();
-        changes.add(0.01, Vec::new(), true);
-        changes.add(0.02, Vec::new(), true);
+        changes.add(0.01, true);
+        changes.add(0.02, true);
         assert!((changes.off() - 0.08).abs() < 1e-12);
     }
 }

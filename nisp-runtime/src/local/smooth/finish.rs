@@ -2,7 +2,7 @@
 
 use super::between::measurements;
 use super::changes::Changes;
-use super::run::{Clock, Run};
+use super::run::{Clock, Run, is_still};
 use super::solver::Solver;
 use super::state::State;
 use super::{SAME, leaning, places, singular, told};
@@ -39,6 +39,11 @@ pub(super) fn finish(
         }
         Default::default()
     };
+    if is_noisy && !changes.learned().is_empty() && !is_still(&factor, changes.learned()) {
+        let message = "what is learned still changes with the cells, by more than noise leaves open: deviations count that, and a larger \
+                       budget makes them shorter";
+        warnings.push(Warning { kind: WarningKind::OutOfTime, message: message.into() });
+    }
     if solver.lacks {
         let message = format!(
             "{} of {} rows were used, picked at random, for want of time: with a larger budget error bars get shorter",
@@ -93,5 +98,6 @@ pub(super) fn finish(
     }
     let factor = Some(factor).filter(|_| wants_bars);
     let together = Vec::new();
-    Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, together, checkpoint, answer, misfits })
+    let off = changes.learned().to_vec();
+    Ok(LocalSolution { kept, status, iterations, loss, warnings, factor, together, off, checkpoint, answer, misfits })
 }

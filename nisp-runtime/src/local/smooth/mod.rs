@@ -64,7 +64,7 @@ use crate::solve::driver::{Flow, Limits, Status};
 use crate::solve::fault::Fault;
 use crate::solve::state::State as Saved;
 
-use run::{Clock, Run};
+use run::{Clock, Run, is_still};
 use solver::Solver;
 use state::State;
 
@@ -90,6 +90,9 @@ const STEPS: f64 = 5.0;
 const WORTH: f64 = 2.0;
 /// How much longer a finer lattice takes at least. Where it does not end within the budget, nothing is lost but time.
 const SLOWER: f64 = 1.0;
+/// How much longer a finer lattice and its error bars take about, and how much longer than error bars all that is left to do then.
+const FINER: f64 = 3.0;
+const ENDING: f64 = 2.0;
 
 /// What splines on a lattice cannot do, of a scene; nothing if they can do all of it.
 pub(crate) fn refused(schema: &schema::Scene) -> Option<&'static str> {
@@ -154,14 +157,15 @@ pub(crate) fn solve(
         };
         // An equation that is off by less than noise lets on may still move what is learned by more than its deviation.
         let is_resolved = strain < 1.0 && is_seen;
-        let is_still = !is_noisy || run.is_still(changes.learned());
+        let is_known = changes.learned().len() == run.state.learned.len();
+        let is_still = !is_noisy || is_known && is_still(&run.factor, changes.learned());
         if if is_resolved { is_still } else { idle >= patience } {
             break;
         }
-        // An answer that is resolved waits for a finer one, and for the error bars of that.
-        let later = if is_resolved { run.seconds + run.bars } else { 0.0 };
+        // An answer that is resolved does not wait for one that leaves no time for error bars.
+        let finer = if is_resolved { FINER * (run.seconds + run.bars) } else { 0.0 };
         let has_time =
-            |times: &usize| clock.has_time(SLOWER * (times / MORE) as f64 * (run.seconds + later) + run.bars);
+            |times: &usize| clock.has_time(finer.max(SLOWER * (times / MORE) as f64 * run.seconds + run.bars));
         let factors: &[usize] = if missed > FAR { &[MORE * MORE, MORE] } else { &[MORE] };
         // If the last lattice did not help, this one's answer does not wait for the next. If it did, this one's answer is not the last,
         // and whatever time there is may be enough.
@@ -187,11 +191,14 @@ pub(crate) fn solve(
         };
         // Steps on a finer lattice begin anew: where they agree with the coarser answer, that is no matter of where they began.
         let learned = found.state.learned.iter().zip(&run.state.learned).map(|(after, before)| (after - before).abs());
-        let change = finer.apart(&found.state, &solver, &run.state);
-        changes.add(change, learned.collect(), found.status == Status::Converged);
+        let is_taken = found.status == Status::Converged && (!is_resolved || clock.has_time(ENDING * found.bars));
+        if found.status == Status::Converged {
+            changes.move_learned(learned.collect(), is_taken);
+        }
+        changes.add(finer.apart(&found.state, &solver, &run.state), is_taken);
         match found.status {
-            Status::Converged => (solver, run, points) = (finer, found, more),
-            Status::NotConverged => break,
+            Status::Converged if is_taken => (solver, run, points) = (finer, found, more),
+            Status::Converged | Status::NotConverged => break,
             status => {
                 // If the last lattice did not help, or was fine enough, this one's answer stands without the next.
                 run.status = if is_early || status == Status::Interrupted { status } else { run.status };

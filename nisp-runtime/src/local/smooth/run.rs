@@ -72,13 +72,13 @@ pub(super) struct Run {
     pub(super) checkpoint: Saved,
 }
 
-impl Run {
-    /// Whether the lattice leaves no learned scalar off by much beside its deviation; on the first lattice that is not known.
-    pub(super) fn is_still(&self, off: &[f64]) -> bool {
-        let deviation = |at: usize| self.factor.learned_variance(at).map_or(0.0, |variance| variance.max(0.0).sqrt());
-        off.len() == self.state.learned.len() && off.iter().enumerate().all(|(at, off)| *off <= STILL * deviation(at))
-    }
+/// Whether cells leave no learned scalar off by much beside its deviation.
+pub(super) fn is_still(factor: &Factor, off: &[f64]) -> bool {
+    let deviation = |at: usize| factor.learned_variance(at).map_or(0.0, |variance| variance.max(0.0).sqrt());
+    off.iter().enumerate().all(|(at, off)| *off <= STILL * deviation(at))
+}
 
+impl Run {
     /// Steps from a state, with equations asked at so many points; `kept` seconds of the budget are left for what comes after.
     pub(super) fn go(
         solver: &mut Solver<'_>,
