@@ -124,7 +124,7 @@ impl Solver<'_> {
         let share = if noise.is_there(self.schema()) { BETWEEN } else { EXACT };
         let asked = self.groups.iter().enumerate().map(|(at, group)| match self.asked[at] {
             // Cells meet conditions that contradict each other as closely as they can.
-            Asked::InMean => left(group, &|row| share * self.sizes[at][row]),
+            Asked::InMean(_) => left(group, &|row| share * self.sizes[at][row]),
             _ => left(group, &|row| TENSE * group.sigma[row]),
         });
         let of_others = |(of, (bound, means)): &Others| {

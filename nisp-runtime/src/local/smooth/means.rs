@@ -27,8 +27,8 @@ pub(super) const TESTS: usize = 1;
 pub(super) enum Asked {
     /// At every point.
     AtPoints,
-    /// In the mean, at its own points: a condition.
-    InMean,
+    /// In the mean, at its own points that are not beside a singular place: a condition.
+    InMean(Vec<Singularity>),
     /// In the mean over the domain: an equation.
     OverDomain(Uneven),
 }
@@ -59,15 +59,15 @@ pub(super) fn asked(bound: &Bound) -> (Vec<Asked>, Clashes) {
         |at: usize| stating.contains(&at) && is_equation(schema, &schema.groups[at]) && is_of_the_whole(bound, at);
     let is_any = (0..schema.groups.len()).any(is_tested);
     let clashes = if is_any { clashes(bound) } else { Clashes::default() };
-    let singular = if is_any { singularities(bound) } else { Vec::new() };
+    // Without a source, equations and conditions alone tell what fields are there.
+    let has_source = schema.heads.iter().any(|head| head.source);
+    let singular = if is_any && has_source { singularities(bound) } else { Vec::new() };
     let conditions = schema.conditions();
     let of = |at: usize| {
         if !is_tested(at) {
-            return if !clashes.places.is_empty() && conditions.contains(&at) {
-                Asked::InMean
-            } else {
-                Asked::AtPoints
-            };
+            let is_even = clashes.places.is_empty() && singular.is_empty();
+            let is_in_mean = !is_even && conditions.contains(&at);
+            return if is_in_mean { Asked::InMean(singular.clone()) } else { Asked::AtPoints };
         }
         let jumps = abrupt::jumps(bound, at, &abrupt::even(schema.coordinates.len()));
         let uneven = Uneven { jumps, clashes: clashes.places.clone(), singular: singular.clone() };
@@ -133,8 +133,11 @@ pub(super) fn with_means(
     for (at, asked) in asked.iter().enumerate() {
         let uneven = match asked {
             Asked::AtPoints => continue,
-            Asked::InMean => {
-                means[at].weights = shares(bound, at);
+            Asked::InMean(singular) => {
+                let points = bound.coordinates[at].chunks_exact(lattice.cells.len());
+                let is_asked = |point: &[f64]| !singular.iter().any(|place| place.is_near(lattice, point));
+                let weight = |(share, point)| if is_asked(point) { share } else { 0.0 };
+                means[at].weights = shares(bound, at).into_iter().zip(points).map(weight).collect();
                 continue;
             }
             Asked::OverDomain(uneven) => uneven,

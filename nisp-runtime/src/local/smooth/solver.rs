@@ -171,7 +171,7 @@ impl<'a> Solver<'a> {
     pub(super) fn singular(&self) -> &[Singularity] {
         let uneven = self.asked.iter().find_map(|asked| match asked {
             Asked::OverDomain(uneven) => Some(uneven),
-            Asked::AtPoints | Asked::InMean => None,
+            Asked::AtPoints | Asked::InMean(_) => None,
         });
         uneven.map_or(&[], |uneven| &uneven.singular)
     }
