@@ -129,6 +129,12 @@ fn a_calibrated_sensor_finds_the_force() {
     let free = answer(&place, "solve bubble --calibration sensor/calibration.toml --data free.csv --set p=5400");
     assert!(free["errors"]["force_N"].as_f64().unwrap() < 0.3, "{}", free["errors"]);
     assert!(free["patches"].as_array().unwrap().is_empty(), "{}", free["patches"]);
+    // A gauge pressure that is far too high presses everywhere, which no tool does.
+    for (frame, pressure) in [("pressed.csv", 1.2 * 5636.3), ("free.csv", 1.1 * 5400.0)] {
+        let solve = "solve bubble --calibration sensor/calibration.toml --data";
+        let ran = place.run(&format!("{solve} {frame} --set p={pressure}"));
+        assert!(ran.code == Some(3) && ran.stdout.contains("no tool does that"), "{} {}", ran.stdout, ran.stderr);
+    }
 }
 
 #[test]

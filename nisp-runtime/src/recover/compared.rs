@@ -13,7 +13,7 @@ impl Solution {
         let Some(other) = other.filter(|other| !is_measured && other.verdict.is_firm()) else { return self };
         let off = other.verdict.checks.iter().find(|check| check.check == "refined").map_or(0.0, |check| check.value);
         let answer = self.carried.answer(&self.bound);
-        let [ours, theirs] = [&self, other].map(|found| self.where_read(found.values_over_domain(), &answer));
+        let [ours, theirs] = [&self, other].map(|found| self.where_read(&found.values_over_domain(), &answer));
         let natural = |head: usize| self.bound.head_scale(head);
         let apart = |head: usize| farthest(&ours[head], &theirs[head], natural(head));
         let apart = (0..ours.len()).map(apart).fold(0.0, f64::max);

@@ -36,6 +36,7 @@ mod scaled;
 pub(crate) mod settled;
 mod slow;
 mod smooth;
+pub(crate) mod spread;
 mod stretches;
 mod taken;
 mod told;
@@ -53,7 +54,7 @@ const FIRM: f64 = 0.25;
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
     /// `rhythm`, `filtered`, `repeated`, `polled`, `jolt`, `edge`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
-    /// `distance`, `seen`, `patch`, `determined`, `leaning`, `believed`, `known`, `contradicted`, `refined`, `amplified`, `agreed` or `range`.
+    /// `distance`, `seen`, `patch`, `faint`, `spread`, `determined`, `leaning`, `believed`, `known`, `contradicted`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,
@@ -180,21 +181,6 @@ pub(crate) fn judge(bound: &Bound, answer: &Answer, values: &[Vec<f64>], noise: 
         checks.retain(|check| check.check != "given");
     }
     Verdict { checks }
-}
-
-/// Whether a source that is known to be zero nearly everywhere is that: values over the domain, and the least that it is where
-/// it acts. Meant for sources that may act anywhere in the domain.
-pub(crate) fn patches(name: &'static str, values: &[f64], level: f64) -> Check {
-    /// A tool that covers more than this share of a body has no edge to find.
-    const LARGEST: f64 = 0.5;
-    let acting = values.iter().filter(|value| value.abs() >= level / 2.0).count();
-    let share = acting as f64 / values.len().max(1) as f64;
-    let said = format!(
-        "`{name}` acts on {:.0} % of the surface, where contacts are patches: check the sign and the pose of the data, and the \
-         parameters that balance it",
-        100.0 * share
-    );
-    Check::new("patch", ("", name), (share, LARGEST), said)
 }
 
 /// Whether another carrier's answer, found by itself and `off` by itself, is the same but for a share `apart` of the range.

@@ -3,8 +3,9 @@
 use super::Solution;
 use crate::facts::Told;
 use crate::noise::{self, Noise};
+use crate::recover::over_domain::where_is;
 use crate::solve::driver::{Status, WarningKind};
-use crate::verdict::{Check, determined, judge, jumps, patches};
+use crate::verdict::{Check, determined, judge, jumps, spread};
 
 impl Solution {
     /// Judges the answer by what is left of the problem, and calls it by its name.
@@ -17,7 +18,7 @@ impl Solution {
         let mut answer = self.carried.answer(&self.bound);
         let values = self.values_over_domain();
         let edges = self.edges(&values);
-        let values = self.where_read(values, &answer);
+        let values = self.where_read(&values, &answer);
         self.is_met_exactly = self.meets_data_exactly(&noise)
             && answer.told.iter().all(|told| told.size.is_some_and(|size| size > PLAIN));
         // Deviations are of an end that the run did not come to.
@@ -30,9 +31,13 @@ impl Solution {
         }
         self.verdict = judge(&self.bound, &answer, &values, &noise);
         if let Some(prior) = self.settings.carrier.patches_everywhere(self.scene()) {
+            let (points, read) = (self.points_over_domain(), self.read_over_domain(&answer));
+            let mut checks = Vec::new();
             for (at, head) in self.scene().heads.iter().enumerate().filter(|(_, head)| head.source) {
-                self.verdict.checks.push(patches(head.name, &values[at], prior.least(&self.bound, at)));
+                let places = where_is(&points, &read[at]);
+                checks.extend(spread::patches(head.name, (&values[at], &places), prior.least(&self.bound, at)));
             }
+            self.verdict.checks.extend(checks);
         }
         let of_head = |head: usize, places: &[f64]| self.carried.values(&self.bound, places).swap_remove(head).values;
         self.verdict.checks.extend(jumps::checks(&self.bound, &noise, &of_head).into_iter().chain(edges));
