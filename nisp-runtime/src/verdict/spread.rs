@@ -99,7 +99,7 @@ mod tests {
         let spots = |x: f64, y: f64| if (x * 6.0).fract().hypot((y * 6.0).fract()) < 0.4 { 2.0 } else { 0.0 };
         let [wide, faint, even] = found(spots);
         assert!(wide < LARGEST && faint == 0.0 && even > 0.9, "{wide} {faint} {even}");
-        // A fiftieth of what a spot of noise has.
+        // What noise leaves everywhere.
         let [_, faint, even] = found(|_, _| 0.004);
         assert!(faint < FAINT && even < EVEN, "{faint} {even}");
     }
