@@ -187,6 +187,13 @@ impl Bound {
         self.problem.groups[group].as_ref()?.view(term)
     }
 
+    /// Whether a cloud may be off over whole regions, which a change of any number would make up for.
+    pub(crate) fn is_off_over_regions(&self) -> bool {
+        let groups = self.problem.scene.schema.groups.iter().enumerate();
+        let mut terms = groups.flat_map(|(at, group)| group.terms.iter().map(move |term| (at, term)));
+        terms.any(|(at, term)| self.tolerance(at, term).is_some())
+    }
+
     /// How far a term's cloud may be off over whole regions, if that is known.
     pub(crate) fn tolerance(&self, group: usize, term: &schema::Term) -> Option<EngineTolerance> {
         let declared = self.problem.groups[group].as_ref()?.tolerance(term.name)?;

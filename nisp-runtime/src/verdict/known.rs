@@ -29,9 +29,7 @@ pub(crate) struct Values<'a> {
 /// A check of what would gain most; none where nothing is known of that, or where a cloud may be off over whole regions, which
 /// any number would make up for.
 pub(crate) fn check(bound: &Bound, scores: &[Score], known: Values<'_>) -> Option<Check> {
-    let groups = bound.problem.scene().schema.groups.iter().enumerate();
-    let mut terms = groups.flat_map(|(at, group)| group.terms.iter().map(move |term| (at, term)));
-    if terms.any(|(at, term)| bound.tolerance(at, term).is_some()) {
+    if bound.is_off_over_regions() {
         return None;
     }
     let limit = if scores.iter().any(|score| score.by_prior) { GAIN } else { GAIN_OF_DATA };

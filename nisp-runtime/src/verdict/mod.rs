@@ -12,6 +12,7 @@ mod clouds;
 mod contradicted;
 pub(crate) mod edges;
 mod equations;
+pub(crate) mod faint;
 mod filtered;
 mod free;
 mod gathered;
@@ -36,7 +37,7 @@ mod scaled;
 pub(crate) mod settled;
 mod slow;
 mod smooth;
-pub(crate) mod spread;
+
 mod stretches;
 mod taken;
 mod told;
@@ -54,7 +55,7 @@ const FIRM: f64 = 0.25;
 pub struct Check {
     /// What was looked at: `equation`, `condition`, `stated`, `sum`, `tolerance`, `misfit`, `noise`, `pattern`, `stretch`,
     /// `rhythm`, `filtered`, `repeated`, `polled`, `jolt`, `edge`, `outliers`, `held`, `left`, `outside`, `between`, `settled`, `given`, `told`,
-    /// `distance`, `seen`, `patch`, `faint`, `spread`, `determined`, `leaning`, `believed`, `known`, `contradicted`, `refined`, `amplified`, `agreed` or `range`.
+    /// `distance`, `seen`, `patch`, `faint`, `determined`, `leaning`, `believed`, `known`, `contradicted`, `refined`, `amplified`, `agreed` or `range`.
     pub check: &'static str,
     /// The group of points; empty for learned scalars and for the answer as a whole.
     pub group: &'static str,

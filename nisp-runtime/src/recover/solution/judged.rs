@@ -5,7 +5,7 @@ use crate::facts::Told;
 use crate::noise::{self, Noise};
 use crate::recover::over_domain::where_is;
 use crate::solve::driver::{Status, WarningKind};
-use crate::verdict::{Check, determined, judge, jumps, spread};
+use crate::verdict::{Check, determined, faint, judge, jumps};
 
 impl Solution {
     /// Judges the answer by what is left of the problem, and calls it by its name.
@@ -34,8 +34,12 @@ impl Solution {
             let (points, read) = (self.points_over_domain(), self.read_over_domain(&answer));
             let mut checks = Vec::new();
             for (at, head) in self.scene().heads.iter().enumerate().filter(|(_, head)| head.source) {
-                let places = where_is(&points, &read[at]);
-                checks.extend(spread::patches(head.name, (&values[at], &places), prior.least(&self.bound, at)));
+                let level = prior.least(&self.bound, at);
+                checks.push(faint::patches(head.name, &values[at], level));
+                if self.bound.is_off_over_regions() {
+                    let places = where_is(&points, &read[at]);
+                    checks.push(faint::faint(head.name, (&values[at], &places), level));
+                }
             }
             self.verdict.checks.extend(checks);
         }
